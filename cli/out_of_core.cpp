@@ -246,7 +246,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
   options.memory = read_memory(arguments.memory);
   options.algorithm = entry.spec.text();
   options.counts_only = arguments.counts;
-  options.threads = make_finder<2>(options.algorithm)->workers().threads;
+  options.threads = Finder<2>(options.algorithm).workers().threads;
   std::vector<FileToRead> files;
   std::vector<int> dimensions;
   std::vector<lab::Precision> precisions;

@@ -90,7 +90,7 @@ class Filters {
 };
 
 template <int D, typename Real>
-void find(PairFinder<D, Real>& finder, const broadside_boxes& boxes, const broadside_boxes* right,
+void find(Finder<D, Real>& finder, const broadside_boxes& boxes, const broadside_boxes* right,
           const broadside_find_options& options, PairSink& pairs) {
   const Filters filters(options, boxes, right);
   if (right == nullptr)
@@ -100,10 +100,10 @@ void find(PairFinder<D, Real>& finder, const broadside_boxes& boxes, const broad
 }
 
 template <int D, typename Real>
-std::unique_ptr<PairFinder<D, Real>> finder_of(const broadside_find_options& options, Executor* executor) {
-  auto finder = make_finder<D, Real>(spec_of(options.algorithm));
-  use(*finder, executor);
-  if (options.quarantines != 0) finder->set_bad_input(BadInput::quarantine);
+Finder<D, Real> finder_of(const broadside_find_options& options, Executor* executor) {
+  Finder<D, Real> finder(spec_of(options.algorithm));
+  use(finder, executor);
+  if (options.quarantines != 0) finder.set_bad_input(BadInput::quarantine);
   return finder;
 }
 
@@ -113,7 +113,8 @@ void find_once(const broadside_boxes* boxes, const broadside_boxes* right,
   const broadside_find_options& wishes = checked(options);
   const auto executor = make_executor(wishes.executor);
   with_kind(required(boxes, "boxes").kind, [&]<int D, typename Real>() {
-    find(*finder_of<D, Real>(wishes, executor.get()), *boxes, right, wishes, pairs);
+    auto finder = finder_of<D, Real>(wishes, executor.get());
+    find(finder, *boxes, right, wishes, pairs);
   });
 }
 
@@ -183,13 +184,13 @@ class KeptFinder final : public broadside_finder {
             const broadside_find_options& options) override {
     pairs.clear();
     Collector collector(pairs);
-    ::find(*finder_, boxes, right, options, collector);
-    copy_as(finder_->quarantined(), quarantined);
+    ::find(finder_, boxes, right, options, collector);
+    copy_as(finder_.quarantined(), quarantined);
   }
 
  private:
   std::unique_ptr<Executor> executor_;
-  std::unique_ptr<PairFinder<D, Real>> finder_;
+  Finder<D, Real> finder_;
 };
 
 }  // namespace
@@ -242,10 +243,9 @@ template <int D, typename Real>
 class KeptTracker final : public broadside_tracker {
  public:
   explicit KeptTracker(const broadside_find_options& options)
-      : executor_(make_executor(options.executor)),
-        tracker_(make_tracker<D, Real>(spec_of(options.algorithm))) {
-    use(*tracker_, executor_.get());
-    if (options.quarantines != 0) tracker_->set_bad_input(BadInput::quarantine);
+      : executor_(make_executor(options.executor)), tracker_(spec_of(options.algorithm)) {
+    use(tracker_, executor_.get());
+    if (options.quarantines != 0) tracker_.set_bad_input(BadInput::quarantine);
   }
 
   void update(const broadside_boxes& boxes, const std::uint32_t* changed, std::size_t changed_count,
@@ -255,12 +255,12 @@ class KeptTracker final : public broadside_tracker {
     ended.clear();
     Collector begun_collector(begun);
     Collector ended_collector(ended);
-    tracker_->update(frame, begun_collector, ended_collector);
+    tracker_.update(frame, begun_collector, ended_collector);
   }
 
  private:
   std::unique_ptr<Executor> executor_;
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  Tracker<D, Real> tracker_;
   FrameMemory<D, Real> memory_;
 };
 

@@ -141,7 +141,7 @@ class PartitionOf final : public AnyPartition {
     if (std::ranges::none_of(boxes, [](const auto& box) { return is_invalid(box); })) return;
     try {
       PairCounter none;
-      make_finder<D, Real>(default_algorithm)->find(boxes, none);
+      Finder<D, Real>().find(boxes, none);
     } catch (const InvalidInput& error) {
       throw InvalidBoxOf(name, error);
     }

@@ -83,21 +83,21 @@ struct Search {
   /// With the GIL given away.
   void run(PairSink& pairs, WithoutGil& released) const {
     with_kind(boxes.dimension(), boxes.are_doubles(), [&]<int D, typename Real>() {
-      const auto finder = make_finder<D, Real>(algorithm);
-      std::optional<ScopedWorkers<PairFinder<D, Real>>> use;
-      if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(*finder, threads, released);
-      if (quarantine) finder->set_bad_input(BadInput::quarantine);
+      Finder<D, Real> finder(algorithm);
+      std::optional<ScopedWorkers<Finder<D, Real>>> use;
+      if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(finder, threads, released);
+      if (quarantine) finder.set_bad_input(BadInput::quarantine);
       const PairFilters which{filters, other_filters, &ignored};
       if (other)
-        find_between(*finder, pairs, which);
+        find_between(finder, pairs, which);
       else
-        finder->find(boxes.boxes<D, Real>(), pairs, which);
+        finder.find(boxes.boxes<D, Real>(), pairs, which);
     });
   }
 
  private:
   template <int D, typename Real>
-  void find_between(PairFinder<D, Real>& finder, PairSink& pairs, const PairFilters& which) const {
+  void find_between(Finder<D, Real>& finder, PairSink& pairs, const PairFilters& which) const {
     const BoxView<D, Real> left = boxes.boxes<D, Real>();
     try {
       finder.find_between(left, other->boxes<D, Real>(), pairs, which);

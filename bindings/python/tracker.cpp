@@ -17,19 +17,19 @@ namespace broadside::python {
 namespace {
 
 /// A tracker of any kind of boxes.
-class Tracker {
+class AnyTracker {
  public:
-  virtual ~Tracker() = default;
+  virtual ~AnyTracker() = default;
   virtual nb::object update(nb::handle boxes, nb::handle changed, nb::handle filters) = 0;
   virtual std::size_t bytes() = 0;
 };
 
 template <int D, typename Real>
-class TrackerOf final : public Tracker {
+class TrackerOf final : public AnyTracker {
  public:
   TrackerOf(const std::string& algorithm, std::size_t threads, bool quarantine)
-      : tracker_(make_tracker<D, Real>(algorithm)), threads_(threads) {
-    if (quarantine) tracker_->set_bad_input(BadInput::quarantine);
+      : tracker_(algorithm), threads_(threads) {
+    if (quarantine) tracker_.set_bad_input(BadInput::quarantine);
   }
 
   nb::object update(nb::handle boxes, nb::handle changed, nb::handle filters) override {
@@ -40,12 +40,12 @@ class TrackerOf final : public Tracker {
     std::vector<Pair> ended;
     without_gil([&](WithoutGil& released) {
       const std::lock_guard lock(mutex_);
-      const ScopedWorkers use(*tracker_, threads_, released);
+      const ScopedWorkers use(tracker_, threads_, released);
       std::vector<Box<D, Real>> memory;
       PairCollector begun_collector(begun);
       PairCollector ended_collector(ended);
-      tracker_->update({.boxes = rows.array(memory), .changed = places, .filters = kinds}, begun_collector,
-                       ended_collector);
+      tracker_.update({.boxes = rows.array(memory), .changed = places, .filters = kinds}, begun_collector,
+                      ended_collector);
     });
     const std::size_t begun_count = begun.size();
     const std::size_t ended_count = ended.size();
@@ -56,7 +56,7 @@ class TrackerOf final : public Tracker {
   std::size_t bytes() override {
     return without_gil([&](WithoutGil&) {
       const std::lock_guard lock(mutex_);
-      return tracker_->bytes();
+      return tracker_.bytes();
     });
   }
 
@@ -74,21 +74,21 @@ class TrackerOf final : public Tracker {
   }
 
   CallMutex mutex_;
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  Tracker<D, Real> tracker_;
   std::size_t threads_;
 };
 
 }  // namespace
 
 void add_tracker(nb::module_& module) {
-  nb::class_<Tracker>(module, "Tracker")
-      .def("update", &Tracker::update, nb::arg("boxes").none(), nb::arg("changed").none(),
+  nb::class_<AnyTracker>(module, "Tracker")
+      .def("update", &AnyTracker::update, nb::arg("boxes").none(), nb::arg("changed").none(),
            nb::arg("filters").none())
-      .def("bytes", &Tracker::bytes);
+      .def("bytes", &AnyTracker::bytes);
   module.def(
       "make_tracker",
       [](int dimension, bool has_doubles, const std::string& algorithm, nb::handle threads, bool quarantine) {
-        return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<Tracker> {
+        return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyTracker> {
           return std::make_unique<TrackerOf<D, Real>>(algorithm, threads_of(threads, algorithm), quarantine);
         });
       },

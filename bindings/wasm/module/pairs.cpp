@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <memory>
 #include <string_view>
 
 #include "broadside/finder.hpp"
@@ -30,7 +29,7 @@ struct Search {
 
 class KeptFinder {
  public:
-  explicit KeptFinder(std::string_view spec) : finder_(make_finder<dimension>(spec)) {}
+  explicit KeptFinder(std::string_view spec) : finder_(spec) {}
 
   void find(const Search& search) {
     if ((search.mode & counts) != 0) {
@@ -53,19 +52,19 @@ class KeptFinder {
     const PairFilters filters{filters_at(search.filters, search.count),
                               filters_at(search.right_filters, search.right_count)};
     if ((search.mode & joins) == 0)
-      finder_->find(boxes, pairs, filters);
+      finder_.find(boxes, pairs, filters);
     else
-      finder_->find_between(boxes, boxes_at<dimension>(search.right, search.right_count), pairs, filters);
+      finder_.find_between(boxes, boxes_at<dimension>(search.right, search.right_count), pairs, filters);
   }
 
-  std::unique_ptr<PairFinder<dimension>> finder_;
+  Finder<dimension> finder_;
   std::vector<Pair> pairs_;
   std::vector<Pair> scratch_;
 };
 
 class KeptTracker {
  public:
-  explicit KeptTracker(std::string_view spec) : tracker_(make_tracker<dimension>(spec)) {}
+  explicit KeptTracker(std::string_view spec) : tracker_(spec) {}
 
   /// Takes the next frame. `changed` lists places whose boxes or filters may differ from the frame before;
   /// null where the tracker is to see for itself.
@@ -82,7 +81,7 @@ class KeptTracker {
     ended_.clear();
     PairCollector begun(begun_);
     PairCollector ended(ended_);
-    tracker_->update(frame, begun, ended);
+    tracker_.update(frame, begun, ended);
     answer(std::span<const Pair>(begun_));
     answer(std::span<const Pair>(ended_), 1);
   }
@@ -90,7 +89,7 @@ class KeptTracker {
  private:
   /// Sets `changed_` to the places where a frame differs from the one before.
   void list_changed(const Frame<dimension>& frame) {
-    const Frame<dimension> last = tracker_->last_frame();
+    const Frame<dimension> last = tracker_.last_frame();
     const std::size_t both = std::min(last.boxes.size(), frame.boxes.size());
     const bool has_filters = !last.filters.empty() && !frame.filters.empty();
     changed_.clear();
@@ -110,7 +109,7 @@ class KeptTracker {
     return differ == 0;
   }
 
-  std::unique_ptr<PairTracker<dimension>> tracker_;
+  Tracker<dimension> tracker_;
   std::vector<BoxId> changed_;
   std::vector<Pair> begun_;
   std::vector<Pair> ended_;

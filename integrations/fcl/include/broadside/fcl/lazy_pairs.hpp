@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -60,7 +59,7 @@ class ChangedPlaces {
 template <typename S>
 class LazyPairs {
  public:
-  explicit LazyPairs(std::string_view algorithm) : finder_(make_finder<3, S>(algorithm)) {}
+  explicit LazyPairs(std::string_view algorithm) : finder_(algorithm) {}
 
   /// Makes room for as many boxes, so that changed() does not throw.
   void reserve(std::size_t size) {
@@ -94,7 +93,7 @@ class LazyPairs {
   }
 
   /// For searches of other boxes, so that they reuse its memory.
-  PairFinder<3, S>& finder() noexcept { return *finder_; }
+  Finder<3, S>& finder() noexcept { return finder_; }
 
   /// Not touched where it is current: other threads may be asking it.
   const BoxIndex<3, S>& box_index(std::span<const Box<3, S>> boxes) {
@@ -115,7 +114,7 @@ class LazyPairs {
   void find(std::span<const Box<3, S>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);
-    finder_->find(boxes, collector);
+    finder_.find(boxes, collector);
   }
 
   void follow(std::span<const Box<3, S>> boxes) {
@@ -136,7 +135,7 @@ class LazyPairs {
     }
   }
 
-  std::unique_ptr<PairFinder<3, S>> finder_;
+  Finder<3, S> finder_;
   BoxIndex<3, S> index_;
   ChangedPlaces for_pairs_;  // since the last pairs(), and since the last box_index()
   ChangedPlaces for_index_;
