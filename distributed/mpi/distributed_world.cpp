@@ -186,11 +186,11 @@ class DistributedWorld<D, Real>::State {
 
   void make_part() {
     const auto own = static_cast<std::size_t>(comm_.rank());
-    std::unique_ptr<PairTracker<D, Real>> tracker = make_tracker<D, Real>(options_.algorithm);
+    Tracker<D, Real> tracker(options_.algorithm);
     if (options_.threads) {
-      Workers workers = tracker->workers();
+      Workers workers = tracker.workers();
       workers.threads = *options_.threads;
-      tracker->set_workers(workers);
+      tracker.set_workers(workers);
     }
     // A rank without a part has boxes of none.
     const typename Partition<D, Real>::Region region =

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -143,7 +144,7 @@ class Join {
  public:
   using OneSide = Side<D, Real, Id>;
 
-  Join(Communicator& comm, PairFinder<D, Real>& finder, std::vector<OneSide> sides)
+  Join(Communicator& comm, Finder<D, Real>& finder, std::vector<OneSide> sides)
       : comm_(comm), finder_(finder), sides_(std::move(sides)) {}
 
   Statistics run(const Options& options, const PairCallback& take) {
@@ -236,24 +237,24 @@ class Join {
   }
 
   Communicator& comm_;
-  PairFinder<D, Real>& finder_;
+  Finder<D, Real>& finder_;
   std::vector<OneSide> sides_;
   Statistics statistics_;
 };
 
 template <int D, typename Real>
-std::unique_ptr<PairFinder<D, Real>> finder_of(const Options& options) {
-  std::unique_ptr<PairFinder<D, Real>> finder = make_finder<D, Real>(options.algorithm);
+Finder<D, Real> finder_of(const Options& options) {
+  Finder<D, Real> finder(options.algorithm);
   if (options.threads) {
-    Workers workers = finder->workers();
+    Workers workers = finder.workers();
     workers.threads = *options.threads;
-    finder->set_workers(workers);
+    finder.set_workers(workers);
   }
   return finder;
 }
 
 template <typename Id, typename P, int D, typename Real>
-Statistics join(Communicator& comm, PairFinder<D, Real>& finder, std::span<const BoxView<D, Real>> views,
+Statistics join(Communicator& comm, Finder<D, Real>& finder, std::span<const BoxView<D, Real>> views,
                 std::vector<std::vector<std::uint64_t>> ends, const PairCallback& take,
                 const Options& options) {
   std::vector<Side<D, Real, Id>> sides;
@@ -278,7 +279,7 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
                   "spec, threads, sample, size of ids, sets, dimension or type of coordinate");
   const std::array<BoxView<D, Real>, 2> both{boxes, right == nullptr ? BoxView<D, Real>() : *right};
   const std::span<const BoxView<D, Real>> views = std::span(both).first(right == nullptr ? 1 : 2);
-  std::unique_ptr<PairFinder<D, Real>> finder;
+  std::optional<Finder<D, Real>> finder;
   comm.together([&] {
     finder = finder_of<D, Real>(options);
     check_boxes(boxes, right == nullptr ? "box" : "left box");

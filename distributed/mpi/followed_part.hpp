@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -49,7 +48,7 @@ class FollowedPart {
     std::vector<std::vector<LargePair>> ended;
   };
 
-  FollowedPart(const Region& region, std::unique_ptr<PairTracker<D, Real>> tracker)
+  FollowedPart(const Region& region, Tracker<D, Real> tracker)
       : region_(region), tracker_(std::move(tracker)) {}
 
   /// A box that is in the part has changed; `owner` is the rank that owns it.
@@ -72,7 +71,7 @@ class FollowedPart {
     free_.reserve(free_.size() + changed_.size());
     EventSink begun(*this, now_, before_, events.begun);
     EventSink ended(*this, before_, now_, events.ended);
-    tracker_->update({shown_, changed_}, begun, ended);
+    tracker_.update({shown_, changed_}, begun, ended);
     pairs_ += begun.count() - ended.count();
     return events;
   }
@@ -149,7 +148,7 @@ class FollowedPart {
   }
 
   Region region_;
-  std::unique_ptr<PairTracker<D, Real>> tracker_;
+  Tracker<D, Real> tracker_;
   std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // by id
   std::vector<std::uint64_t> ids_;                          // by slot, as all that follows
   std::vector<std::uint32_t> owners_;

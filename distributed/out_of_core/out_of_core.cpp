@@ -151,11 +151,11 @@ class OutOfCoreJoin<D, Real>::Work {
     return options;
   }
 
-  static std::unique_ptr<PairFinder<D, Real>> finder_of(const OutOfCoreOptions& options) {
-    std::unique_ptr<PairFinder<D, Real>> finder = make_finder<D, Real>(options.algorithm);
-    Workers workers = finder->workers();
+  static Finder<D, Real> finder_of(const OutOfCoreOptions& options) {
+    Finder<D, Real> finder(options.algorithm);
+    Workers workers = finder.workers();
     workers.threads = options.threads;
-    finder->set_workers(workers);
+    finder.set_workers(workers);
     return finder;
   }
 
@@ -379,7 +379,7 @@ class OutOfCoreJoin<D, Real>::Work {
 
   out_of_core::Sources<D, Real> sources_;
   OutOfCoreOptions options_;
-  std::unique_ptr<PairFinder<D, Real>> finder_;
+  std::optional<Finder<D, Real>> finder_;
   WorkFolder folder_;
   Manifest manifest_;
   bool is_resumed_ = false;

@@ -114,7 +114,7 @@ class PartJoin {
   /// Fills in the runs of `part`, pairs of type P. A part that is too large is joined piece by piece.
   /// Throws CorruptFile and OutOfCoreError.
   template <typename P>
-  void join(Part& part, const Region& region, PairFinder<D, Real>& finder) {
+  void join(Part& part, const Region& region, Finder<D, Real>& finder) {
     RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
     const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
@@ -151,14 +151,14 @@ class PartJoin {
   }
 
   template <typename P>
-  void join_one(const PartBoxes<D, Real>& set, PairFinder<D, Real>& finder, RunWriter<P>& runs) {
+  void join_one(const PartBoxes<D, Real>& set, Finder<D, Real>& finder, RunWriter<P>& runs) {
     PairsOfIds<P> pairs(
         {set.ids.data(), set.ids.data(), set.begins_before.data(), set.begins_before.data(), true}, runs);
     finder.find(set.boxes, pairs);
   }
 
   template <typename P>
-  void join_two(const PartBoxes<D, Real>& left, const PartBoxes<D, Real>& right, PairFinder<D, Real>& finder,
+  void join_two(const PartBoxes<D, Real>& left, const PartBoxes<D, Real>& right, Finder<D, Real>& finder,
                 RunWriter<P>& runs) {
     PairsOfIds<P> pairs({left.ids.data(), right.ids.data(), left.begins_before.data(),
                          right.begins_before.data(), !is_between_},

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 
 namespace broadside {
 namespace {

@@ -51,7 +51,7 @@ struct DistributedWorldStatistics {
 /// A set of boxes on all ranks that changes, and its overlapping pairs.
 ///
 /// The caller gives each box an id, which no other box of any rank has. A box is owned by one rank: the one
-/// that added it, until it hands it over. Each rank follows a part of space by a PairTracker. An update
+/// that added it, until it hands it over. Each rank follows a part of space by a Tracker. An update
 /// sends a box that changed to the ranks whose parts it touches or has left, and nothing of others; where the
 /// load has shifted, space is cut anew and boxes move to their new parts, which shows in no event.
 ///

@@ -17,7 +17,7 @@
 
 #include "broadside/box.hpp"
 #include "broadside/export.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 #include "broadside/large_pair.hpp"
 
 namespace broadside::mpi {
