@@ -7,21 +7,24 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/measure/cases.hpp"
 #include "lab/measure/compare.hpp"
 
 namespace broadside::bench {
 
-/// What happens to one pair: of a search's pairs, or of a frame's events. PairTracker delivers each event of
-/// a frame once whatever an algorithm writes, so a doubled event is one that comes again in the next frame.
+/// What happens to one pair: of a search's pairs, or of a frame's events. Tracker delivers each event of a
+/// frame once whatever an algorithm writes, so a doubled event is one that comes again in the next frame.
 enum class Fault { dropped, doubled, swapped };
 
 /// A corruption, drawn by its number, and how far it is.
@@ -76,47 +79,55 @@ inline void add_all(const std::vector<Pair>& pairs, PairSink& sink) {
   for (const Pair pair : pairs) sink.add(pair.first, pair.second);
 }
 
-/// A search by another algorithm, in which `spoil` may change the pairs.
+/// Searches by another algorithm; `spoil` may change the pairs.
 template <int D, typename Spoil>
-class SpoiltSearch final : public PairFinder<D> {
+class SpoiltSearcher final : public Searcher<D> {
  public:
-  SpoiltSearch(std::unique_ptr<PairFinder<D>> real, Spoil spoil)
-      : real_(std::move(real)), spoil_(std::move(spoil)) {}
+  SpoiltSearcher(const std::string& base, Spoil spoil) : real_(base), spoil_(std::move(spoil)) {}
 
- private:
-  void find_valid(std::span<const Box<D>> boxes, PairSink& sink) override {
-    std::vector<Pair> pairs = sorted_pairs([&](PairSink& all) { real_->find(boxes, all); });
-    spoil_(pairs, boxes.size());
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& sink) override {
+    std::vector<Pair> pairs = sorted_pairs([&](PairSink& all) { real_.find(input.boxes, all); });
+    spoil_(pairs, input.boxes.size());
     add_all(pairs, sink);
+    return std::nullopt;
   }
 
-  std::unique_ptr<PairFinder<D>> real_;
+ private:
+  Finder<D> real_;
   Spoil spoil_;
 };
 
 template <int D, typename Spoil>
-std::unique_ptr<PairFinder<D>> spoilt_search(const std::string& base, Spoil spoil) {
-  return std::make_unique<SpoiltSearch<D, Spoil>>(make_finder<D>(base), std::move(spoil));
+std::unique_ptr<Searcher<D>> spoilt_searcher(const std::string& base, Spoil spoil) {
+  return std::make_unique<SpoiltSearcher<D, Spoil>>(base, std::move(spoil));
 }
 
-/// A tracker over another one, which corrupts the events of one frame.
+/// Follows boxes by another algorithm's tracker, and corrupts the events of one frame.
 template <int D>
-class CorruptedTracker final : public PairTracker<D> {
+class CorruptedFollower final : public Follower<D> {
  public:
-  CorruptedTracker(std::unique_ptr<PairTracker<D>> real, Corruption& corruption, std::size_t boxes)
-      : real_(std::move(real)), corruption_(corruption), boxes_(boxes) {}
+  CorruptedFollower(std::string base, Corruption& corruption, std::size_t boxes)
+      : base_(std::move(base)), real_(base_), corruption_(corruption), boxes_(boxes) {}
 
- private:
-  void update_valid(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    if (change.rebuild) {
+      real_ = Tracker<D>(base_);
+      PairCounter held_before;
+      real_.update({.boxes = change.before}, held_before, held_before);
+    }
     std::vector<Pair> ends;
     std::vector<Pair> begins = sorted_pairs([&](PairSink& all) {
-      ends = sorted_pairs([&](PairSink& others) { this->update_with(*real_, change, all, others); });
+      ends = sorted_pairs([&](PairSink& others) {
+        real_.update({.boxes = change.now, .changed = change.changed}, all, others);
+      });
     });
     if (change.now.size() == boxes_) spoil(begins, ends);
     add_all(begins, begun);
     add_all(ends, ended);
+    return std::nullopt;
   }
 
+ private:
   void spoil(std::vector<Pair>& begins, std::vector<Pair>& ends) {
     Corruption& corruption = corruption_;
     for (const Pair pair : std::exchange(corruption.again, {})) {
@@ -140,7 +151,8 @@ class CorruptedTracker final : public PairTracker<D> {
     corruption.is_applied = true;
   }
 
-  std::unique_ptr<PairTracker<D>> real_;
+  std::string base_;
+  Tracker<D> real_;
   Corruption& corruption_;
   std::size_t boxes_;
 };
@@ -156,10 +168,12 @@ class Corrupted {
     Algorithm algorithm;
     algorithm.name = "corrupted_" + base_;
     algorithm.tunables = {{"number", "which corruption", "0", Tunable::Type::integer, 0, 1e15}};
-    algorithm.finder_2d = [this](const Settings& settings) { return finder<2>(settings); };
-    algorithm.finder_3d = [this](const Settings& settings) { return finder<3>(settings); };
-    algorithm.tracker_2d = [this](const Settings& settings) { return tracker<2>(settings); };
-    algorithm.tracker_3d = [this](const Settings& settings) { return tracker<3>(settings); };
+    algorithm.searcher_2d = [this](const Settings& settings) { return searcher<2>(settings); };
+    algorithm.searcher_3d = [this](const Settings& settings) { return searcher<3>(settings); };
+    algorithm.followers_2d = {
+        {.name = base_, .make = [this](const Settings& settings) { return follower<2>(settings); }}};
+    algorithm.followers_3d = {
+        {.name = base_, .make = [this](const Settings& settings) { return follower<3>(settings); }}};
     return algorithm;
   }
 
@@ -167,9 +181,9 @@ class Corrupted {
 
  private:
   template <int D>
-  std::unique_ptr<PairFinder<D>> finder(const Settings& settings) {
+  std::unique_ptr<Searcher<D>> searcher(const Settings& settings) {
     Corruption& corruption = at(static_cast<std::uint64_t>(settings.integer("number")));
-    return spoilt_search<D>(base_, [&corruption, this](std::vector<Pair>& pairs, std::size_t boxes) {
+    return spoilt_searcher<D>(base_, [&corruption, this](std::vector<Pair>& pairs, std::size_t boxes) {
       if (boxes != boxes_ || corruption.calls++ < corruption.call || corruption.is_applied || pairs.empty())
         return;
       corrupt(pairs, corruption.fault, boxes, corruption.random);
@@ -178,9 +192,9 @@ class Corrupted {
   }
 
   template <int D>
-  std::unique_ptr<PairTracker<D>> tracker(const Settings& settings) {
-    return std::make_unique<CorruptedTracker<D>>(
-        make_tracker<D>(base_), at(static_cast<std::uint64_t>(settings.integer("number"))), boxes_);
+  std::unique_ptr<Follower<D>> follower(const Settings& settings) {
+    return std::make_unique<CorruptedFollower<D>>(
+        base_, at(static_cast<std::uint64_t>(settings.integer("number"))), boxes_);
   }
 
   std::string base_;
@@ -255,14 +269,14 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
     const auto faulty = [&](std::string name) {
       Algorithm algorithm;
       algorithm.name = std::move(name);
-      algorithm.finder_2d = [&is_applied, number, &request](const Settings&) {
-        return spoilt_search<2>(
+      algorithm.searcher_2d = [&is_applied, number, &request](const Settings&) {
+        return spoilt_searcher<2>(
             "grid", [&is_applied, number, &request](std::vector<Pair>& pairs, std::size_t boxes) {
               // The same place in the array each time, so that it is the same pair while that holds.
               std::mt19937_64 random(number);
               const auto fault = static_cast<Fault>(random() % 3);
               if (boxes != request.boxes || pairs.empty()) return;
-              // A DiffTracker takes no pair twice.
+              // A tracker that finds anew takes no pair twice.
               corrupt(pairs, request.frames > 0 && fault == Fault::doubled ? Fault::dropped : fault, boxes,
                       random);
               is_applied = true;

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -63,7 +62,7 @@ template <int D, typename Real>
 class Side {
  public:
   Side(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
-      : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(make_finder<D, Real>(algorithm)) {}
+      : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(algorithm) {}
 
   /// Asks once; returns the pairs. The times go to the samples if `keep`.
   PairSet run(bool keep) {
@@ -102,14 +101,14 @@ class Side {
         return;
       case Call::kept_finder:
         PairCollector collector(pairs);
-        finder_->find(boxes_, collector);
+        finder_.find(boxes_, collector);
     }
   }
 
   std::span<const Box<D, Real>> boxes_;
   std::string_view algorithm_;
   Call call_;
-  std::unique_ptr<PairFinder<D, Real>> finder_;
+  Finder<D, Real> finder_;
   std::vector<Pair> pairs_;
   std::vector<double> samples_;
   std::vector<double> busy_samples_;

@@ -49,12 +49,12 @@ void measure(std::size_t count, const std::vector<lab::Entry>& entries, std::siz
   const auto right = set_of<Real>(count, lab::join_table_right);
   for (const lab::Entry& entry : entries) {
     if (!entry.algorithm->has_dimension(2)) continue;
-    const auto finder = make_finder<2, Real>(*entry.algorithm, entry.spec);
+    Finder<2, Real> finder(*entry.algorithm, entry.spec);
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t round = 0; round < rounds; ++round) {
       PairCounter pairs;
       const lab::Stopwatch watch;
-      finder->find_between(left, right, pairs);
+      finder.find_between(left, right, pairs);
       least = std::min(least, watch.milliseconds());
       const std::uint64_t expected = expected_pairs.try_emplace(count, pairs.count()).first->second;
       if (pairs.count() != expected)

@@ -57,8 +57,8 @@ class Joining final : public Work {
  public:
   Joining(const Mesh& mesh, const lab::MeshElements& left, const lab::MeshElements& right,
           const std::string& algorithm, const Workers& workers)
-      : left_(left), right_(right), finder_(make_finder<3, Real>(algorithm)), threads_(workers.threads) {
-    finder_->set_workers(workers);
+      : left_(left), right_(right), finder_(algorithm), threads_(workers.threads) {
+    finder_.set_workers(workers);
     for (const lab::IndexedMesh* const time : {&mesh.before, &mesh.after}) {
       for (const std::array<double, 3>& vertex : time->vertices) {
         for (const double coordinate : vertex) places_.push_back(static_cast<Real>(coordinate));
@@ -72,11 +72,11 @@ class Joining final : public Work {
     sweep(left_, left_boxes_);
     PairCollector collector(pairs_);
     if (&left_ == &right_) {
-      finder_->find(left_boxes_, collector);
+      finder_.find(left_boxes_, collector);
       return;
     }
     sweep(right_, right_boxes_);
-    finder_->find_between(left_boxes_, right_boxes_, collector);
+    finder_.find_between(left_boxes_, right_boxes_, collector);
   }
 
   std::uint64_t hash() const override { return hash_of(pairs_); }
@@ -114,7 +114,7 @@ class Joining final : public Work {
   const lab::MeshElements& left_;
   const lab::MeshElements& right_;
   std::vector<Real> places_;  // x, y and z of each vertex, before and after
-  std::unique_ptr<PairFinder<3, Real>> finder_;
+  Finder<3, Real> finder_;
   std::size_t threads_;
   Boxes left_boxes_;
   Boxes right_boxes_;

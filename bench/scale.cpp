@@ -34,9 +34,9 @@ void measure(const lab::NamedScene& named, std::size_t boxes, const std::string&
     if (algorithms == "own" && entry.spec.text() == "brute_force") continue;
     PairHasher pairs;
     const lab::AllocationMeter meter;
-    const auto finder = make_finder<D>(*entry.algorithm, entry.spec);
+    Finder<D> finder(*entry.algorithm, entry.spec);
     const lab::Stopwatch watch;
-    finder->find(input.boxes, pairs);
+    finder.find(input.boxes, pairs);
     const double milliseconds = watch.milliseconds();
     const auto memory = meter.read();
     if (expected != 0 && pairs.hash() != expected)

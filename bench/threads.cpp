@@ -38,20 +38,20 @@ template <int D>
 class Searching final : public Work {
  public:
   Searching(const lab::Entry& entry, const lab::History<D>& input, const Workers& workers)
-      : boxes_(input.boxes), finder_(make_finder<D>(*entry.algorithm, entry.spec)) {
-    finder_->set_workers(workers);
+      : boxes_(input.boxes), finder_(*entry.algorithm, entry.spec) {
+    finder_.set_workers(workers);
   }
 
   void prepare(std::size_t) override { pairs_.clear(); }
   void run() override {
     PairCollector collector(pairs_);
-    finder_->find(boxes_, collector);
+    finder_.find(boxes_, collector);
   }
   std::uint64_t hash() const override { return hash_of(pairs_); }
 
  private:
   std::span<const Box<D>> boxes_;
-  std::unique_ptr<PairFinder<D>> finder_;
+  Finder<D> finder_;
   std::vector<Pair> pairs_;
 };
 
@@ -59,8 +59,8 @@ template <int D>
 class Following final : public Work {
  public:
   Following(const lab::Entry& entry, const lab::History<D>& input, const Workers& workers)
-      : input_(input), boxes_(input.boxes), tracker_(make_tracker<D>(*entry.algorithm, entry.spec)) {
-    tracker_->set_workers(workers);
+      : input_(input), boxes_(input.boxes), tracker_(*entry.algorithm, entry.spec) {
+    tracker_.set_workers(workers);
     run();
   }
 
@@ -73,7 +73,7 @@ class Following final : public Work {
     ended_.clear();
     PairCollector begun(begun_);
     PairCollector ended(ended_);
-    tracker_->update({boxes_, step_ == nullptr ? std::span<const BoxId>() : step_->changed}, begun, ended);
+    tracker_.update({boxes_, step_ == nullptr ? std::span<const BoxId>() : step_->changed}, begun, ended);
   }
   std::uint64_t hash() const override { return hash_of(begun_) - hash_of(ended_); }
 
@@ -81,7 +81,7 @@ class Following final : public Work {
   const lab::History<D>& input_;
   std::vector<Box<D>> boxes_;
   const lab::Step<D>* step_ = nullptr;  // null: the first frame
-  std::unique_ptr<PairTracker<D>> tracker_;
+  Tracker<D> tracker_;
   std::vector<Pair> begun_;
   std::vector<Pair> ended_;
 };

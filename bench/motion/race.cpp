@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -23,9 +22,9 @@ namespace {
 constexpr std::size_t fewest_frames = 5;
 
 template <int D>
-class TrackerFollower final : public Follower<D> {
+class TrackerFollower final : public MotionFollower<D> {
  public:
-  explicit TrackerFollower(std::unique_ptr<PairTracker<D>> tracker) : tracker_(std::move(tracker)) {}
+  explicit TrackerFollower(const lab::Entry& entry) : tracker_(*entry.algorithm, entry.spec) {}
 
   void take(const lab::Step<D>& step) override {
     lab::apply(step, boxes_);
@@ -37,14 +36,14 @@ class TrackerFollower final : public Follower<D> {
   void update() override {
     PairCollector begun(events_.begun);
     PairCollector ended(events_.ended);
-    tracker_->update({boxes_, changed_}, begun, ended);
+    tracker_.update({boxes_, changed_}, begun, ended);
   }
 
   const lab::Events& events() override { return events_; }
-  std::string explanation() const override { return tracker_->explanation(); }
+  std::string explanation() const override { return tracker_.explanation(); }
 
  private:
-  std::unique_ptr<PairTracker<D>> tracker_;
+  Tracker<D> tracker_;
   std::vector<Box<D>> boxes_;  // its own, as an engine's are
   std::vector<BoxId> changed_;
   lab::Events events_;
@@ -68,7 +67,7 @@ template <int D>
 struct Participant {
   Competitor<D> competitor;
   Runner* runner;
-  std::unique_ptr<Follower<D>> follower{};  // of this round
+  std::unique_ptr<MotionFollower<D>> follower{};  // of this round
   double spent_ms = 0;
   bool done = false;
 };
@@ -213,9 +212,7 @@ template <int D>
 std::vector<Competitor<D>> trackers(std::span<const lab::Entry> entries) {
   std::vector<Competitor<D>> competitors;
   for (const lab::Entry& entry : entries) {
-    const auto make = [&entry] {
-      return std::make_unique<TrackerFollower<D>>(make_tracker<D>(*entry.algorithm, entry.spec));
-    };
+    const auto make = [&entry] { return std::make_unique<TrackerFollower<D>>(entry); };
     competitors.push_back({entry.spec.text(), "boxes", make, &entry});
   }
   return competitors;

@@ -57,9 +57,9 @@ struct Outcome {
 
 /// What follows boxes in a race.
 template <int D>
-class Follower {
+class MotionFollower {
  public:
-  virtual ~Follower() = default;
+  virtual ~MotionFollower() = default;
 
   /// Hands over what changes, as the engine that moved the boxes has it. Not timed.
   virtual void take(const lab::Step<D>& step) = 0;
@@ -84,7 +84,7 @@ struct Competitor {
   /// What its events are told of: all with the same text must tell the same events.
   std::string definition;
 
-  std::function<std::unique_ptr<Follower<D>>()> make;
+  std::function<std::unique_ptr<MotionFollower<D>>()> make;
   const lab::Entry* entry = nullptr;  ///< its limits, where it has some
 };
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "broadside/find_pairs.hpp"
 #include "broadside/world.hpp"
 
 #include "bench/motion/parts.hpp"
@@ -25,7 +26,7 @@ constexpr double box2d_margin = 0.05;
 constexpr double box2d_relative_margin = 0.125;
 
 template <int D>
-class WorldFollower final : public Follower<D> {
+class WorldFollower final : public MotionFollower<D> {
  public:
   explicit WorldFollower(const WorldOptions& options) : options_(options), world_(options) {}
 

@@ -15,7 +15,7 @@
 
 #include <malloc.h>
 
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 
 int main(int count, char** arguments) {
   using namespace broadside;

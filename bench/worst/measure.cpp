@@ -28,8 +28,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/memory.hpp"
@@ -110,9 +111,7 @@ class LimitedHasher final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-template <typename Counting>
-double tests_of(const Counting& algorithm) {
-  const auto& statistics = algorithm.statistics();
+double tests_of(const std::optional<Statistics>& statistics) {
   return statistics ? static_cast<double>(statistics->tests) : -1;
 }
 
@@ -160,15 +159,14 @@ class Measured {
     std::optional<lab::AllocationMeter> meter;
     if (count) meter.emplace();
     const lab::Stopwatch watch;
-    const auto finder = make_finder<D, Real>(*entry.algorithm, entry.spec);
-    if (left_count_ > 0)
-      finder->find_between(history_.boxes, left_count_, pairs);
-    else
-      finder->find(history_.boxes, pairs);
+    Finder<D, Real> finder(*entry.algorithm, entry.spec);
+    const std::optional<Statistics> statistics = left_count_ > 0
+                                                     ? finder.find_across(history_.boxes, left_count_, pairs)
+                                                     : finder.find(history_.boxes, pairs);
     const double milliseconds = watch.milliseconds();
     return {.milliseconds = milliseconds,
             .worst_milliseconds = milliseconds,
-            .tests = tests_of(*finder),
+            .tests = tests_of(statistics),
             .pairs = pairs.count(),
             .hash = pairs.hash(),
             .peak_bytes = meter ? peak(*meter) : 0};
@@ -181,7 +179,8 @@ class Measured {
     std::vector<double> tests;
     std::optional<lab::AllocationMeter> meter;
     if (count) meter.emplace();
-    const auto tracker = make_tracker<D, Real>(*entry.algorithm, entry.spec);
+    Tracker<D, Real> tracker(*entry.algorithm, entry.spec);
+    std::optional<Statistics> statistics;
     std::int64_t held = 0;
     const auto update = [&](std::span<const BoxId> changed, bool is_first) {
       // A hundred movers may begin a pair each with a giant.
@@ -190,7 +189,7 @@ class Measured {
       LimitedHasher begun(most);
       LimitedHasher ended(most);
       const lab::Stopwatch watch;
-      tracker->update({boxes, changed}, begun, ended);
+      statistics = tracker.update({boxes, changed}, begun, ended);
       const double milliseconds = watch.milliseconds();
       // The frame counts, and whether a pair began or ended in it.
       constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
@@ -204,7 +203,7 @@ class Measured {
     for (const lab::Step<D, Real>& step : history_.steps) {
       lab::apply(step, boxes);
       frames.push_back(update(step.changed, false));
-      tests.push_back(tests_of(*tracker));
+      tests.push_back(tests_of(statistics));
     }
     run.peak_bytes = meter ? peak(*meter) : 0;
     run.milliseconds = lab::median(frames);
