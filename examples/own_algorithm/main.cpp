@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,16 +12,17 @@
 
 namespace {
 
-using broadside::BoxId;
-
 template <int D>
-class FirstAxisSweep final : public broadside::PairFinder<D> {
+class FirstAxisSweep final : public broadside::Searcher<D> {
  public:
-  explicit FirstAxisSweep(bool touching_counts) : touching_counts_(touching_counts) {}
+  explicit FirstAxisSweep(const broadside::Settings& settings)
+      : touching_counts_(settings.text("touching") == "yes") {}
 
- private:
-  // All that an algorithm must do. The boxes are valid and none is absent; the pairs may come in any order.
-  void find_valid(std::span<const broadside::Box<D>> boxes, broadside::PairSink& pairs) override {
+  // All that an algorithm must do. The boxes are valid and none is absent; the pairs may come in any order
+  // that depends on the boxes alone.
+  std::optional<broadside::Statistics> search(const broadside::SearchInput<D>& input,
+                                              broadside::PairSink& pairs) override {
+    const auto boxes = input.boxes;
     order_.resize(boxes.size());
     std::iota(order_.begin(), order_.end(), 0U);
     std::ranges::sort(order_, {}, [&](std::uint32_t i) { return std::pair(boxes[i].min[0], i); });
@@ -30,19 +32,20 @@ class FirstAxisSweep final : public broadside::PairFinder<D> {
       for (auto b = a + 1; b != order_.end() && boxes[*b].min[0] <= end; ++b) {
         if (boxes[*b].min[0] == end && !touching_counts_) break;
         ++done.tests;
-        if (overlap(boxes[*a], boxes[*b])) pairs.add(BoxId{*a}, BoxId{*b});
+        if (overlap(boxes[*a], boxes[*b])) pairs.add(broadside::BoxId{*a}, broadside::BoxId{*b});
       }
     }
-    this->count(done);
+    return done;
   }
 
+ private:
   bool touching_counts_;
   std::vector<std::uint32_t> order_;  // kept between calls for its memory
 };
 
 template <int D>
-std::unique_ptr<broadside::PairFinder<D>> make(const broadside::Settings& settings) {
-  return std::make_unique<FirstAxisSweep<D>>(settings.text("touching") == "yes");
+std::unique_ptr<broadside::Searcher<D>> make(const broadside::Settings& settings) {
+  return std::make_unique<FirstAxisSweep<D>>(settings);
 }
 
 broadside::Algorithm mine() {
@@ -58,8 +61,8 @@ broadside::Algorithm mine() {
                     .standard = "yes",
                     .type = broadside::Tunable::Type::choice,
                     .choices = {"yes", "no"}}},
-      .finder_2d = make<2>,
-      .finder_3d = make<3>,
+      .searcher_2d = make<2>,
+      .searcher_3d = make<3>,
   };
 }
 
