@@ -50,9 +50,9 @@ template <typename S>
 void FclCollisionManager<S>::collide(Object* object, void* data, CollisionCallBack callback) const {
   const Query query(*this);
   const std::span<Object* const> objects = objects_.objects();
-  box_index().overlapping(
-      objects_.box_of(object), [&](BoxId place) { return !callback(objects[index(place)], object, data); },
-      nullptr, objects_.place_of(object));
+  box_index().overlapping(objects_.box_of(object),
+                          [&](BoxId place) { return !callback(objects[index(place)], object, data); },
+                          {.except = objects_.place_of(object)});
 }
 
 template <typename S>
@@ -110,12 +110,11 @@ void FclCollisionManager<S>::distance(Object* object, void* data, DistanceCallBa
   const BoxIndex<3, S>& all = box_index();
   detail::visit_by_distance<S>(
       [&](S radius, Pairs& pairs) {
-        all.overlapping(
-            detail::enlarged(box, radius),
-            [&](BoxId place) {
-              pairs.push_back({detail::distance_of(box, boxes[index(place)]), index(place), 0});
-            },
-            nullptr, self);
+        all.overlapping(detail::enlarged(box, radius),
+                        [&](BoxId place) {
+                          pairs.push_back({detail::distance_of(box, boxes[index(place)]), index(place), 0});
+                        },
+                        {.except = self});
       },
       [&](S reached) { return detail::distance_beyond(box, reached, all, boxes, self); },
       [&](const auto& pair, S& least) { return callback(objects[pair.first], object, data, least); });
