@@ -23,12 +23,18 @@ namespace {
 /// Changes whose boxes are copied in the time that a search takes for a box.
 constexpr std::size_t changes_per_box = 8;
 
+/// Whether it has the tunable `update` as the library's algorithms have it: others have one of their own.
+bool chooses_update(const Algorithm& algorithm) {
+  return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
+    return tunable.name == "update" && std::ranges::find(tunable.choices, "follow") != tunable.choices.end();
+  });
+}
+
 /// The ways that an algorithm offers, by its settings.
 template <int D, typename Real>
 track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settings) {
   const bool is_float = std::is_same_v<Real, float>;
-  const bool chooses =
-      std::ranges::find(algorithm.tunables, "update", &Tunable::name) != algorithm.tunables.end();
+  const bool chooses = chooses_update(algorithm);
   track::TrackerPlan<D> plan;
   plan.tests_doubles = algorithm.tests_doubles;
   plan.find_costs = algorithm.find_costs<D>();

@@ -20,9 +20,9 @@ struct Moved {
   std::vector<Filter> filters = std::vector<Filter>(5);
   Change<2> change{.before = before, .now = now, .changed = ids, .flags = flags};
 
-  std::vector<MovedBox<2>> list(bool every_pair = false) const {
+  std::vector<MovedBox<2>> list() const {
     std::vector<MovedBox<2>> moved;
-    append_moved(change, ids, moved, every_pair);
+    append_moved(change, ids, moved);
     return moved;
   }
 };
@@ -53,9 +53,11 @@ TEST(MovedBoxes, AreAlsoThoseWhoseFiltersDiffer) {
   EXPECT_FALSE(moved.list()[0].filter_changed);
 }
 
-TEST(MovedBoxes, AreAllWhereEveryPairCounts) {
-  ASSERT_EQ(Moved().list(true).size(), 4U);
-  EXPECT_TRUE(Moved().list(true)[0].filter_changed);
+TEST(MovedBoxes, AreAllWhereCandidatesAreWanted) {
+  Moved moved;
+  moved.change.wants_candidates = true;
+  ASSERT_EQ(moved.list().size(), 4U);
+  EXPECT_TRUE(moved.list()[0].filter_changed);
 }
 
 }  // namespace

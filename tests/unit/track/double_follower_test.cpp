@@ -23,19 +23,19 @@ TEST(DoubleFollower, BoundsFalseCandidatesWithinAFrame) {
   };
   std::vector<Box<2, double>> boxes;
   for (std::size_t i = 0; i < count; ++i) boxes.push_back(anywhere(0, 1000));
-  const auto tracker = make_tracker<2, double>("auto:update=follow");
-  const auto expected = make_tracker<2, double>("grid:update=rebuild");
+  Tracker<2, double> tracker("auto:update=follow");
+  Tracker<2, double> expected("grid:update=rebuild");
   std::vector<BoxId> changed;
   for (int frame = 0; frame < 4; ++frame) {
     PairHasher begun;
     PairHasher ended;
-    tracker->update({boxes, changed}, begun, ended);
+    const auto statistics = tracker.update({boxes, changed}, begun, ended);
     PairHasher expected_begun;
     PairHasher expected_ended;
-    expected->update({boxes, changed}, expected_begun, expected_ended);
+    expected.update({boxes, changed}, expected_begun, expected_ended);
     EXPECT_EQ(begun.hash(), expected_begun.hash()) << frame;
     EXPECT_EQ(ended.hash(), expected_ended.hash()) << frame;
-    EXPECT_LT(tracker->statistics()->hits, 64 * count) << frame;
+    EXPECT_LT(statistics->hits, 64 * count) << frame;
     // So far away that all of them have a few coordinates as floats, in a rounding made for where they were.
     changed.clear();
     for (std::size_t i = 0; i < movers; ++i) {

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -26,13 +28,9 @@ namespace {
 
 /// Compares all boxes, and checks that what it is shown holds together: places that changed have a flag and
 /// others have none, and whatever did not change is the same in both frames.
-class CheckingTracker final : public PairTracker<2> {
+class CheckingFollower final : public Follower<2> {
  public:
-  std::size_t changed() const { return changed_; }
-  bool rebuilt() const { return rebuilt_; }
-
- private:
-  void update_valid(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+  std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
     const std::size_t size = change.now.size();
     EXPECT_EQ(change.before.size(), size);
     EXPECT_EQ(change.flags.size(), size);
@@ -40,8 +38,8 @@ class CheckingTracker final : public PairTracker<2> {
     EXPECT_TRUE(change.filters_now.empty() || change.filters_now.size() == size);
     std::vector<std::uint8_t> flags(size, 0);
     for (const BoxId id : change.changed) {
-      EXPECT_EQ(flags.at(index(id)), 0) << "a place is listed twice";
-      flags[index(id)] = 1;
+      EXPECT_EQ(flags.at(id), 0) << "a place is listed twice";
+      flags[id] = 1;
     }
     EXPECT_TRUE(std::equal(flags.begin(), flags.end(), change.flags.begin()));
     for (std::size_t i = 0; i < size; ++i) {
@@ -57,13 +55,17 @@ class CheckingTracker final : public PairTracker<2> {
         change.report(BoxId{b}, BoxId{a}, begun, ended);
       }
     }
+    return std::nullopt;
   }
 
+  std::size_t changed() const { return changed_; }
+  bool rebuilt() const { return rebuilt_; }
+
+ private:
   std::size_t changed_ = 0;
   bool rebuilt_ = false;
 };
 
-/// Takes nothing.
 TEST(Filters, AcceptByBitsUnlessGroupsDecide) {
   const Filter standard;
   EXPECT_TRUE(accepts(standard, standard));
@@ -134,7 +136,7 @@ TEST(IgnoredPairs, AreASetHoweverManyComeAndGo) {
 
 TEST(Change, ReportsAPairToTheSinkItBelongsTo) {
   // Begins, ends, rests, never is; and by filters alone: begins and ends.
-  StubTracker tracker([](const Change<2>& change, PairSink& begun, PairSink& ended) {
+  Tracker<2> tracker = stub_tracker([](const Change<2>& change, PairSink& begun, PairSink& ended) {
     for (std::uint32_t i = 0; i < change.now.size(); i += 2)
       change.report(BoxId{i + 1}, BoxId{i}, begun, ended);
   });
@@ -155,40 +157,44 @@ TEST(Change, ReportsAPairToTheSinkItBelongsTo) {
 }
 
 TEST(Change, ShowsWhatItsListsSayInEveryFrame) {
-  CheckingTracker tracker;
+  auto owned = std::make_unique<CheckingFollower>();
+  const CheckingFollower& follower = *owned;
+  Tracker<2> tracker(std::move(owned));
   std::vector<Box2> boxes = {at(0), at(0.5f), at(1), at(9)};
   const Pairs all_three = {pair(0, 1), pair(0, 2), pair(1, 2)};
   EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{all_three, {}}));
-  EXPECT_EQ(tracker.changed(), 4u);
-  EXPECT_TRUE(tracker.rebuilt());
+  EXPECT_EQ(follower.changed(), 4u);
+  EXPECT_TRUE(follower.rebuilt());
 
   EXPECT_EQ(update(tracker, {boxes, {}}), PairEvents());
-  EXPECT_EQ(tracker.changed(), 0u) << "a frame in which nothing changed shows nothing";
-  EXPECT_FALSE(tracker.rebuilt());
+  EXPECT_EQ(follower.changed(), 0u) << "a frame in which nothing changed shows nothing";
+  EXPECT_FALSE(follower.rebuilt());
 
   boxes[1] = at(20);
   boxes.push_back(at(9));
   const Ids second = {BoxId{1}, BoxId{1}};
   EXPECT_EQ(update(tracker, {boxes, second}), (PairEvents{{pair(3, 4)}, {pair(0, 1), pair(1, 2)}}));
-  EXPECT_EQ(tracker.changed(), 2u);
+  EXPECT_EQ(follower.changed(), 2u);
 
   boxes.resize(2);
   EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{{}, {pair(0, 2), pair(3, 4)}}));
-  EXPECT_EQ(tracker.changed(), 3u);
+  EXPECT_EQ(follower.changed(), 3u);
 
   boxes.resize(5, at(20));
   FailingSink failing;
   EXPECT_THROW(tracker.update({boxes, {}}, failing, failing), std::runtime_error);
-  EXPECT_EQ(tracker.changed(), 3u);
+  EXPECT_EQ(follower.changed(), 3u);
   boxes.pop_back();
   EXPECT_EQ(update(tracker, {boxes, {}}).begun, (Pairs{pair(1, 2), pair(1, 3), pair(2, 3)}));
-  EXPECT_TRUE(tracker.rebuilt());
+  EXPECT_TRUE(follower.rebuilt());
   EXPECT_EQ(update(tracker, {boxes, {}}), PairEvents());
-  EXPECT_EQ(tracker.changed(), 0u) << "the flags of a failed frame are gone";
+  EXPECT_EQ(follower.changed(), 0u) << "the flags of a failed frame are gone";
 }
 
 TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
-  CheckingTracker tracker;
+  auto owned = std::make_unique<CheckingFollower>();
+  const CheckingFollower& follower = *owned;
+  Tracker<2> tracker(std::move(owned));
   const std::vector<Box2> boxes = {at(0), at(0), at(0)};
   std::vector<Filter> filters(3);
   filters[1].mask = 0;
@@ -196,12 +202,12 @@ TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
   const Pairs without_one = {pair(0, 1), pair(1, 2)};
   EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{all, {}}));
   EXPECT_EQ(update(tracker, {boxes, {}, filters}), (PairEvents{{}, without_one}));
-  EXPECT_EQ(tracker.changed(), 3u);
-  EXPECT_FALSE(tracker.rebuilt());
+  EXPECT_EQ(follower.changed(), 3u);
+  EXPECT_FALSE(follower.rebuilt());
   EXPECT_EQ(update(tracker, {boxes, {}, filters}), PairEvents());
-  EXPECT_EQ(tracker.changed(), 0u);
+  EXPECT_EQ(follower.changed(), 0u);
   EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{without_one, {}}));
-  EXPECT_EQ(tracker.changed(), 3u);
+  EXPECT_EQ(follower.changed(), 3u);
   filters.pop_back();
   EXPECT_EQ(message_of<InvalidFrame>([&] {
               update(tracker, {boxes, {}, filters});
@@ -210,7 +216,9 @@ TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
 }
 
 TEST(Change, TakesAFilterOfABoxThatIsListedAndOfNoOther) {
-  CheckingTracker tracker;
+  auto owned = std::make_unique<CheckingFollower>();
+  const CheckingFollower& follower = *owned;
+  Tracker<2> tracker(std::move(owned));
   const std::vector<Box2> boxes = {at(0), at(0), at(0)};
   std::vector<Filter> filters(3);
   update(tracker, {boxes, {}, filters});
@@ -218,11 +226,13 @@ TEST(Change, TakesAFilterOfABoxThatIsListedAndOfNoOther) {
   filters[2].mask = 0;
   const Ids changed = {BoxId{2}};
   EXPECT_EQ(update(tracker, {boxes, changed, filters}), (PairEvents{{}, {pair(0, 2), pair(1, 2)}}));
-  EXPECT_EQ(tracker.changed(), 1u);
+  EXPECT_EQ(follower.changed(), 1u);
 }
 
 TEST(Change, EndsPairsThatAreIgnoredAndBeginsThemAgain) {
-  CheckingTracker tracker;
+  auto owned = std::make_unique<CheckingFollower>();
+  const CheckingFollower& follower = *owned;
+  Tracker<2> tracker(std::move(owned));
   std::vector<Box2> boxes = {at(0), at(0), at(0)};
   IgnoredPairs ignored;
   ignored.insert(pair(0, 1));
@@ -236,7 +246,7 @@ TEST(Change, EndsPairsThatAreIgnoredAndBeginsThemAgain) {
   EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), PairEvents());
   EXPECT_EQ(update(tracker, {boxes, {}, {}, &ignored}), (PairEvents{{}, first}))
       << "a set that is new is whole";
-  EXPECT_EQ(tracker.changed(), 0u);
+  EXPECT_EQ(follower.changed(), 0u);
   EXPECT_EQ(update(tracker, {boxes, {}, {}, nullptr}), (PairEvents{first, {}}));
 
   // Ignored in the frame in which they would have begun, or end; and of boxes that are not there yet.
@@ -253,7 +263,7 @@ TEST(Change, EndsPairsThatAreIgnoredAndBeginsThemAgain) {
 }
 
 TEST(Change, DeliversWhatFailedFramesChangedInFiltersAndIgnoredPairs) {
-  CheckingTracker tracker;
+  Tracker<2> tracker(std::make_unique<CheckingFollower>());
   const std::vector<Box2> boxes = {at(0), at(0), at(0), at(0)};
   std::vector<Filter> filters(4);
   update(tracker, {boxes, {}, filters});

@@ -1,6 +1,8 @@
-// MarginTracker: the events of the boxes themselves, whatever happens while they are enlarged, and what that
+// CandidateList: the events of the boxes themselves, whatever happens while they are enlarged, and what that
 // saves.
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,14 +74,13 @@ bool is_enlarged(const std::string& explanation) { return explanation.find("enla
 
 /// One frame for a tracker and for brute force; the number of events.
 template <int D, typename Real>
-std::size_t expect_same(PairTracker<D, Real>& tracker, PairTracker<D, Real>& expected,
-                        const Frame<D, Real>& frame, const std::string& what) {
+std::size_t expect_same(Tracker<D, Real>& tracker, Tracker<D, Real>& expected, const Frame<D, Real>& frame,
+                        const std::string& what) {
   std::vector<Pair> begun;
   std::vector<Pair> ended;
   std::vector<Pair> expected_begun;
   std::vector<Pair> expected_ended;
-  const auto update = [&frame](PairTracker<D, Real>& one, std::vector<Pair>& first,
-                               std::vector<Pair>& second) {
+  const auto update = [&frame](Tracker<D, Real>& one, std::vector<Pair>& first, std::vector<Pair>& second) {
     PairCollector begun_pairs(first);
     PairCollector ended_pairs(second);
     one.update(frame, begun_pairs, ended_pairs);
@@ -95,9 +96,9 @@ std::size_t expect_same(PairTracker<D, Real>& tracker, PairTracker<D, Real>& exp
 template <int D, typename Real>
 void live(const std::string& spec, std::size_t threads) {
   TremblingBoxes<D, Real> world(700, 5);
-  const auto tracker = make_tracker<D, Real>(spec);
-  tracker->set_workers({.threads = threads, .executor = standard_executor(), .boxes_per_thread = 1});
-  const auto expected = make_tracker<D, Real>("brute_force:update=rebuild");
+  Tracker<D, Real> tracker(spec);
+  tracker.set_workers({.threads = threads, .executor = standard_executor(), .boxes_per_thread = 1});
+  Tracker<D, Real> expected("brute_force:update=rebuild");
   std::vector<Filter> filters;
   std::size_t enlarged = 0;
   std::size_t events = 0;
@@ -135,17 +136,17 @@ void live(const std::string& spec, std::size_t threads) {
     const Frame<D, Real> now{world.boxes, changed, filters};
     if (frame % 25 == 24) {
       FailingSink failing;
-      EXPECT_THROW(tracker->update(now, failing, failing), std::runtime_error);
+      EXPECT_THROW(tracker.update(now, failing, failing), std::runtime_error);
     }
-    events += expect_same(*tracker, *expected, now, spec + ", frame " + std::to_string(frame));
-    enlarged += static_cast<std::size_t>(is_enlarged(tracker->explanation()));
+    events += expect_same(tracker, expected, now, spec + ", frame " + std::to_string(frame));
+    enlarged += static_cast<std::size_t>(is_enlarged(tracker.explanation()));
   }
   EXPECT_GT(events, 5000U);
   EXPECT_GT(enlarged, 40U) << spec;
   EXPECT_LT(enlarged, 110U) << spec;
 }
 
-TEST(MarginTracker, TellsTheEventsOfTheBoxesThemselves) {
+TEST(CandidateList, TellsTheEventsOfTheBoxesThemselves) {
   for (const std::string spec : {"auto", "grid", "sweep_and_prune", "quadtree", "bvh"}) {
     live<2, float>(spec, 1);
     live<3, float>(spec, 1);
@@ -154,12 +155,12 @@ TEST(MarginTracker, TellsTheEventsOfTheBoxesThemselves) {
   live<3, double>("auto", 1);
 }
 
-TEST(MarginTracker, TellsTheSameWithThreads) {
+TEST(CandidateList, TellsTheSameWithThreads) {
   if (standard_executor() == nullptr) GTEST_SKIP() << "this build has no threads";
   live<2, float>("auto", 4);
 }
 
-TEST(MarginTracker, TestsLittleMoreThanThePairsOfAPileAtRest) {
+TEST(CandidateList, TestsLittleMoreThanThePairsOfAPileAtRest) {
   TremblingBoxes<2, float> world(5000, 3);
   for (Box2& box : world.rest) {  // at random places of their own
     for (int axis = 0; axis < 2; ++axis) {
@@ -167,24 +168,25 @@ TEST(MarginTracker, TestsLittleMoreThanThePairsOfAPileAtRest) {
       box.max[axis] = box.min[axis] + 1;
     }
   }
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   std::int64_t pairs = 0;
+  std::optional<Statistics> statistics;
   for (int frame = 0; frame < 20; ++frame) {
     world.tremble();
     PairCounter begun;
     PairCounter ended;
-    tracker->update({world.boxes, world.all()}, begun, ended);
+    statistics = tracker.update({world.boxes, world.all()}, begun, ended);
     pairs += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
   }
-  ASSERT_TRUE(is_enlarged(tracker->explanation())) << tracker->explanation();
-  EXPECT_LT(tracker->statistics()->tests, static_cast<std::uint64_t>(pairs) * 2);
-  EXPECT_EQ(tracker->box_index(), nullptr) << "an index of enlarged boxes is none of the boxes";
+  ASSERT_TRUE(is_enlarged(tracker.explanation())) << tracker.explanation();
+  EXPECT_LT(statistics->tests, static_cast<std::uint64_t>(pairs) * 2);
+  EXPECT_EQ(tracker.box_index(), nullptr) << "an index of enlarged boxes is none of the boxes";
 }
 
-TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
+TEST(CandidateList, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
   const auto is_ever_enlarged = [](std::size_t count, float part, std::size_t every) {
     TremblingBoxes<2, float> world(count, 1);
-    const auto tracker = make_tracker<2>("auto");
+    Tracker<2> tracker("auto");
     bool is = false;
     for (int frame = 0; frame < 12; ++frame) {
       std::vector<BoxId> changed;
@@ -197,8 +199,8 @@ TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
           world.boxes[i] = before[i];
       }
       PairCounter none;
-      tracker->update({world.boxes, changed}, none, none);
-      is |= is_enlarged(tracker->explanation());
+      tracker.update({world.boxes, changed}, none, none);
+      is |= is_enlarged(tracker.explanation());
     }
     return is;
   };
@@ -210,25 +212,26 @@ TEST(MarginTracker, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
   EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 10));
 }
 
-TEST(MarginTracker, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
+TEST(CandidateList, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
   // Small boxes tremble beside large ones on top of each other, which rest.
   TremblingBoxes<2, float> world(2000, 4);
   for (std::size_t i = 0; i < 50; ++i) world.rest[i] = {{-1000, -500}, {-1, 500}};
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   std::int64_t pairs = 0;
+  std::optional<Statistics> statistics;
   for (int frame = 0; frame < 12; ++frame) {
     world.tremble();
     for (std::size_t i = 0; i < 50; ++i) world.boxes[i] = world.rest[i];
     PairCounter begun;
     PairCounter ended;
-    tracker->update({world.boxes, world.all()}, begun, ended);
+    statistics = tracker.update({world.boxes, world.all()}, begun, ended);
     pairs += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
   }
-  ASSERT_TRUE(is_enlarged(tracker->explanation())) << tracker->explanation();
-  EXPECT_LT(tracker->statistics()->tests, 2 * (static_cast<std::uint64_t>(pairs) + world.boxes.size()));
+  ASSERT_TRUE(is_enlarged(tracker.explanation())) << tracker.explanation();
+  EXPECT_LT(statistics->tests, 2 * (static_cast<std::uint64_t>(pairs) + world.boxes.size()));
 }
 
-TEST(MarginTracker, EnlargesThinBoxesByTheirThicknessOnly) {
+TEST(CandidateList, EnlargesThinBoxesByTheirThicknessOnly) {
   std::vector<Box2> boxes;
   std::vector<BoxId> all;
   for (int i = 0; i < 2000; ++i) {
@@ -237,7 +240,7 @@ TEST(MarginTracker, EnlargesThinBoxesByTheirThicknessOnly) {
     boxes.push_back({{x, y}, {x + 100, y + 1}});
     all.push_back(BoxId(std::size_t(i)));
   }
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   PairCounter none;
   for (const float way : {0.005F, 0.3F}) {  // little over their length, either way
     for (int frame = 0; frame < 20; ++frame) {
@@ -245,25 +248,25 @@ TEST(MarginTracker, EnlargesThinBoxesByTheirThicknessOnly) {
         box.min[1] += way;
         box.max[1] += way;
       }
-      tracker->update({boxes, all}, none, none);
+      const auto statistics = tracker.update({boxes, all}, none, none);
       if (frame < 5) continue;  // it takes some to begin and to stop
-      EXPECT_EQ(is_enlarged(tracker->explanation()), way < 0.1F) << way << ", frame " << frame;
-      EXPECT_LT(tracker->statistics()->tests, 20 * boxes.size()) << way << ", frame " << frame;
+      EXPECT_EQ(is_enlarged(tracker.explanation()), way < 0.1F) << way << ", frame " << frame;
+      EXPECT_LT(statistics->tests, 20 * boxes.size()) << way << ", frame " << frame;
     }
   }
 }
 
-TEST(MarginTracker, TriesLessOftenWhereBoxesKeepLeaving) {
+TEST(CandidateList, TriesLessOftenWhereBoxesKeepLeaving) {
   TremblingBoxes<2, float> world(2000, 9);
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   std::size_t starts = 0;
   bool was = false;
   for (int frame = 0; frame < 600; ++frame) {
     // Quiet for as long as it takes to begin, then wild.
     world.tremble(was ? 0.4F : 0.005F);
     PairCounter none;
-    tracker->update({world.boxes, world.all()}, none, none);
-    const bool is = is_enlarged(tracker->explanation());
+    tracker.update({world.boxes, world.all()}, none, none);
+    const bool is = is_enlarged(tracker.explanation());
     starts += static_cast<std::size_t>(is && !was);
     was = is;
   }
@@ -271,20 +274,20 @@ TEST(MarginTracker, TriesLessOftenWhereBoxesKeepLeaving) {
   EXPECT_LE(starts, 8U);
 }
 
-TEST(MarginTracker, AllocatesNothingInASteadyState) {
+TEST(CandidateList, AllocatesNothingInASteadyState) {
   if (!lab::AllocationMeter().read()) GTEST_SKIP() << "this build does not count allocations";
   TremblingBoxes<2, float> world(2000, 2);
-  const auto tracker = make_tracker<2>("auto");
+  Tracker<2> tracker("auto");
   const std::vector<BoxId> all = world.all();
   const auto follow = [&](int frames) {
     for (int frame = 0; frame < frames; ++frame) {
       world.tremble();
       PairCounter none;
-      tracker->update({world.boxes, all}, none, none);
+      tracker.update({world.boxes, all}, none, none);
     }
   };
   follow(60);
-  ASSERT_TRUE(is_enlarged(tracker->explanation()));
+  ASSERT_TRUE(is_enlarged(tracker.explanation()));
   const lab::AllocationMeter meter;
   follow(30);
   EXPECT_EQ(meter.read()->peak, 0);

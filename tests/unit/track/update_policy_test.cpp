@@ -1,0 +1,103 @@
+// FollowPolicy: when boxes are followed, in which structure, and when all pairs are found anew;
+// EnlargePolicy: when boxes stay enlarged.
+#include "track/update_policy.hpp"
+
+#include <gtest/gtest.h>
+
+namespace broadside::track {
+namespace {
+
+constexpr FindCosts finding = {.box = 50};
+constexpr FollowCosts cheap = {.start = 10, .mover = 100, .mover_alone = 100, .test = 1, .further_test = 1};
+constexpr FollowCosts dear = {.start = 10, .mover = 200, .mover_alone = 200, .test = 1, .further_test = 1};
+constexpr std::size_t boxes = 10'000;
+
+/// A policy whose structure has the boxes.
+FollowPolicy started(std::vector<StructureCosts> structures = {{cheap}}) {
+  FollowPolicy policy(Update::automatic, finding, std::move(structures));
+  policy.followed(0, Statistics{});
+  return policy;
+}
+
+TEST(FollowPolicy, FollowsUpToTheNumberOfChangesAtWhichFindingAnewCostsLess) {
+  FollowPolicy policy = started();
+  EXPECT_TRUE(policy.follows(boxes, 4'900, false));
+  EXPECT_FALSE(policy.follows(boxes, 5'100, false));
+  EXPECT_EQ(policy.break_even(), 5'000U);
+}
+
+TEST(FollowPolicy, FindsAnewWhereMoversMakeFarMoreTestsThanFindingDoes) {
+  FollowPolicy policy = started();
+  ASSERT_TRUE(policy.follows(boxes, 1'000, false));
+  policy.followed(1'000, Statistics{.tests = 1'000 * 10'000});
+  EXPECT_FALSE(policy.follows(boxes, 1'000, false));
+}
+
+TEST(FollowPolicy, ComesBackToFollowingOnceThatWouldHavePaid) {
+  FollowPolicy policy = started();
+  policy.found(boxes, 0, Statistics{});
+  EXPECT_TRUE(policy.follows(boxes, 100, false)) << "much is saved at once";
+  policy.found(boxes, 0, Statistics{});
+  EXPECT_FALSE(policy.follows(boxes, 4'900, false)) << "little is saved in a frame";
+}
+
+TEST(FollowPolicy, TakesAnotherStructureWhereTheFirstMakesManyTests) {
+  FollowPolicy policy = started({{cheap}, {dear}});
+  policy.followed(1'000, Statistics{.tests = 1'000 * 500});
+  for (int frame = 0; frame < 10 && policy.current() == 0; ++frame) policy.follows(boxes, 1'000, false);
+  EXPECT_EQ(policy.current(), 1U);
+}
+
+TEST(FollowPolicy, DoesAsItIsTold) {
+  EXPECT_TRUE(FollowPolicy(Update::follow, finding, {{cheap}}).follows(boxes, boxes, true));
+  EXPECT_FALSE(FollowPolicy(Update::rebuild, finding, {{cheap}}).follows(boxes, 1, false));
+}
+
+constexpr StructureCosts comparing = {
+    .costs = {.start = 1, .mover = 60, .mover_alone = 30, .test = 0.5, .further_test = 0.5},
+    .max_boxes = 300};
+
+TEST(FollowPolicy, ComparesAllWhereAStructureHasToLookAtItsPairsAgain) {
+  FollowPolicy policy = started({{cheap}, comparing});
+  policy.found(1'000, 500'000, Statistics{.tests = 500'000});
+  policy.followed(1'000, Statistics{.tests = 1'000'000, .hits = 1'000'000});
+  for (int frame = 0; frame < 10 && policy.current() == 0; ++frame) policy.follows(1'000, 1'000, false);
+  EXPECT_EQ(policy.current(), 1U);
+}
+
+TEST(FollowPolicy, KeepsToTheStructureWhereOnlyItsTestsAreMany) {
+  // 400 tests of a mover cost less than comparing it with 1,000 boxes.
+  FollowPolicy policy = started({{cheap}, comparing});
+  policy.followed(1'000, Statistics{.tests = 400'000});
+  for (int frame = 0; frame < 10; ++frame) policy.follows(1'000, 1'000, false);
+  EXPECT_EQ(policy.current(), 0U);
+}
+
+TEST(FollowPolicy, ComparesFewBoxesAndKeepsToItForAQuarterMore) {
+  FollowPolicy policy = started({{cheap}, comparing});
+  policy.follows(301, 10, false);
+  EXPECT_FALSE(policy.are_few());
+  policy.follows(300, 10, false);
+  EXPECT_TRUE(policy.are_few());
+  policy.follows(375, 10, false);
+  EXPECT_TRUE(policy.are_few());
+  policy.follows(376, 10, false);
+  EXPECT_FALSE(policy.are_few());
+  EXPECT_FALSE(policy.is_following());
+}
+
+TEST(EnlargePolicy, StopsWhereComparingAllCostsLessThanTestingCandidates) {
+  const EnlargedFrame frame{.boxes = 1'000, .changed = 1'000, .left = 0, .candidates = 450'000};
+  const auto lasts = [&frame](bool may_compare_all) {
+    EnlargePolicy policy(may_compare_all);
+    policy.started();
+    int frames = 0;
+    while (frames < 100 && policy.goes_on(frame)) ++frames;
+    return frames;
+  };
+  EXPECT_LT(lasts(true), 20);
+  EXPECT_EQ(lasts(false), 100);
+}
+
+}  // namespace
+}  // namespace broadside::track
