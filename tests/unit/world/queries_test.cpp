@@ -168,13 +168,13 @@ TEST(WorldQueries, UseTheFollowersIndexWhereItHasOne) {
   EXPECT_THAT(overlapping(world, everywhere), ElementsAre(a, b));
   const Filter query_filter{.mask = 4};
   EXPECT_THAT(overlapping(world, everywhere, {&query_filter}), ElementsAre(b));
-  EXPECT_EQ(&world.box_index(), follower.index());
+  EXPECT_EQ(&world.box_index(), follower.box_index());
   world.move(a, {{8, 0}, {9, 1}});
   EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a)) << "before the follower knows of it";
-  EXPECT_NE(&world.box_index(), follower.index());
+  EXPECT_NE(&world.box_index(), follower.box_index());
   world.update();
   EXPECT_THAT(overlapping(world, {{8, 0}, {9, 1}}), ElementsAre(a));
-  EXPECT_EQ(&world.box_index(), follower.index());
+  EXPECT_EQ(&world.box_index(), follower.box_index());
 }
 
 class WorldQueriesBy : public testing::TestWithParam<const char*> {};
