@@ -58,35 +58,41 @@ class CrossingSink final : public core::FilterSink {
   std::uint32_t left_count_;
 };
 
-/// Passes on pairs that filters let count.
-class FilteringSink final : public core::FilterSink {
+/// Passes on the pairs that are not ignored.
+class IgnoringSink final : public core::FilterSink {
  public:
-  /// Of two sets if `right` is not null.
-  FilteringSink(std::span<const Filter> left, const std::span<const Filter>* right,
-                const core::PairSet* ignored, PairSink& target)
-      : FilterSink(target), left_(left), right_(right), ignored_(ignored) {}
+  IgnoringSink(const core::PairSet& ignored, PairSink& target) : FilterSink(target), ignored_(&ignored) {}
 
   std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<FilteringSink>(left_, right_, ignored_, target);
+    return std::make_unique<IgnoringSink>(*ignored_, target);
   }
 
  private:
-  static Filter filter_of(std::span<const Filter> filters, BoxId id) {
-    return filters.empty() ? Filter{} : filters[index(id)];
-  }
-
   void consume(std::span<const Pair> pairs) override {
-    const std::span<const Filter> right = right_ == nullptr ? left_ : *right_;
-    pass_on(pairs, [&](Pair pair, Pair& to) {
+    pass_on(pairs, [this](Pair pair, Pair& to) {
       to = pair;
-      return accepts(filter_of(left_, pair.first), filter_of(right, pair.second)) &&
-             (ignored_ == nullptr || !ignored_->contains(pair));
+      return !ignored_->contains(pair);
     });
   }
 
-  std::span<const Filter> left_;
-  const std::span<const Filter>* right_;
-  const core::PairSet* ignored_;  // null if there are none
+  const core::PairSet* ignored_;
+};
+
+/// A searcher behind filters.
+template <int D>
+class FilteredSearcher final : public Searcher<D> {
+ public:
+  FilteredSearcher(GroupedSearch<D>& groups, Searcher<D>& searcher, const BoxFilters& filters)
+      : groups_(&groups), searcher_(&searcher), filters_(&filters) {}
+
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    return groups_->search(*searcher_, input, *filters_, pairs);
+  }
+
+ private:
+  GroupedSearch<D>* groups_;
+  Searcher<D>* searcher_;
+  const BoxFilters* filters_;
 };
 
 /// Calls search(sink) with a filter, and flushes the filter.
@@ -118,83 +124,102 @@ Search<D, Real>::Search(std::unique_ptr<Searcher<D>> searcher, bool tests_double
     : searcher_(std::move(searcher)), doubles_(tests_doubles) {}
 
 template <int D, typename Real>
+std::string Search<D, Real>::explanation() const {
+  std::string text = searcher_->explanation();
+  if (!text.empty() && searches_ > 1)
+    text += "; the last of " + std::to_string(searches_) +
+            " searches, each of boxes whose filters accept each other";
+  return text;
+}
+
+template <int D, typename Real>
 std::optional<Statistics> Search<D, Real>::find(std::span<const Box<D, Real>> boxes,
                                                 const SearchOptions<D>& options, PairSink& pairs) {
-  if (options.filters.empty()) return find_unfiltered(boxes, options, pairs);
-  return through(
-      FilteringSink(options.filters.filters, nullptr, core::PairSet::of(options.filters.ignored), pairs),
-      [&](PairSink& sink) { return find_unfiltered(boxes, options, sink); });
+  const core::PairSet* const ignored = core::PairSet::of(options.filters.ignored);
+  if (ignored == nullptr) return find_within(boxes, options, pairs);
+  return through(IgnoringSink(*ignored, pairs),
+                 [&](PairSink& sink) { return find_within(boxes, options, sink); });
 }
 
 template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, Real>> left,
-                                                        std::span<const Box<D, Real>> right,
-                                                        const SearchOptions<D>& options, PairSink& pairs) {
-  const auto search = [&](PairSink& sink) -> std::optional<Statistics> {
-    present_.clear();
-    ids_.clear();
-    if (options.absent == 0) {
-      core::reserve_large(present_, left.size() + right.size());
-      present_.insert(present_.end(), left.begin(), left.end());
-      present_.insert(present_.end(), right.begin(), right.end());
-      return find_across_unfiltered(present_, left.size(), options, sink);
-    }
-    take_present(left);
-    const std::size_t left_count = present_.size();
-    take_present(right);
-    if (left_count == 0 || left_count == present_.size()) return std::nullopt;
-    return through(RenamingSink(ids_, left_count, sink),
-                   [&](PairSink& renamed) { return search_present(present_, left_count, options, renamed); });
-  };
-  if (options.filters.empty()) return search(pairs);
-  return through(FilteringSink(options.filters.filters, &options.filters.right_filters, nullptr, pairs),
-                 search);
-}
-
-template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::find_across(std::span<const Box<D, Real>> boxes,
-                                                       std::size_t left_count,
+std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Real>> boxes,
                                                        const SearchOptions<D>& options, PairSink& pairs) {
-  if (options.absent != 0 || !options.filters.empty())
-    return find_between(boxes.first(left_count), boxes.subspan(left_count), options, pairs);
-  return find_across_unfiltered(boxes, left_count, options, pairs);
-}
-
-template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::find_unfiltered(std::span<const Box<D, Real>> boxes,
-                                                           const SearchOptions<D>& options, PairSink& pairs) {
+  const std::span<const Filter> filters = options.filters.filters;
   const std::size_t absent = options.absent ? *options.absent : count_absent(boxes, options.workers);
-  if (absent == 0) return search_present(boxes, 0, options, pairs);
+  if (absent == 0) return search_filtered(boxes, 0, options, BoxFilters(filters), pairs);
   present_.clear();
   ids_.clear();
   take_present(boxes);
   const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
   return through(RenamingSink(ids_, 0, pairs), [&](PairSink& renamed) {
-    const std::optional<Statistics> statistics = search_present(present_, 0, options, renamed);
+    const std::optional<Statistics> statistics =
+        search_filtered(present_, 0, options, BoxFilters(filters, ids_), renamed);
     if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
     return statistics;
   });
 }
 
 template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::find_across_unfiltered(std::span<const Box<D, Real>> boxes,
-                                                                  std::size_t left_count,
-                                                                  const SearchOptions<D>& options,
-                                                                  PairSink& pairs) {
-  if (left_count == 0 || left_count == boxes.size()) return std::nullopt;
-  return through(CrossingSink(left_count, pairs),
-                 [&](PairSink& crossing) { return search_present(boxes, left_count, options, crossing); });
+std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, Real>> left,
+                                                        std::span<const Box<D, Real>> right,
+                                                        const SearchOptions<D>& options, PairSink& pairs) {
+  present_.clear();
+  ids_.clear();
+  if (options.absent == 0) {
+    core::reserve_large(present_, left.size() + right.size());
+    present_.insert(present_.end(), left.begin(), left.end());
+    present_.insert(present_.end(), right.begin(), right.end());
+    return find_across(present_, left.size(), options, pairs);
+  }
+  take_present(left);
+  const std::size_t left_count = present_.size();
+  take_present(right);
+  if (left_count == 0 || left_count == present_.size()) return std::nullopt;
+  const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
+  return through(RenamingSink(ids_, left_count, pairs), [&](PairSink& renamed) {
+    return search_filtered(present_, left_count, options, filters, renamed);
+  });
 }
 
 template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::search_present(std::span<const Box<D, Real>> boxes,
+std::optional<Statistics> Search<D, Real>::find_across(std::span<const Box<D, Real>> boxes,
+                                                       std::size_t left_count,
+                                                       const SearchOptions<D>& options, PairSink& pairs) {
+  if (options.absent != 0)
+    return find_between(boxes.first(left_count), boxes.subspan(left_count), options, pairs);
+  if (left_count == 0 || left_count == boxes.size()) return std::nullopt;
+  const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count);
+  return through(CrossingSink(left_count, pairs), [&](PairSink& crossing) {
+    return search_filtered(boxes, left_count, options, filters, crossing);
+  });
+}
+
+/// Searches boxes that are all present, in groups if there are filters.
+template <int D, typename Real>
+std::optional<Statistics> Search<D, Real>::search_filtered(std::span<const Box<D, Real>> boxes,
+                                                           std::size_t left_count,
+                                                           const SearchOptions<D>& options,
+                                                           const BoxFilters& filters, PairSink& pairs) {
+  searches_ = 1;
+  if (options.filters.filters.empty() && options.filters.right_filters.empty())
+    return search_present(*searcher_, boxes, left_count, options, pairs);
+  if (!groups_) groups_ = std::make_unique<GroupedSearch<D>>();
+  FilteredSearcher<D> searcher(*groups_, *searcher_, filters);
+  const std::optional<Statistics> statistics = search_present(searcher, boxes, left_count, options, pairs);
+  searches_ = groups_->searches();
+  return statistics;
+}
+
+template <int D, typename Real>
+std::optional<Statistics> Search<D, Real>::search_present(Searcher<D>& searcher,
+                                                          std::span<const Box<D, Real>> boxes,
                                                           std::size_t left_count,
                                                           const SearchOptions<D>& options, PairSink& pairs) {
   if constexpr (std::is_same_v<Real, float>) {
     const SearchInput<D> input{boxes, left_count, nullptr, options.successor, options.workers};
-    return searcher_->search(input, pairs);
+    return searcher.search(input, pairs);
   } else {
-    return doubles_.search(*searcher_, boxes, left_count, options.successor, options.workers, pairs);
+    return doubles_.search(searcher, boxes, left_count, options.successor, options.workers, pairs);
   }
 }
 

@@ -15,6 +15,8 @@
 
 #include "core/large_array.hpp"
 #include "find/double_search.hpp"
+#include "find/filter_groups.hpp"
+#include "find/grouped_search.hpp"
 
 namespace broadside::find {
 
@@ -50,22 +52,26 @@ class Search {
   std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                         const SearchOptions<D>& options, PairSink& pairs);
 
-  std::string explanation() const { return searcher_->explanation(); }
+  /// As Searcher::explanation(). Of several searches of boxes in groups, that of the last one.
+  std::string explanation() const;
 
  private:
-  std::optional<Statistics> find_unfiltered(std::span<const Box<D, Real>> boxes,
-                                            const SearchOptions<D>& options, PairSink& pairs);
-  std::optional<Statistics> find_across_unfiltered(std::span<const Box<D, Real>> boxes,
-                                                   std::size_t left_count, const SearchOptions<D>& options,
-                                                   PairSink& pairs);
-  std::optional<Statistics> search_present(std::span<const Box<D, Real>> boxes, std::size_t left_count,
-                                           const SearchOptions<D>& options, PairSink& pairs);
+  std::optional<Statistics> find_within(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
+                                        PairSink& pairs);
+  std::optional<Statistics> search_filtered(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                            const SearchOptions<D>& options, const BoxFilters& filters,
+                                            PairSink& pairs);
+  std::optional<Statistics> search_present(Searcher<D>& searcher, std::span<const Box<D, Real>> boxes,
+                                           std::size_t left_count, const SearchOptions<D>& options,
+                                           PairSink& pairs);
   void take_present(std::span<const Box<D, Real>> boxes);
 
   std::unique_ptr<Searcher<D>> searcher_;
   DoubleSearch<D> doubles_;
-  std::vector<Box<D, Real>> present_;  // the boxes without the absent ones; unused if there are none
-  std::vector<BoxId> ids_;             // their places in the caller's array
+  std::unique_ptr<GroupedSearch<D>> groups_;  // null until boxes have filters
+  std::size_t searches_ = 1;                  // that the last call took
+  std::vector<Box<D, Real>> present_;         // the boxes without the absent ones; unused if there are none
+  std::vector<BoxId> ids_;                    // their places in the caller's array
 };
 
 }  // namespace broadside::find

@@ -1,0 +1,209 @@
+// GroupedSearch: finds the pairs that filters let count, by searches of boxes that accept each other.
+#include "find/grouped_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/filter_sink.hpp"
+#include "kernels/observed_tests.hpp"
+
+namespace broadside::find {
+namespace {
+
+/// Up to this many boxes have too few pairs for filters to matter.
+constexpr std::size_t few_boxes = 128;
+
+constexpr std::size_t max_sample = 1024;
+
+/// Boxes are grouped if filters reject at least this number of overlapping pairs per box. A sample of
+/// sqrt(n) of n boxes then has about as many in all, which is enough to tell them from chance.
+constexpr double rejected_per_box = 8;
+
+/// Boxes are also grouped if at least one of this number accepts no other one.
+constexpr std::size_t boxes_per_lonely_box = 8;
+
+/// Passes on the pairs that filters let count.
+class AcceptingSink final : public core::FilterSink {
+ public:
+  AcceptingSink(const BoxFilters& filters, PairSink& target) : FilterSink(target), filters_(filters) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<AcceptingSink>(filters_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    if (filters_.array() != nullptr)
+      pass_accepted(pairs, filters_.array());
+    else
+      pass_accepted(pairs, filters_);
+  }
+
+  template <typename Filters>
+  void pass_accepted(std::span<const Pair> pairs, const Filters& filters) {
+    pass_on(pairs, [&filters](Pair pair, Pair& to) {
+      to = pair;
+      return accepts(filters[pair.first], filters[pair.second]);
+    });
+  }
+
+  BoxFilters filters_;
+};
+
+/// Passes on the pairs of one search under the ids of its boxes, if the test lets them.
+class GroupSink final : public core::FilterSink {
+ public:
+  GroupSink(std::span<const BoxId> ids, std::size_t left_count, FilterTest test, const BoxFilters& filters,
+            PairSink& target)
+      : FilterSink(target), ids_(ids), left_count_(left_count), test_(test), filters_(filters) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<GroupSink>(ids_, left_count_, test_, filters_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    pass_on(pairs, [this](Pair pair, Pair& to) {
+      const BoxId a = ids_[index(pair.first)];
+      const BoxId b = ids_[index(pair.second)];
+      to = a < b ? Pair{a, b} : Pair{b, a};
+      return (left_count_ == 0 || (index(pair.first) < left_count_ && index(pair.second) >= left_count_)) &&
+             (test_ == FilterTest::none || counts(filters_[to.first], filters_[to.second]));
+    });
+  }
+
+  bool counts(const Filter& a, const Filter& b) const {
+    return accepts(a, b) && bits_accept(a, b) == (test_ == FilterTest::by_bits);
+  }
+
+  std::span<const BoxId> ids_;
+  std::size_t left_count_;
+  FilterTest test_;
+  BoxFilters filters_;
+};
+
+/// A number that looks random, from a counter (S. Vigna's splitmix64).
+std::uint64_t mixed(std::uint64_t number) noexcept {
+  number = (number + 1) * 0x9e3779b97f4a7c15U;
+  number = (number ^ number >> 30) * 0xbf58476d1ce4e5b9U;
+  number = (number ^ number >> 27) * 0x94d049bb133111ebU;
+  return number ^ number >> 31;
+}
+
+}  // namespace
+
+template <int D>
+std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const SearchInput<D>& input,
+                                                   const BoxFilters& filters, PairSink& pairs) {
+  searches_ = 1;
+  if (!is_grouped(input, filters)) return search_all(searcher, input, filters, pairs);
+  searches_ = plan_.searches().size();
+  std::optional<Statistics> sum = Statistics{};
+  Checkpoint checkpoint(input.workers.checkpoint);
+  for (const PlannedSearch& planned : plan_.searches()) {
+    const std::optional<Statistics> some = run(planned, searcher, input, filters, pairs);
+    // A search counts anew for its own checkpoint, which many small ones never reach.
+    checkpoint.count(boxes_.size() + (some ? some->tests : 0));
+    if (!some || !sum) {
+      sum.reset();
+      continue;
+    }
+    sum->tests += some->tests;
+    sum->references += some->references;
+    sum->cells += some->cells;
+    sum->hits += some->hits;
+  }
+  return sum;
+}
+
+/// Decides whether to search by groups and, if so, plans it.
+template <int D>
+bool GroupedSearch<D>::is_grouped(const SearchInput<D>& input, const BoxFilters& filters) {
+  const std::size_t boxes = input.boxes.size();
+  if (boxes <= few_boxes || !sample(input, filters)) return false;
+  if (!groups_.build(filters, boxes, input.left_count)) return false;
+  rejected_groups_.clear();
+  for (const auto& [a, b] : rejected_) rejected_groups_.push_back({groups_.group_of(a), groups_.group_of(b)});
+  const double rejected = static_cast<double>(rejected_.size()) * weight_;
+  return plan_.make(groups_.groups(), input.left_count != 0, rejected_groups_, weight_) &&
+         plan_.cost() < static_cast<double>(boxes) * PlanCosts::box + PlanCosts::search + rejected;
+}
+
+/// Compares a sample of the boxes with each other, in about half a test for each box there is. Sets what is
+/// known of rejected pairs, and returns whether grouping may pay.
+template <int D>
+bool GroupedSearch<D>::sample(const SearchInput<D>& input, const BoxFilters& filters) {
+  const std::size_t boxes = input.boxes.size();
+  const auto root = static_cast<std::size_t>(std::sqrt(static_cast<double>(boxes)));
+  const std::size_t count = std::min(root, max_sample);
+  const std::size_t stride = boxes / count;
+  weight_ = static_cast<double>(boxes) * static_cast<double>(boxes) / static_cast<double>(count * count);
+  sample_.clear();
+  rejected_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    // One box of each stretch, but not always the same: filters may follow each other in a pattern.
+    const std::size_t place = i * boxes / count + mixed(i) % stride;
+    SampledBox next{place, input.boxes[place], filters[place], false};
+    for (SampledBox& other : sample_) {
+      if (input.left_count != 0 && (other.place < input.left_count) == (place < input.left_count)) continue;
+      if (accepts(other.filter, next.filter))
+        other.meets_any = next.meets_any = true;
+      else if (overlap(other.box, next.box))
+        rejected_.emplace_back(other.place, place);
+    }
+    sample_.push_back(next);
+  }
+  const auto lonely = std::ranges::count(sample_, false, &SampledBox::meets_any);
+  return static_cast<double>(rejected_.size()) * weight_ >= rejected_per_box * static_cast<double>(boxes) ||
+         static_cast<std::size_t>(lonely) * boxes_per_lonely_box >= count;
+}
+
+template <int D>
+std::optional<Statistics> GroupedSearch<D>::search_all(Searcher<D>& searcher, const SearchInput<D>& input,
+                                                       const BoxFilters& filters, PairSink& pairs) {
+  AcceptingSink accepted(filters, pairs);
+  const std::optional<Statistics> statistics = searcher.search(input, accepted);
+  accepted.flush();
+  return statistics;
+}
+
+template <int D>
+std::optional<Statistics> GroupedSearch<D>::run(const PlannedSearch& planned, Searcher<D>& searcher,
+                                                const SearchInput<D>& input, const BoxFilters& filters,
+                                                PairSink& pairs) {
+  boxes_.clear();
+  doubles_.clear();
+  ids_.clear();
+  gather(input, plan_.groups(planned));
+  const std::size_t left_count = planned.middle == planned.end ? 0 : boxes_.size();
+  gather(input, plan_.others(planned));
+  GroupSink sink(ids_, left_count, planned.test, filters, pairs);
+  const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
+  const std::optional<Statistics> statistics =
+      searcher.search({.boxes = boxes_,
+                       .left_count = left_count,
+                       .doubles = input.doubles == nullptr ? nullptr : doubles_.data(),
+                       .successor = input.successor,
+                       .workers = input.workers},
+                      sink);
+  if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
+  sink.flush();
+  return statistics;
+}
+
+template <int D>
+void GroupedSearch<D>::gather(const SearchInput<D>& input, std::span<const std::uint32_t> groups) {
+  for (const std::uint32_t group : groups) {
+    for (const BoxId place : groups_.places(group)) {
+      boxes_.push_back(input.boxes[place]);
+      if (input.doubles != nullptr) doubles_.push_back(input.doubles[place]);
+      ids_.push_back(place);
+    }
+  }
+}
+
+template class GroupedSearch<2>;
+template class GroupedSearch<3>;
+
+}  // namespace broadside::find

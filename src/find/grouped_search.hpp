@@ -1,0 +1,67 @@
+// GroupedSearch: finds the pairs that filters let count, by searches of boxes that accept each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/searcher.hpp"
+
+#include "core/large_array.hpp"
+#include "find/filter_groups.hpp"
+#include "find/filter_plan.hpp"
+
+namespace broadside::find {
+
+/// Where filters reject few pairs, a pair is found and then tested. A sample of the boxes tells how many
+/// overlapping pairs they reject. Where these are many, boxes are grouped by filter, and FilterPlan says
+/// which groups are searched together.
+///
+/// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
+template <int D>
+class GroupedSearch {
+ public:
+  /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
+  /// sets, pairs within a set may be written too. Returns the sum of what the searches did; nothing if the
+  /// searcher does not count. A search that gives up calls the successor of `input`, which can only end the
+  /// whole: places then mean boxes of one group. Throws what the searcher and the sink throw.
+  std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
+                                   const BoxFilters& filters, PairSink& pairs);
+
+  /// How many searches the last one took.
+  std::size_t searches() const noexcept { return searches_; }
+
+ private:
+  bool is_grouped(const SearchInput<D>& input, const BoxFilters& filters);
+  bool sample(const SearchInput<D>& input, const BoxFilters& filters);
+  std::optional<Statistics> search_all(Searcher<D>& searcher, const SearchInput<D>& input,
+                                       const BoxFilters& filters, PairSink& pairs);
+  std::optional<Statistics> run(const PlannedSearch& planned, Searcher<D>& searcher,
+                                const SearchInput<D>& input, const BoxFilters& filters, PairSink& pairs);
+  void gather(const SearchInput<D>& input, std::span<const std::uint32_t> groups);
+
+  struct SampledBox {
+    std::size_t place;
+    Box<D> box;
+    Filter filter;
+    bool meets_any;
+  };
+
+  FilterGroups groups_;
+  FilterPlan plan_;
+  std::size_t searches_ = 0;
+  std::vector<SampledBox> sample_;
+  std::vector<std::pair<std::size_t, std::size_t>> rejected_;  // places of sampled boxes
+  std::vector<FilterPlan::GroupPair> rejected_groups_;
+  double weight_ = 0;               // the pairs of boxes that a pair of the sample stands for
+  core::LargeArray<Box<D>> boxes_;  // of one search
+  core::LargeArray<Box<D, double>> doubles_;
+  core::LargeArray<BoxId> ids_;
+};
+
+}  // namespace broadside::find

@@ -1,0 +1,293 @@
+// GroupedSearch against the definition of a pair; and which boxes it has searched together.
+#include "find/grouped_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broadside/sinks.hpp"
+
+#include "tests/support/boxes.hpp"
+#include "tests/support/rng.hpp"
+
+namespace broadside::find {
+namespace {
+
+/// Compares all boxes. Writes pairs within a set too, and counts what it writes as hits.
+template <int D>
+class AllPairs final : public Searcher<D> {
+ public:
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    ++searches;
+    boxes += input.boxes.size();
+    const std::size_t left = input.left_count;
+    std::uint64_t hits = 0;
+    for (std::size_t i = 0; i < input.boxes.size(); ++i) {
+      for (std::size_t j = i + 1; j < input.boxes.size(); ++j) {
+        if (!(input.doubles != nullptr ? overlap(input.doubles[i], input.doubles[j])
+                                       : overlap(input.boxes[i], input.boxes[j])))
+          continue;
+        pairs.add(BoxId(j), BoxId(i));
+        if (left == 0 || (i < left && j >= left)) ++hits;
+      }
+    }
+    if (!counts) return std::nullopt;
+    return Statistics{.tests = hits, .hits = hits};
+  }
+
+  bool counts = true;
+  std::size_t searches = 0;
+  std::size_t boxes = 0;
+};
+
+template <int D>
+std::vector<Box<D>> boxes_at_one_place(std::size_t count) {
+  Box<D> box{};
+  box.max.fill(1);
+  return std::vector<Box<D>>(count, box);
+}
+
+template <int D>
+Box<D> any_box(Rng& rng) {
+  Box<D> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = float(rng.below(6));
+    box.max[axis] = box.min[axis] + float(rng.below(5));
+    if (rng.one_in(20)) box.min[axis] = -infinity;
+    if (rng.one_in(20)) box.max[axis] = infinity;
+  }
+  return box;
+}
+
+/// Filters of which many accept few others.
+std::vector<Filter> any_filters(Rng& rng, std::size_t count) {
+  const std::size_t categories = 1 + rng.below(rng.one_in(3) ? 40 : 4);
+  const int groups = rng.one_in(3) ? 40 : rng.whole(0, 3);
+  const std::size_t filter_count = 1 + rng.below(rng.one_in(4) ? count : 12);
+  std::vector<Filter> filters(filter_count);
+  for (Filter& filter : filters) {
+    filter.category = std::uint64_t{1} << rng.below(categories);
+    filter.mask = rng.one_in(3) ? 0 : rng.one_in(2) ? rng.bits() & rng.bits() : rng.bits();
+    if (rng.one_in(2)) filter.group = rng.whole(-groups, groups);
+    filter.is_static = rng.one_in(4);
+  }
+  std::vector<Filter> of_boxes(count);
+  for (Filter& filter : of_boxes) filter = rng.one_of<Filter>(filters);
+  return of_boxes;
+}
+
+template <int D>
+struct Found {
+  Pairs pairs;
+  std::optional<Statistics> statistics;
+  AllPairs<D> searcher;
+};
+
+template <int D>
+void find(Found<D>& found, GroupedSearch<D>& search, const SearchInput<D>& input, const BoxFilters& filters) {
+  PairCollector collector(found.pairs);
+  found.statistics = search.search(found.searcher, input, filters, collector);
+  collector.flush();
+  std::erase_if(found.pairs, [&](Pair pair) {
+    return input.left_count != 0 && (pair.first < input.left_count) == (pair.second < input.left_count);
+  });
+  std::ranges::sort(found.pairs);
+}
+
+template <int D>
+Pairs pairs_by_definition(const SearchInput<D>& input, const BoxFilters& filters) {
+  Pairs pairs;
+  for (std::uint32_t i = 0; i < input.boxes.size(); ++i) {
+    for (std::uint32_t j = i + 1; j < input.boxes.size(); ++j) {
+      if (input.left_count != 0 && (i < input.left_count) == (j < input.left_count)) continue;
+      const bool touch = input.doubles != nullptr ? overlap(input.doubles[i], input.doubles[j])
+                                                  : overlap(input.boxes[i], input.boxes[j]);
+      if (touch && accepts(filters[i], filters[j])) pairs.push_back(pair(i, j));
+    }
+  }
+  return pairs;
+}
+
+template <int D>
+void finds_pairs_by_definition(std::size_t cases) {
+  GroupedSearch<D> search;
+  std::size_t grouped = 0;
+  for (std::uint64_t seed = 0; seed < cases; ++seed) {
+    Rng rng(seed);
+    const std::size_t count = rng.one_in(4) ? rng.below(140) : 130 + rng.below(300);
+    std::vector<Box<D>> boxes(count);
+    const bool is_one_place = rng.one_in(3);
+    for (Box<D>& box : boxes) box = is_one_place ? boxes_at_one_place<D>(1)[0] : any_box<D>(rng);
+    std::vector<Box<D, double>> doubles(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int axis = 0; axis < D; ++axis) {
+        doubles[i].min[axis] = boxes[i].min[axis] + (rng.one_in(2) ? 1e-12 : 0);
+        doubles[i].max[axis] = boxes[i].max[axis] + 1e-11 - (rng.one_in(2) ? 2e-11 : 0);
+        if (doubles[i].max[axis] < doubles[i].min[axis]) doubles[i].max[axis] = doubles[i].min[axis];
+      }
+    }
+    const std::size_t left_count = rng.one_in(2) || count < 2 ? 0 : 1 + rng.below(count - 1);
+    std::vector<Filter> filters = any_filters(rng, count);
+    std::vector<Filter> right(filters.begin() + std::ptrdiff_t(left_count), filters.end());
+    filters.resize(left_count == 0 ? count : left_count);
+    if (left_count != 0 && rng.one_in(4)) (rng.one_in(2) ? filters : right).clear();
+    const BoxFilters of_boxes =
+        left_count == 0 ? BoxFilters(filters) : BoxFilters(filters, right, left_count);
+    const SearchInput<D> input{
+        .boxes = boxes, .left_count = left_count, .doubles = rng.one_in(2) ? doubles.data() : nullptr};
+    Found<D> found;
+    find(found, search, input, of_boxes);
+    ASSERT_EQ(found.pairs, pairs_by_definition(input, of_boxes)) << "seed " << seed;
+    grouped += search.searches() > 1 ? 1 : 0;
+  }
+  EXPECT_GT(grouped, cases / 10);
+}
+
+TEST(GroupedSearch, FindsThePairsByDefinitionIn2D) { finds_pairs_by_definition<2>(1000); }
+TEST(GroupedSearch, FindsThePairsByDefinitionIn3D) { finds_pairs_by_definition<3>(500); }
+
+TEST(GroupedSearch, FiltersBoxesByTheirIds) {
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(400);
+  std::vector<Filter> filters(800);
+  Ids ids;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    filters[2 * i] = {.category = 4, .mask = 4};
+    filters[2 * i + 1] = {.category = 2, .mask = i % 40 == 0 ? ~0U : 1U};
+    ids.push_back(BoxId{2 * i + 1});
+  }
+  GroupedSearch<2> search;
+  const BoxFilters of_boxes(filters, ids);
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, of_boxes);
+  EXPECT_EQ(found.pairs, pairs_by_definition<2>({.boxes = boxes}, of_boxes));
+  EXPECT_EQ(found.pairs.size(), 10u * 9 / 2);
+}
+
+/// Expects that no pair was found and then rejected, in the given number of searches.
+void expect_no_rejected_pair(const std::vector<Filter>& filters, std::size_t searches) {
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.pairs, pairs_by_definition<2>({.boxes = boxes}, BoxFilters(filters)));
+  EXPECT_EQ(found.statistics->hits, found.pairs.size());
+  EXPECT_EQ(found.searcher.searches, searches);
+}
+
+TEST(GroupedSearch, SearchesEachPositiveGroupByItself) {
+  std::vector<Filter> filters;
+  for (int i = 0; i < 3000; ++i) filters.push_back({.mask = 0, .group = 1 + i % 100});
+  expect_no_rejected_pair(filters, 100);
+}
+
+TEST(GroupedSearch, SearchesBoxesThatRejectEachOtherOnlyAgainstThoseThatAcceptThem) {
+  std::vector<Filter> filters(2000, {.category = 2, .mask = 1});
+  for (int i = 0; i < 10; ++i) filters[100 * i] = {.category = 1, .mask = 2};
+  expect_no_rejected_pair(filters, 1);
+  for (int i = 0; i < 10; ++i) filters[100 * i] = {.category = 1, .mask = 3};
+  expect_no_rejected_pair(filters, 2);
+}
+
+TEST(GroupedSearch, SearchesWhatNeverMeetsApart) {
+  std::vector<Filter> filters;
+  for (int i = 0; i < 2000; ++i) filters.push_back({.category = 1U << i % 5, .mask = 1U << i % 5});
+  expect_no_rejected_pair(filters, 5);
+}
+
+TEST(GroupedSearch, SearchesFiltersThatBehaveEquallyTogether) {
+  // Those of categories 2 to 5 meet category 1 alone.
+  std::vector<Filter> filters;
+  for (int i = 0; i < 2000; ++i)
+    filters.push_back(i % 5 == 0 ? Filter{} : Filter{.category = 1U << i % 5, .mask = 1});
+  expect_no_rejected_pair(filters, 2);
+}
+
+TEST(GroupedSearch, LeavesOutBoxesThatMeetNone) {
+  std::vector<Filter> filters(1000, {.category = 2, .mask = 2, .is_static = true});
+  for (int i = 0; i < 100; ++i) filters[10 * i] = {.category = 1, .mask = 1};
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.pairs.size(), 100u * 99 / 2);
+  EXPECT_EQ(found.searcher.boxes, 100);
+}
+
+TEST(GroupedSearch, SearchesLargeNegativeGroupsAgainstOthersOnly) {
+  std::vector<Filter> filters(2000, {.group = -1});
+  for (int i = 0; i < 10; ++i) filters[100 * i] = {};
+  expect_no_rejected_pair(filters, 2);
+}
+
+TEST(GroupedSearch, TestsPairsBehindOneSearchWhereSmallNegativeGroupsAreMany) {
+  std::vector<Filter> filters;
+  for (int i = 0; i < 2000; ++i) filters.push_back({.group = -1 - i / 10});
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.pairs, pairs_by_definition<2>({.boxes = boxes}, BoxFilters(filters)));
+  EXPECT_EQ(found.searcher.searches, 1);
+}
+
+TEST(GroupedSearch, SearchesAllAtOnceWhereNoRejectedBoxesOverlap) {
+  std::vector<Box2> boxes;
+  std::vector<Filter> filters;
+  for (int i = 0; i < 2000; ++i) {
+    boxes.push_back(at(float(2 * i)));
+    filters.push_back({.category = 1U << i % 4, .mask = i % 4 == 0 ? ~0U : 1U});
+  }
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.searcher.searches, 1);
+  EXPECT_EQ(found.searcher.boxes, 2000);
+}
+
+TEST(GroupedSearch, SearchesOnlyTheSidesThatAcceptEachOther) {
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(1000);
+  std::vector<Filter> left(500, {.category = 2, .mask = 1});
+  std::vector<Filter> right(500, {.category = 2, .mask = 1});
+  for (int i = 0; i < 5; ++i) right[i].category = 1, right[i].mask = 2;
+  const BoxFilters filters(left, right, 500);
+  const SearchInput<2> input{.boxes = boxes, .left_count = 500};
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, input, filters);
+  EXPECT_EQ(found.pairs, pairs_by_definition(input, filters));
+  EXPECT_EQ(found.statistics->hits, 5u * 500);
+  EXPECT_EQ(found.searcher.boxes, 505);
+}
+
+TEST(GroupedSearch, CountsNothingWhereTheSearcherDoesNot) {
+  std::vector<Filter> filters(400, {.category = 2, .mask = 1});
+  filters[0] = {};
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  GroupedSearch<2> search;
+  Found<2> found;
+  found.searcher.counts = false;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.statistics, std::nullopt);
+  EXPECT_EQ(found.pairs.size(), 399);
+}
+
+TEST(GroupedSearch, PassesTheCheckpointBetweenSearches) {
+  std::vector<Filter> filters;
+  for (int i = 0; i < 20'000; ++i) filters.push_back({.mask = 0, .group = 1 + i % 20});
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  const Workers workers{.checkpoint = [] { throw std::runtime_error("enough"); }};
+  GroupedSearch<2> search;
+  AllPairs<2> searcher;
+  PairCounter counter;
+  EXPECT_THROW(search.search(searcher, {.boxes = boxes, .workers = workers}, BoxFilters(filters), counter),
+               std::runtime_error);
+  EXPECT_LT(searcher.searches, 20);
+}
+
+}  // namespace
+}  // namespace broadside::find
