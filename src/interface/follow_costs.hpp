@@ -11,9 +11,6 @@
 
 namespace broadside::core {
 
-/// The tunable by which users choose how a tracker updates: "auto", "follow" or "rebuild".
-Tunable update_tunable();
-
 inline constexpr FindCosts brute_force_finding = {.box = 40};
 inline constexpr FollowCosts brute_force_following = {
     .start = 1, .mover = 65, .mover_alone = 30, .test = 0.55, .further_test = 0.55};

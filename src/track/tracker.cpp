@@ -14,6 +14,7 @@
 #include "core/float_environment.hpp"
 #include "core/lean.hpp"
 #include "core/sort_pairs.hpp"
+#include "core/tunables.hpp"
 #include "interface/input_check.hpp"
 #include "track/tracker_state.hpp"
 
@@ -48,7 +49,7 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
   if (plan.structures.empty())
     plan.update = Update::rebuild;
   else
-    plan.update = chooses ? track::update_of(settings) : Update::follow;
+    plan.update = chooses ? core::update_of(settings) : Update::follow;
   plan.explains = chooses && !plan.structures.empty();
   // Also where it is not used: it says whether the algorithm does the dimension.
   std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);

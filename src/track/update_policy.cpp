@@ -4,21 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/lean.hpp"
-#include "interface/follow_costs.hpp"
-
-namespace broadside {
-
-Tunable core::update_tunable() {
-  return {.name = "update",
-          .summary = unless_lean(
-              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
-          .standard = "auto",
-          .type = Tunable::Type::choice,
-          .choices = {"follow", "rebuild"}};
-}
-
-namespace track {
+namespace broadside::track {
 namespace {
 
 // The costs of tests beyond these were measured with 50,000 boxes, one in a hundred moving, in stacks of
@@ -74,11 +60,6 @@ constexpr std::size_t max_pause = 1024;
 constexpr std::size_t max_pause_after_limit = 16 * max_pause;
 
 }  // namespace
-
-Update update_of(const Settings& settings) {
-  if (settings.is_auto("update")) return Update::automatic;
-  return settings.text("update") == "follow" ? Update::follow : Update::rebuild;
-}
 
 FollowPolicy::FollowPolicy(Update update, const FindCosts& finding, std::vector<StructureCosts> structures,
                            bool shares_candidates)
@@ -242,5 +223,4 @@ void EnlargePolicy::out_of_memory() noexcept { give_up(max_pause); }
 
 void EnlargePolicy::interrupted() noexcept { give_up(min_pause); }
 
-}  // namespace track
-}  // namespace broadside
+}  // namespace broadside::track

@@ -14,9 +14,6 @@
 
 namespace broadside::track {
 
-/// The value of the tunable `update`.
-Update update_of(const Settings& settings);
-
 /// What is known of a structure that follows boxes, as FollowerChoice states it.
 struct StructureCosts {
   FollowCosts costs{};
