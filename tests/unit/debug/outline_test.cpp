@@ -41,12 +41,12 @@ std::vector<Box<D, Real>> scattered(std::size_t count) {
 /// The library's algorithms that do D dimensions and lay something over boxes.
 template <int D>
 std::vector<std::string> outlined() {
-  std::vector<std::string> names;
+  std::vector<std::string> all;
   for (const Algorithm& algorithm : algorithms()) {
     if (algorithm.has_dimension(D) && !algorithm.name.ends_with("brute_force"))
-      names.push_back(algorithm.name);
+      all.push_back(algorithm.name);
   }
-  return names;
+  return all;
 }
 
 template <int D>
