@@ -94,10 +94,10 @@ class Side {
     const std::size_t half = boxes_.size() / 2;
     switch (call_) {
       case Call::once:
-        pairs = find_pairs(boxes_, algorithm_);
+        pairs = find_pairs(boxes_, {.algorithm = algorithm_});
         return;
       case Call::between:
-        pairs = find_pairs(boxes_.first(half), boxes_.subspan(half), algorithm_);
+        pairs = find_pairs(boxes_.first(half), boxes_.subspan(half), {.algorithm = algorithm_});
         return;
       case Call::kept_finder:
         PairCollector collector(pairs);

@@ -54,7 +54,7 @@ void verify(const World2& world, const std::vector<Handle>& handles, std::uint64
   std::vector<Box2> boxes;
   boxes.reserve(handles.size());
   for (const Handle handle : handles) boxes.push_back(world.box(handle));
-  const std::size_t expected = find_pairs(boxes, "sweep_and_prune").size();
+  const std::size_t expected = find_pairs(boxes, {.algorithm = "sweep_and_prune"}).size();
   for (const HandlePair pair : world.pairs()) {
     if (!overlap(world.box(pair.first), world.box(pair.second)))
       throw std::runtime_error("frame " + std::to_string(frame) + ": a pair that does not overlap");

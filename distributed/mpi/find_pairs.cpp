@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "broadside/error.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/mpi.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/partition.hpp"

@@ -168,7 +168,7 @@ std::vector<Weighted<D, Real>> weighted_pairs(const std::vector<Weighted<D, Real
   while (true) {
     joined.clear();
     for (std::size_t i = 0; i < items.size(); i += step) joined.push_back(items[i].box);
-    pairs = find_pairs(joined, algorithms().front().name);
+    pairs = find_pairs(joined, {.algorithm = algorithms().front().name});
     if (step == 1 || pairs.size() >= enough) break;
     // Four times the boxes have sixteen times the pairs.
     step = (step + 3) / 4;
@@ -178,7 +178,7 @@ std::vector<Weighted<D, Real>> weighted_pairs(const std::vector<Weighted<D, Real
   for (int doublings = 0; is_thin && doublings < max_doublings && pairs.size() < enough; ++doublings) {
     for (Box<D, Real>& box : joined) box = doubled(box);
     enlargement *= std::size_t{1} << D;
-    pairs = find_pairs(joined, algorithms().front().name);
+    pairs = find_pairs(joined, {.algorithm = algorithms().front().name});
   }
   // Joining every `step`-th box finds one pair in step^2; and the items stand for all boxes.
   const double pair_cost = Partition<D, Real>::cost(0, 1) * static_cast<double>(step) *

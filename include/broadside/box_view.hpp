@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 #include "broadside/box.hpp"
 
@@ -123,6 +125,24 @@ class BoxView<D, Real>::Iterator {
   BoxView view_{};
   difference_type place_ = 0;
 };
+
+namespace detail {
+template <typename T>
+struct ViewOfBox {};
+template <int D, typename Real>
+requires is_supported<D, Real>
+struct ViewOfBox<Box<D, Real>> {
+  using type = BoxView<D, Real>;
+};
+
+/// The BoxView to which a range of boxes converts.
+template <typename Boxes>
+using ViewOf = typename ViewOfBox<std::remove_cvref_t<decltype(std::declval<const Boxes&>()[0])>>::type;
+}  // namespace detail
+
+/// A std::vector, std::array, std::span or C array of Box<2>, Box<3>, DoubleBox2 or DoubleBox3; or a BoxView.
+template <typename T>
+concept BoxRange = std::convertible_to<const T&, detail::ViewOf<T>>;
 
 }  // namespace broadside
 

@@ -1,14 +1,10 @@
-// Everything of the public library in one include, but for the recorder, which stands alone.
+// The public library in one include. The tools in debug/ and the recorder are included by themselves.
 #pragma once
 
 // IWYU pragma: begin_exports
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/box_view.hpp"
-#include "broadside/debug/history.hpp"
-#include "broadside/debug/minimise.hpp"
-#include "broadside/debug/outline.hpp"
-#include "broadside/debug/shadow.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/export.hpp"

@@ -1,16 +1,13 @@
 // find_pairs(): boxes to pairs in one call.
 #pragma once
 
-#include <concepts>
 #include <cstddef>
 #include <functional>
-#include <ranges>
 #include <span>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
 #include "broadside/error.hpp"
 #include "broadside/executor.hpp"
 #include "broadside/export.hpp"
@@ -22,47 +19,21 @@
 
 namespace broadside {
 
-/// How one call of find_pairs() searches.
+/// Options of find_pairs(), as in find_pairs(boxes, {.algorithm = "grid"}).
 struct BROADSIDE_CALLERS_VECTOR FindOptions {
-  Spec algorithm{};                   ///< such as "grid:cell=2.5" or AutoOptions{.threads = 4}
-  std::span<const Filter> filters{};  ///< as PairFilters has them
-  std::span<const Filter> right_filters{};
-  const IgnoredPairs* ignored = nullptr;
-  Executor* executor = nullptr;  ///< whose threads search; null for the library's own
+  Spec algorithm{};                         ///< such as "grid:cell=2.5" or AutoOptions{.threads = 4}
+  std::span<const Filter> filters{};        ///< as in PairFilters
+  std::span<const Filter> right_filters{};  ///< as in PairFilters
+  const IgnoredPairs* ignored = nullptr;    ///< as in PairFilters
+  Executor* executor = nullptr;             ///< as in Workers
 
-  /// Where it is given, invalid boxes count as absent and are listed here instead of being thrown about: see
-  /// BadInput.
+  /// If not null, invalid boxes count as absent and are listed here, instead of being refused: see BadInput.
   std::vector<BoxId>* quarantined = nullptr;
 };
 
 namespace detail {
 
-template <typename T>
-struct BoxTraits {};
-
-template <int Dimension, typename Coordinate>
-requires is_supported<Dimension, Coordinate>
-struct BoxTraits<Box<Dimension, Coordinate>> {
-  using View = BoxView<Dimension, Coordinate>;
-};
-
-template <typename T>
-struct ViewTraits {};
-
-template <int Dimension, typename Coordinate>
-struct ViewTraits<BoxView<Dimension, Coordinate>> {
-  using View = BoxView<Dimension, Coordinate>;
-};
-
-template <typename T>
-requires std::ranges::contiguous_range<const T> && std::ranges::sized_range<const T>
-struct ViewTraits<T> : BoxTraits<std::ranges::range_value_t<T>> {
-};
-
-inline const FindOptions& options_of(const FindOptions& options) { return options; }
-inline FindOptions options_of(const Spec& algorithm) { return {.algorithm = algorithm}; }
-
-/// Has a finder that the options describe search by `search`.
+/// Searches with a finder and filters as the options say.
 template <int D, typename Real, typename Search>
 void find_with(const FindOptions& options, const Search& search) {
   Finder<D, Real> finder(options.algorithm);
@@ -89,163 +60,94 @@ void find_pairs(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs, 
   });
 }
 
-}  // namespace detail
-
-/// Boxes: a std::vector, std::array, std::span ... of Box<2>, Box<3>, DoubleBox2 or DoubleBox3; or a BoxView
-/// of them in structs of the caller's own.
-template <typename T>
-concept BoxArray = requires {
-  typename detail::ViewTraits<T>::View;
-};
-
-/// FindOptions, or the spec alone.
-template <typename T>
-concept FindOption = std::same_as<T, FindOptions> || std::convertible_to<const T&, Spec>;
-
-namespace detail {
-
-template <typename Things, typename Projection>
-using ProjectedBox =
-    std::remove_cvref_t<std::invoke_result_t<Projection&, std::ranges::range_reference_t<const Things>>>;
-
-}  // namespace detail
-
-/// A range of things that are not boxes themselves.
-template <typename T>
-concept ThingRange = !BoxArray<T> && std::ranges::forward_range<const T>;
-
-/// Returns the box of a thing: a function that takes the thing, or a pointer to a member.
-template <typename Projection, typename Things>
-concept BoxProjection = std::ranges::forward_range<const Things> && requires {
-  typename detail::BoxTraits<detail::ProjectedBox<Things, Projection>>::View;
-};
-
-namespace detail {
-
-/// The box of each thing, in order.
-template <typename Things, typename Projection>
-std::vector<ProjectedBox<Things, Projection>> boxes_of(const Things& things, Projection& box_of) {
-  std::vector<ProjectedBox<Things, Projection>> boxes;
-  if constexpr (std::ranges::sized_range<const Things>) boxes.reserve(std::ranges::size(things));
-  for (const auto& thing : things) boxes.push_back(std::invoke(box_of, thing));
-  return boxes;
-}
-
-/// The pairs that search(sink) writes.
-template <typename Search>
-std::vector<Pair> collected(const Search& search) {
-  std::vector<Pair> pairs;
-  PairCollector collector(pairs);
-  search(collector);
-  return pairs;
-}
-
-template <typename Right, typename Left>
-concept SameBoxes = std::is_same_v < typename ViewTraits<Left>::View,
-typename ViewTraits<Right>::View > ;
-
-/// The arguments that the last overloads of find_pairs() reject.
-template <typename T, typename... Rest>
-concept NoBoxes = ThingRange<T> && !(BoxProjection<Rest, T> || ...);
-template <typename Right, typename Left>
-concept OtherBoxes = BoxArray<Right> && !SameBoxes<Right, Left>;
-template <typename T>
-concept NoTarget = !BoxArray<T> && !PairTarget<T> && !FindOption<T>;
-
 template <typename>
 inline constexpr bool never = false;
 
+/// Rejects arguments that find_pairs() does not take, by a message of one sentence.
+template <typename Boxes>
+void refuse_boxes() {
+  static_assert(never<Boxes>,
+                "find_pairs() takes boxes (a std::vector, std::span ... of Box<2>, Box<3>, DoubleBox2 or "
+                "DoubleBox3), or the boxes of things, as in find_pairs(boxes_of(things, &Thing::box))");
+}
+template <typename T>
+void refuse_argument() {
+  static_assert(
+      never<T>,
+      "find_pairs(boxes, ...) takes other boxes of the same type, a PairSink or a function of a Pair "
+      "or of a std::span<const Pair>, and then options such as {.algorithm = \"grid\"}");
+}
+
+/// Any argument but the last one.
+template <typename T>
+concept NoOptions = !std::is_same_v<std::remove_cvref_t<T>, FindOptions>;
+
+/// A second argument that must be boxes, since it is nothing else.
+template <typename T>
+concept OtherBoxes = NoOptions<T> && !PairTarget<T>;
+
 }  // namespace detail
 
-/// Writes every pair of overlapping boxes, once, as places in `boxes`, and flushes; in an order fixed by the
-/// spec and the boxes. `pairs` is a PairSink, or a function of a Pair or of a std::span<const Pair>. An
-/// exception from it ends the search.
+/// Writes each pair of overlapping boxes once, as indexes of `boxes`, and flushes. `pairs` is a PairSink, or
+/// a function of a Pair or of a std::span<const Pair>. An exception from it ends the search. The spec and the
+/// boxes determine the order of pairs.
 ///
-/// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput naming the
-/// first box with a NaN or with min > max, InvalidFrame where there are filters and not one for each box, and
-/// InvalidSpec. Thread-safe. A kept Finder saves the memory's allocation when calls are
-/// many.
-template <BoxArray Boxes, PairTarget Target, FindOption Options = FindOptions>
-void find_pairs(const Boxes& boxes, Target&& pairs, const Options& options = {}) {
-  using View = typename detail::ViewTraits<Boxes>::View;
-  detail::with_sink(
-      pairs, [&](PairSink& sink) { detail::find_pairs(View(boxes), sink, detail::options_of(options)); });
+/// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput, naming the
+/// first box with a NaN or with min > max; InvalidFrame if there are filters, but not one for each box; and
+/// InvalidSpec. Thread-safe. For many calls, keep a Finder, which keeps its memory.
+template <typename Boxes, PairTarget Target>
+void find_pairs(const Boxes& boxes, Target&& pairs, const FindOptions& options = {}) {
+  if constexpr (BoxRange<Boxes>)
+    detail::with_sink(
+        pairs, [&](PairSink& sink) { detail::find_pairs(detail::ViewOf<Boxes>(boxes), sink, options); });
+  else
+    detail::refuse_boxes<Boxes>();
 }
 
-/// The same pairs in a vector.
-template <BoxArray Boxes, FindOption Options = FindOptions>
-std::vector<Pair> find_pairs(const Boxes& boxes, const Options& options = {}) {
-  return detail::collected([&](PairSink& pairs) { find_pairs(boxes, pairs, options); });
+/// Returns the same pairs in a vector.
+template <typename Boxes>
+[[nodiscard]] std::vector<Pair> find_pairs(const Boxes& boxes, const FindOptions& options = {}) {
+  std::vector<Pair> pairs;
+  find_pairs(boxes, PairCollector(pairs), options);
+  return pairs;
 }
 
-/// Writes every pair of a box of `left` and an overlapping one of `right`, once, and flushes: a pair's first
-/// is a place in `left` and its second one in `right`. The rest as for one array.
-template <BoxArray Left, detail::SameBoxes<Left> Right, PairTarget Target, FindOption Options = FindOptions>
-void find_pairs(const Left& left, const Right& right, Target&& pairs, const Options& options = {}) {
-  using View = typename detail::ViewTraits<Left>::View;
-  detail::with_sink(pairs, [&](PairSink& sink) {
-    detail::find_pairs(View(left), View(right), sink, detail::options_of(options));
-  });
+/// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's first is
+/// an index of `left` and its second is an index of `right`. Otherwise as for one set of boxes.
+template <typename Left, typename Right, detail::NoOptions Target>
+void find_pairs(const Left& left, const Right& right, Target&& pairs, const FindOptions& options = {}) {
+  if constexpr (!BoxRange<Left>) {
+    detail::refuse_boxes<Left>();
+  } else if constexpr (!std::is_convertible_v<const Right&, detail::ViewOf<Left>>) {
+    detail::refuse_argument<Right>();
+  } else if constexpr (!PairTarget<Target>) {
+    detail::refuse_argument<Target>();
+  } else {
+    using View = detail::ViewOf<Left>;
+    detail::with_sink(pairs,
+                      [&](PairSink& sink) { detail::find_pairs(View(left), View(right), sink, options); });
+  }
 }
 
-/// The same pairs in a vector.
-template <BoxArray Left, detail::SameBoxes<Left> Right, FindOption Options = FindOptions>
-std::vector<Pair> find_pairs(const Left& left, const Right& right, const Options& options = {}) {
-  return detail::collected([&](PairSink& pairs) { find_pairs(left, right, pairs, options); });
+/// Returns the same pairs in a vector.
+template <typename Left, detail::OtherBoxes Right>
+[[nodiscard]] std::vector<Pair> find_pairs(const Left& left, const Right& right,
+                                           const FindOptions& options = {}) {
+  std::vector<Pair> pairs;
+  find_pairs(left, right, PairCollector(pairs), options);
+  return pairs;
 }
 
-/// The pairs of things that have boxes, as in find_pairs(things, &Thing::box): a thing's box is
-/// `box_of(thing)` or `thing.*box_of`. One pass gathers the boxes. The rest as for an array of boxes.
-template <ThingRange Things, BoxProjection<Things> Projection, PairTarget Target,
-          FindOption Options = FindOptions>
-void find_pairs(const Things& things, Projection box_of, Target&& pairs, const Options& options = {}) {
-  find_pairs(detail::boxes_of(things, box_of), pairs, options);
-}
-template <ThingRange Things, BoxProjection<Things> Projection, FindOption Options = FindOptions>
-std::vector<Pair> find_pairs(const Things& things, Projection box_of, const Options& options = {}) {
-  return find_pairs(detail::boxes_of(things, box_of), options);
-}
-
-/// For compatibility with version 0.2, which took the options before the projection.
-template <ThingRange Things, BoxProjection<Things> Projection, FindOption Options = FindOptions>
-std::vector<Pair> find_pairs(const Things& things, const Options& options, Projection box_of) {
-  return find_pairs(detail::boxes_of(things, box_of), options);
-}
-
-/// The pairs between two sets of things. One set may hold boxes; its projection is then std::identity.
-template <typename Left, typename Right, BoxProjection<Right> RightProjection,
-          BoxProjection<Left> LeftProjection, PairTarget Target, FindOption Options = FindOptions>
-void find_pairs(const Left& left, const Right& right, LeftProjection left_box_of,
-                RightProjection right_box_of, Target&& pairs, const Options& options = {}) {
-  find_pairs(detail::boxes_of(left, left_box_of), detail::boxes_of(right, right_box_of), pairs, options);
-}
-template <typename Left, typename Right, BoxProjection<Right> RightProjection,
-          BoxProjection<Left> LeftProjection, FindOption Options = FindOptions>
-std::vector<Pair> find_pairs(const Left& left, const Right& right, LeftProjection left_box_of,
-                             RightProjection right_box_of, const Options& options = {}) {
-  return find_pairs(detail::boxes_of(left, left_box_of), detail::boxes_of(right, right_box_of), options);
-}
-
-/// Reject calls that match no other overload, with a message of one sentence.
-template <typename... Rest, detail::NoBoxes<Rest...> Things>
-std::vector<Pair> find_pairs(const Things& /*things*/, const Rest&... /*rest*/) {
-  static_assert(detail::never<Things>,
-                "find_pairs() takes an array of boxes (a std::vector, std::span ... of Box<2>, Box<3>, "
-                "DoubleBox2 or DoubleBox3), or things and their boxes: find_pairs(things, &Thing::box)");
-  return {};
-}
-template <BoxArray Left, detail::OtherBoxes<Left> Right, typename... Rest>
-std::vector<Pair> find_pairs(const Left& /*left*/, const Right& /*right*/, const Rest&... /*rest*/) {
-  static_assert(detail::never<Left>,
-                "find_pairs(left, right) takes boxes of one dimension and one type of coordinate");
-  return {};
-}
-template <BoxArray Boxes, detail::NoTarget Target, FindOption... Options>
-std::vector<Pair> find_pairs(const Boxes& /*boxes*/, const Target& /*pairs*/, const Options&... /*options*/) {
-  static_assert(detail::never<Target>,
-                "find_pairs(boxes, pairs) takes as pairs a PairSink, or a function of a Pair or of a "
-                "std::span<const Pair>");
-  return {};
+/// The boxes of things, in order: `box_of` is a function of a thing or a pointer to a member. Boxes that lie
+/// in an array of structs need not be copied: see BoxView.
+///
+///     find_pairs(boxes_of(bodies, &Body::box));
+template <typename Things, typename Projection>
+[[nodiscard]] auto boxes_of(const Things& things, const Projection& box_of) {
+  std::vector<std::remove_cvref_t<decltype(std::invoke(box_of, *things.begin()))>> boxes;
+  if constexpr (requires { things.size(); }) boxes.reserve(things.size());
+  for (const auto& thing : things) boxes.push_back(std::invoke(box_of, thing));
+  return boxes;
 }
 
 }  // namespace broadside

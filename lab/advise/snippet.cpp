@@ -33,7 +33,8 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
                       "{}"
                       "}}\n",
                       box,
-                      is_ours ? fmt::format("  return broadside::find_pairs(boxes, \"{}\");\n", spec)
+                      is_ours ? fmt::format(
+                                    "  return broadside::find_pairs(boxes, {{.algorithm = \"{}\"}});\n", spec)
                               : fmt::format("  std::vector<broadside::Pair> pairs;\n"
                                             "  broadside::PairCollector collector(pairs);\n"
                                             "  {}.find(boxes, collector);\n"

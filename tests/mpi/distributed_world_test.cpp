@@ -13,7 +13,7 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/finder.hpp"
+#include "broadside/find_pairs.hpp"
 
 #include "tests/mpi/ranks.hpp"
 #include "tests/support/model.hpp"

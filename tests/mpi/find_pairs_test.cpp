@@ -1,5 +1,7 @@
 // Joins by several ranks: the pairs of a search on one, each on the rank that owns its first box; errors on
 // all ranks or on none.
+#include "broadside/find_pairs.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 

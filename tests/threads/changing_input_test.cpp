@@ -178,7 +178,7 @@ class ChangingInput : public Law {
       follow(tracker, boxes, places);
       boxes = before;
       executor.begin(never);
-      EXPECT_EQ(sorted(found(finder, boxes)), sorted(find_pairs(boxes, "brute_force")));
+      EXPECT_EQ(sorted(found(finder, boxes)), sorted(find_pairs(boxes, {.algorithm = "brute_force"})));
     }
   }
 };

@@ -60,7 +60,7 @@ TEST_P(SearchCheckpoint, IsPassedInTheCallersThreadAndChangesNoPair) {
       ++passed;
     }).find(boxes, collector);
     EXPECT_GT(passed, 3) << spec;
-    EXPECT_EQ(pairs, find_pairs(boxes, spec)) << spec;
+    EXPECT_EQ(pairs, find_pairs(boxes, {.algorithm = spec})) << spec;
   }
 }
 

@@ -90,7 +90,7 @@ TEST_P(ExecutorLaw, LosesAndDoublesNoEventOfAWorldWhereAnyRunThrew) {
         pairs -= events.ended.size();
         std::vector<Box<D>> seen;
         for (const Handle handle : handles) seen.push_back(world.box(handle));
-        ASSERT_EQ(pairs, find_pairs(seen, "brute_force").size()) << "run " << run;
+        ASSERT_EQ(pairs, find_pairs(seen, {.algorithm = "brute_force"}).size()) << "run " << run;
         ASSERT_EQ(world.pairs().size(), pairs) << "run " << run;
       }
       ran = executor.runs > run;
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Own, ExecutorLaw, testing::ValuesIn(threaded_cases()), 
 TEST(WorldExecutor, MayThrowAnythingWhereAnUpdateGivesMemoryBack) {
   const std::vector<Box2> boxes = scattered_boxes<2>(6000, 600);
   for (const char* const algorithm : {"grid", "auto"}) {
-    const auto pairs_left = find_pairs(std::span(boxes).first(500), "brute_force").size();
+    const auto pairs_left = find_pairs(std::span(boxes).first(500), {.algorithm = "brute_force"}).size();
     bool threw = true;
     for (std::size_t run = 0; threw; ++run) {
       FailingExecutor executor;

@@ -292,9 +292,10 @@ TEST_P(ThreadLaw, TakesThreadsFromTheSpecAndLeavesAFewBoxesToTheCaller) {
     World<D> world(spec);
     EXPECT_EQ(world.workers().threads, 2u);
     ReverseExecutor executor;
-    find_pairs(scattered_boxes<D>(60, 10), {.algorithm = spec, .executor = &executor});
+    static_cast<void>(find_pairs(scattered_boxes<D>(60, 10), {.algorithm = spec, .executor = &executor}));
     EXPECT_EQ(executor.runs, 0u);
-    find_pairs(scattered_boxes<D>(10'000, 300), {.algorithm = spec, .executor = &executor});
+    static_cast<void>(
+        find_pairs(scattered_boxes<D>(10'000, 300), {.algorithm = spec, .executor = &executor}));
     EXPECT_GT(executor.runs, 0u);
   });
 }

@@ -16,9 +16,10 @@
 #include <mpi.h>
 
 #include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
 #include "broadside/export.hpp"
-#include "broadside/find_pairs.hpp"
 #include "broadside/large_pair.hpp"
+#include "broadside/spec.hpp"
 
 namespace broadside::mpi {
 
@@ -105,27 +106,25 @@ BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& bo
 /// A rank may search by several threads, which do not call MPI: initialise it by MPI_Init_thread() with
 /// MPI_THREAD_FUNNELED. With MPI_THREAD_MULTIPLE, several threads may call this at the same time for
 /// different communicators.
-template <BoxArray Boxes>
+template <BoxRange Boxes>
 Statistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pairs,
                       const Options& options = {}) {
-  using View = typename broadside::detail::ViewTraits<Boxes>::View;
+  using View = broadside::detail::ViewOf<Boxes>;
   return detail::find_pairs(comm, View(boxes), static_cast<const View*>(nullptr), pairs, options);
 }
 
 /// Likewise finds every pair of a box of `left` and an overlapping one of `right`, of all ranks: first is an
 /// id in the left set and second one in the right, and the rank that handed in the left box gets the pair.
-template <BoxArray Left, BoxArray Right>
-requires std::same_as < typename broadside::detail::ViewTraits<Left>::View,
-typename broadside::detail::ViewTraits<Right>::View >
-    Statistics find_pairs(MPI_Comm comm, const Left& left, const Right& right, const PairCallback& pairs,
-                          const Options& options = {}) {
-  using View = typename broadside::detail::ViewTraits<Left>::View;
+template <BoxRange Left, std::convertible_to<broadside::detail::ViewOf<Left>> Right>
+Statistics find_pairs(MPI_Comm comm, const Left& left, const Right& right, const PairCallback& pairs,
+                      const Options& options = {}) {
+  using View = broadside::detail::ViewOf<Left>;
   const View right_view(right);
   return detail::find_pairs(comm, View(left), &right_view, pairs, options);
 }
 
 /// The same pairs in a vector: those that this rank owns.
-template <BoxArray Boxes>
+template <BoxRange Boxes>
 std::vector<LargePair> find_pairs(MPI_Comm comm, const Boxes& boxes, const Options& options = {}) {
   std::vector<LargePair> found;
   find_pairs(
@@ -135,11 +134,9 @@ std::vector<LargePair> find_pairs(MPI_Comm comm, const Boxes& boxes, const Optio
   return found;
 }
 
-template <BoxArray Left, BoxArray Right>
-requires std::same_as < typename broadside::detail::ViewTraits<Left>::View,
-typename broadside::detail::ViewTraits<Right>::View >
-    std::vector<LargePair> find_pairs(MPI_Comm comm, const Left& left, const Right& right,
-                                      const Options& options = {}) {
+template <BoxRange Left, std::convertible_to<broadside::detail::ViewOf<Left>> Right>
+std::vector<LargePair> find_pairs(MPI_Comm comm, const Left& left, const Right& right,
+                                  const Options& options = {}) {
   std::vector<LargePair> found;
   find_pairs(
       comm, left, right,

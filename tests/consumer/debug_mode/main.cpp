@@ -13,6 +13,10 @@
 #include <vector>
 
 #include <broadside/broadside.hpp>
+#include <broadside/debug/history.hpp>
+#include <broadside/debug/minimise.hpp>
+#include <broadside/debug/outline.hpp>
+#include <broadside/debug/shadow.hpp>
 
 namespace {
 
@@ -71,7 +75,7 @@ void find() {
   std::vector<Box3> many = row<3, float>(20000);
   print("pairs", find_pairs(boxes));
   print("pairs of many", find_pairs(many).size());
-  print("pairs in double", find_pairs(row<3, double>(5), "grid"));
+  print("pairs in double", find_pairs(row<3, double>(5), {.algorithm = "grid"}));
   print("pairs of two sets", find_pairs(boxes, std::array{boxes[1]}));
   std::vector<BoxId> quarantined;
   boxes[2].min[0] = 9;
@@ -94,7 +98,7 @@ void find() {
   print("hash", hasher.hash());
   print("count", counter.count());
 
-  found = find_pairs(std::span(many).first(2000), "brute_force");
+  found = find_pairs(std::span(many).first(2000), {.algorithm = "brute_force"});
   std::vector<Pair> scratch;
   std::vector<Pair> shuffled(found.rbegin(), found.rend());
   sort_pairs(shuffled, scratch);
@@ -120,12 +124,13 @@ void list_algorithms() {
   register_algorithm(algorithm);
   for (const Algorithm& one : algorithms()) {
     print(one.name.c_str(), one.tunables.size());
-    if (one.has_dimension(2)) print("  pairs", find_pairs(row<2, float>(400), one.name).size());
+    if (one.has_dimension(2))
+      print("  pairs", find_pairs(row<2, float>(400), {.algorithm = one.name}).size());
   }
-  print("pairs by spec", find_pairs(row<2, float>(6), spec.text()));
+  print("pairs by spec", find_pairs(row<2, float>(6), {.algorithm = spec}));
   print("found by name", find_algorithm("every_pair")->tunables[0].choices.size());
   try {
-    find_pairs(row<2, float>(6), "every_pear");
+    static_cast<void>(find_pairs(row<2, float>(6), {.algorithm = "every_pear"}));
   } catch (const InvalidSpec& error) {
     std::printf("%s\n", error.what());
   }

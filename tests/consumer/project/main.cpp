@@ -24,10 +24,10 @@ int main() {
   expect(find_pairs(boxes).size() == 2, "two pairs from the default algorithm");
   for (const Algorithm& algorithm : algorithms()) {
     if (algorithm.has_dimension(2))
-      expect(find_pairs(boxes, algorithm.name).size() == 2, algorithm.name.c_str());
+      expect(find_pairs(boxes, {.algorithm = algorithm.name}).size() == 2, algorithm.name.c_str());
   }
   PairCounter counter;
-  find_pairs(boxes, counter, "brute_force");
+  find_pairs(boxes, counter, {.algorithm = "brute_force"});
   expect(counter.count() == 2, "two pairs counted");
 
   World2 world("brute_force");
@@ -40,7 +40,7 @@ int main() {
   expect(world.update().ended.size() == 1, "the pair to end");
 
   try {
-    find_pairs(boxes, "no_such_algorithm");
+    static_cast<void>(find_pairs(boxes, {.algorithm = "no_such_algorithm"}));
     expect(false, "an unknown algorithm to be refused");
   } catch (const InvalidSpec&) {
   }

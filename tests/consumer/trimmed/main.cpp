@@ -26,15 +26,15 @@ bool refuses(const Call& call, const std::string& message) {
 
 int main() {
   const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{9, 9}, {9, 9}}};
-  if (algorithms().size() != 1 || find_pairs(boxes, "grid").size() != 1) {
+  if (algorithms().size() != 1 || find_pairs(boxes, {.algorithm = "grid"}).size() != 1) {
     std::fprintf(stderr, "trimmed: expected grid alone, and one pair by it\n");
     return 1;
   }
   World2 world("grid");
   for (const Box2& box : boxes) world.add(box);
   if (world.update().begun.size() != 1) return 1;
-  const bool refuses_names =
-      refuses([&] { find_pairs(boxes, "bvh"); }, "unknown algorithm 'bvh'; expected one of: grid");
+  const bool refuses_names = refuses([&] { return find_pairs(boxes, {.algorithm = "bvh"}); },
+                                     "unknown algorithm 'bvh'; expected one of: grid");
   const bool refuses_3d = refuses([] { World3("grid"); }, "grid does not do 3D; expected 2D boxes");
   return refuses_names && refuses_3d ? 0 : 1;
 }

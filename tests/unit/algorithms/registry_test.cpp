@@ -88,7 +88,7 @@ TEST(Registry, MakesARegisteredAlgorithmByItsNameEverywhere) {
   EXPECT_EQ(algorithms().back().name, name);
 
   const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}};
-  EXPECT_EQ(find_pairs(boxes, name + ":cell=3").size(), 1U);
+  EXPECT_EQ(find_pairs(boxes, {.algorithm = name + ":cell=3"}).size(), 1U);
   World2 world(name);
   for (const Box2& box : boxes) world.add(box);
   EXPECT_EQ(world.update().begun.size(), 1U);

@@ -26,9 +26,9 @@ TEST(JoinTable, HasThePairsThatItsDefinitionGives) {
   // A thirtieth of the smaller published set, of whose 40,428 pairs a nine-hundredth would be 45 by chance.
   const auto left = join_table_set(30'000, join_table_left);
   const auto right = join_table_set(30'000, join_table_right);
-  const std::vector<Pair> pairs = find_pairs(left, right, "brute_force");
+  const std::vector<Pair> pairs = find_pairs(left, right, {.algorithm = "brute_force"});
   EXPECT_EQ(pairs.size(), 31u);
-  EXPECT_EQ(find_pairs(left, right, "auto").size(), pairs.size());
+  EXPECT_EQ(find_pairs(left, right, {.algorithm = "auto"}).size(), pairs.size());
 }
 
 TEST(JoinTable, IsASceneOfEitherSetAsFloats) {

@@ -66,7 +66,7 @@ void expect_the_same_after_tear_down(const Algorithm& peer) {
   torn_down->tear_down();  // before there is anything
   for (const std::size_t count : {300, 200, 400}) {
     const std::vector<Box<D>> boxes = boxes_of(count);
-    std::vector<Pair> expected = find_pairs(boxes, "brute_force");
+    std::vector<Pair> expected = find_pairs(boxes, {.algorithm = "brute_force"});
     std::ranges::sort(expected);
     for (const bool tear_down : {false, true}) {
       std::vector<Pair> found;

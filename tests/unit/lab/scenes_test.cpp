@@ -30,7 +30,7 @@ std::vector<Box<D>> boxes_of(std::string_view text, std::size_t count, std::uint
 template <int D>
 std::uint64_t count_pairs(const std::vector<Box<D>>& boxes) {
   PairCounter counter;
-  find_pairs(boxes, counter, "brute_force");
+  find_pairs(boxes, counter, {.algorithm = "brute_force"});
   return counter.count();
 }
 
@@ -233,7 +233,7 @@ std::vector<std::vector<Box<D>>> pile_frames(std::string_view text, const SceneR
 
 template <int D>
 std::vector<Pair> pairs_of(const std::vector<Box<D>>& boxes) {
-  std::vector<Pair> pairs = find_pairs(boxes, "brute_force");
+  std::vector<Pair> pairs = find_pairs(boxes, {.algorithm = "brute_force"});
   std::ranges::sort(pairs);
   return pairs;
 }

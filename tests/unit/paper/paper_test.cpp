@@ -222,7 +222,7 @@ class SpoilingSink final : public PairSink {
 
 TEST(PaperListings, LookAtNoBoxThatChangesWhileTheySearch) {
   const std::vector<Box2> boxes = uniform<2>(3000, 100, 4);
-  const std::size_t expected = find_pairs(boxes, "brute_force").size();
+  const std::size_t expected = find_pairs(boxes, {.algorithm = "brute_force"}).size();
   ASSERT_GT(expected, 2000u);
   for (const std::string& spec : specs<2>()) {
     std::vector<Box2> spoiled = boxes;

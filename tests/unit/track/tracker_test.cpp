@@ -299,7 +299,7 @@ TEST(Tracker, TellsFunctionsWhatBeganAndEnded) {
   const auto add = [&begun](Pair pair) { begun.push_back(pair); };
   const auto count = [&ended](std::span<const Pair> chunk) { ended += chunk.size(); };
   tracker.update({.boxes = boxes}, add, count);
-  EXPECT_EQ(begun, find_pairs(boxes, "brute_force"));
+  EXPECT_EQ(begun, find_pairs(boxes, {.algorithm = "brute_force"}));
   boxes[2] = absent_box<2>();
   const std::vector<BoxId> changed = {BoxId(2)};
   const auto fail = [](Pair) { throw std::runtime_error("full"); };

@@ -23,7 +23,7 @@ export function linesFor(language: Language, spec: string, dimension: 2 | 3, fol
         : [
           "#include <broadside/broadside.hpp>", "",
           `std::vector<broadside::Box${dimension}> boxes = /* ... */;`,
-          `const auto pairs = broadside::find_pairs(boxes${plain ? "" : `, ${quoted(own)}`});`,
+          `const auto pairs = broadside::find_pairs(boxes${plain ? "" : `, {.algorithm = ${quoted(own)}}`});`,
         ].join("\n");
     case "Python": {
       const named = plain ? "" : `algorithm=${quoted(own)}`;

@@ -85,7 +85,7 @@ test("specs come apart and together", () => {
 });
 
 test("lines to copy name the algorithm, and the draft's by the library's of its kind", () => {
-  assert.match(linesFor("C++", "grid:cell=4", 2, false), /find_pairs\(boxes, "grid:cell=4"\)/);
+  assert.match(linesFor("C++", "grid:cell=4", 2, false), /find_pairs\(boxes, \{\.algorithm = "grid:cell=4"\}\)/);
   assert.match(linesFor("C++", "auto", 3, true), /World3 world;/);
   assert.match(linesFor("Python", "paper_quadtree:capacity=3", 2, false), /pairs\(boxes, algorithm="quadtree"\)/);
   assert.match(linesFor("JavaScript", "grid:cell=4", 2, false),
