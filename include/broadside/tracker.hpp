@@ -45,6 +45,11 @@ struct Frame {
   std::span<const Pair> ignored_changed{};
 };
 
+namespace world {
+template <int D, typename Real>
+class WorldTracker;
+}  // namespace world
+
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
 /// A tracker brings the pairs up to date in one of four ways: it compares all boxes where they are few; it
@@ -131,7 +136,7 @@ class BROADSIDE_PUBLIC Tracker final {
 
  private:
   template <int, typename>
-  friend class World;
+  friend class world::WorldTracker;
 
   /// For worlds, as update(): each box that `changed` lists is listed once, and is valid or absent.
   std::optional<Statistics> update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);

@@ -14,7 +14,7 @@
 #include "broadside/export.hpp"
 #include "broadside/recorder.hpp"
 
-namespace broadside::core {
+namespace broadside::world {
 
 /// The unsigned number with the same bits.
 template <typename T>
@@ -114,4 +114,4 @@ class ByteReader {
   std::uint32_t version_;
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::world

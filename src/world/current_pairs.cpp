@@ -1,10 +1,15 @@
-// The pairs that hold now, sorted: an array, and a log of the events that it has not taken in yet.
+// CurrentPairs: the pairs that hold now, sorted: an array, and a log of the events that it has not taken in
+// yet.
 #include "world/current_pairs.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <utility>
 
-namespace broadside::core {
+#include "core/grow.hpp"
+
+namespace broadside::world {
 namespace {
 
 /// Below this many events in the log, a pass over the array does not pay.
@@ -49,33 +54,72 @@ const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to,
 
 }  // namespace
 
-void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations) {
-  const std::size_t old_size = log_.size();
-  const std::size_t events = begun.size() + ended.size();
-  if (events == 0) return;
-  if (log_.capacity() < old_size + events) log_.reserve(std::max(old_size + events, 2 * log_.capacity()));
-  log_.resize(old_size + events);
-  merge_events(begun, ended, log_.data() + old_size);
-  size_ += begun.size();
-  size_ -= ended.size();
-  if (log_.size() <= std::max(short_log, pairs_.size() / 2)) return;
-  try {
-    merge(generations);
-  } catch (...) {
-    log_.resize(old_size);
-    size_ -= begun.size();
-    size_ += ended.size();
-    throw;
-  }
+CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
+  keeps_ = other.keeps_;
+  size_ = other.size_;
+  pairs_ = std::move(other.pairs_);
+  log_ = std::move(other.log_);
+  scratch_ = std::move(other.scratch_);
+  persisting_ = std::move(other.persisting_);
+  is_merged_ = other.is_merged_.load();
+  has_persisting_ = other.has_persisting_.load();
+  return *this;
 }
 
-void CurrentPairs::merge(Generations generations) {
+void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations) {
+  const std::size_t events = begun.size() + ended.size();
+  if (keeps_) core::make_room(log_, events);
+  size_ += begun.size();
+  size_ -= ended.size();
+  if (keeps_ && events > 0) {
+    const std::size_t old_size = log_.size();
+    log_.resize(old_size + events);
+    merge_events(begun, ended, log_.data() + old_size);
+    try {
+      if (log_.size() > std::max(short_log, pairs_.size() / 2)) merge(generations);
+    } catch (...) {
+      log_.resize(old_size);
+      size_ -= begun.size();
+      size_ += ended.size();
+      throw;
+    }
+    is_merged_ = log_.empty();
+  }
+  has_persisting_ = false;
+}
+
+std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
+  if (!is_merged_.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(reading_);
+    merge(generations);
+    is_merged_.store(true, std::memory_order_release);
+  }
+  return pairs_;
+}
+
+std::span<const HandlePair> CurrentPairs::persisting(std::span<const HandlePair> begun,
+                                                     Generations generations) const {
+  const std::span<const HandlePair> current = pairs(generations);
+  if (begun.empty()) return current;
+  if (!has_persisting_.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(reading_);
+    if (!has_persisting_.load(std::memory_order_relaxed)) {
+      persisting_.clear();
+      persisting_.reserve(current.size());
+      std::ranges::set_difference(current, begun, std::back_inserter(persisting_));
+      has_persisting_.store(true, std::memory_order_release);
+    }
+  }
+  return persisting_;
+}
+
+void CurrentPairs::merge(Generations generations) const {
   if (log_.empty()) return;
-  // Everything that can throw comes first.
-  if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
+  // Everything that can throw comes first, and sorting last: it mixes old events with new ones.
   const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
   const std::size_t most = is_long ? pairs_.size() + log_.size() : size_;
   if (pairs_.capacity() < most) pairs_.reserve(std::max(most, pairs_.capacity() + pairs_.capacity() / 2));
+  if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
   const std::size_t toggled = keep_toggled(generations);
   if (is_long)
     toggle(toggled, generations);
@@ -86,7 +130,7 @@ void CurrentPairs::merge(Generations generations) {
 
 /// Moves the pairs that the log has an odd number of times to its front, each once; returns how many. Gives
 /// pairs that ended and began again the handles of now, since slots may have been used again.
-std::size_t CurrentPairs::keep_toggled(Generations generations) {
+std::size_t CurrentPairs::keep_toggled(Generations generations) const {
   std::size_t toggled = 0;
   for (std::size_t i = 0; i < log_.size();) {
     const Pair pair = log_[i];
@@ -106,7 +150,7 @@ std::size_t CurrentPairs::keep_toggled(Generations generations) {
 
 /// Takes the first `count` pairs of the log from the array, and puts those in that are not there: from the
 /// end on, without branches, as in merge_events(). There is room for all.
-void CurrentPairs::toggle(std::size_t count, Generations generations) {
+void CurrentPairs::toggle(std::size_t count, Generations generations) const {
   std::size_t left = pairs_.size();
   pairs_.resize(left + count);
   HandlePair* const begin = pairs_.data();
@@ -129,7 +173,7 @@ void CurrentPairs::toggle(std::size_t count, Generations generations) {
 
 /// Takes those of the first `count` pairs of the log that are in the array out of it. The others, which have
 /// begun, go to the front of the log; returns how many.
-std::size_t CurrentPairs::drop_ended(std::size_t count) {
+std::size_t CurrentPairs::drop_ended(std::size_t count) const {
   HandlePair* const begin = pairs_.data();
   const HandlePair* const end = begin + pairs_.size();
   const HandlePair* read = begin;
@@ -155,7 +199,7 @@ std::size_t CurrentPairs::drop_ended(std::size_t count) {
 }
 
 /// Puts the first `count` pairs of the log into the array, from the end on. There is room for them.
-void CurrentPairs::insert_begun(std::size_t count, Generations generations) {
+void CurrentPairs::insert_begun(std::size_t count, Generations generations) const {
   std::size_t left = pairs_.size();
   pairs_.resize(left + count);
   HandlePair* out = pairs_.data() + pairs_.size();
@@ -179,11 +223,28 @@ void CurrentPairs::insert_begun(std::size_t count, Generations generations) {
   }
 }
 
-void CurrentPairs::shrink_to_fit() {
-  pairs_.shrink_to_fit();
-  log_.shrink_to_fit();
+void CurrentPairs::shrink_to_fit(Generations generations) {
+  merge(generations);
+  is_merged_ = true;
   scratch_.clear();
-  scratch_.shrink_to_fit();
+  persisting_.clear();
+  has_persisting_ = false;
+  core::shrink(pairs_, log_, scratch_, persisting_);
 }
 
-}  // namespace broadside::core
+std::size_t CurrentPairs::bytes() const {
+  const std::lock_guard lock(reading_);
+  return core::bytes_of(pairs_, log_, scratch_, persisting_);
+}
+
+void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, Generations generations) {
+  pairs_.clear();
+  pairs_.reserve(pairs.size());
+  for (const Pair pair : pairs) pairs_.push_back(handles(pair, generations));
+  log_.clear();
+  is_merged_ = true;
+  has_persisting_ = false;
+  size_ = size;
+}
+
+}  // namespace broadside::world

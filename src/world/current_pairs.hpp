@@ -1,55 +1,69 @@
-// The pairs that hold now, sorted: an array, and a log of the events that it has not taken in yet.
+// CurrentPairs: the pairs that hold now, sorted: an array, and a log of the events that it has not taken in
+// yet.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
-namespace broadside::core {
+namespace broadside::world {
 
-/// An event toggles a pair, so a pair counts as changed if the log has it an odd number of times.
+/// An event toggles a pair, so a pair counts as changed if the log has it an odd number of times. The first
+/// reader after an update brings the array up to date; several threads may read at once.
 class CurrentPairs {
  public:
   /// The generation of each slot.
   using Generations = std::span<const std::uint32_t>;
 
-  /// The pairs that hold, with what is in the log.
+  /// Without `keeps` it only counts the pairs.
+  explicit CurrentPairs(bool keeps) noexcept : keeps_(keeps) {}
+  CurrentPairs& operator=(CurrentPairs&& other) noexcept;
+
+  bool keeps() const noexcept { return keeps_; }
+
+  /// The number of pairs that hold.
   std::size_t size() const noexcept { return size_; }
 
-  /// Whether pairs() is up to date.
-  bool is_merged() const noexcept { return log_.empty(); }
-
   /// Takes the events of an update, each of the two sorted. O(events), and where the log has grown too long
-  /// for the array, merge(). If it throws, nothing has changed.
+  /// for the array, a pass over it. If it throws, nothing has changed.
   void add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations);
 
-  /// Brings the array up to date. O(log), and a pass over the array where the log is not empty.
-  void merge(Generations generations);
+  /// The pairs that hold, sorted by slots, and those of them that did not begin in the last update. Valid
+  /// until the next call of a member that is not const. Of pairs that are kept. O(events since it was last
+  /// asked), and a pass over the pairs if there were any.
+  std::span<const HandlePair> pairs(Generations generations) const;
+  std::span<const HandlePair> persisting(std::span<const HandlePair> begun, Generations generations) const;
 
-  /// Sorted by slots; valid until the next call of a member that is not const. Those as of the last merge().
-  std::span<const HandlePair> pairs() const noexcept { return pairs_; }
+  /// Gives back memory that is not needed. O(pairs).
+  void shrink_to_fit(Generations generations);
 
-  /// Gives back memory that is not needed. After merge().
-  void shrink_to_fit();
+  std::size_t bytes() const;
 
-  std::size_t bytes() const noexcept {
-    return pairs_.capacity() * sizeof(HandlePair) + (log_.capacity() + scratch_.capacity()) * sizeof(Pair);
-  }
+  /// Takes the pairs of a snapshot, sorted, which says that they are `size`.
+  void restore(std::span<const Pair> pairs, std::size_t size, Generations generations);
 
  private:
-  std::size_t keep_toggled(Generations generations);
-  void toggle(std::size_t count, Generations generations);
-  std::size_t drop_ended(std::size_t count);
-  void insert_begun(std::size_t count, Generations generations);
+  void merge(Generations generations) const;
+  std::size_t keep_toggled(Generations generations) const;
+  void toggle(std::size_t count, Generations generations) const;
+  std::size_t drop_ended(std::size_t count) const;
+  void insert_begun(std::size_t count, Generations generations) const;
 
-  std::vector<HandlePair> pairs_;
-  std::vector<Pair> log_;
-  std::vector<Pair> scratch_;
+  bool keeps_;
   std::size_t size_ = 0;
+  mutable std::mutex reading_;
+  mutable std::vector<HandlePair> pairs_;
+  mutable std::vector<Pair> log_;
+  mutable std::vector<Pair> scratch_;
+  mutable std::vector<HandlePair> persisting_;
+  mutable std::atomic<bool> is_merged_ = true;        // pairs_ has taken in the log
+  mutable std::atomic<bool> has_persisting_ = false;  // persisting_ is up to date
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::world

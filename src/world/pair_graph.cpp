@@ -8,7 +8,7 @@
 
 #include "broadside/sinks.hpp"
 
-namespace broadside::core {
+namespace broadside::world {
 
 std::size_t PairGraph::home(Pair pair) const noexcept { return hash(pair) & (table_.size() - 1); }
 
@@ -105,4 +105,4 @@ std::size_t PairGraph::bytes() const noexcept {
   return edges_.capacity() * sizeof(Edge) + (first_.capacity() + table_.capacity()) * sizeof(EdgeId);
 }
 
-}  // namespace broadside::core
+}  // namespace broadside::world

@@ -11,7 +11,7 @@
 
 #include "broadside/pair.hpp"
 
-namespace broadside::core {
+namespace broadside::world {
 
 /// Pairs with a mark each. All O(1) unless they say otherwise; some 40 to 50 bytes a pair.
 class PairGraph {
@@ -93,4 +93,4 @@ class PairGraph {
   std::size_t size_ = 0;
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::world

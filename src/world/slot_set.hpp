@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace broadside::core {
+namespace broadside::world {
 
 /// Slots that are free. Handing out the lowest first keeps arrays dense and their ends empty. All O(1).
 class SlotSet {
@@ -81,4 +81,4 @@ class SlotSet {
   std::size_t size_ = 0;
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::world

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace broadside::snapshot {
+namespace broadside::world::snapshot {
 
 inline constexpr std::array<unsigned char, 8> magic = {0x89, 'B', 'W', 'S', '\r', '\n', 0x1a, '\n'};
 /// The version written, and the first that is read. Version 2 had a margin and neither a relative one nor
@@ -36,4 +36,4 @@ inline constexpr int last_has_ignored = 2;
 inline constexpr int edge_overlaps = 1;
 inline constexpr int edge_accepted = 2;
 
-}  // namespace broadside::snapshot
+}  // namespace broadside::world::snapshot

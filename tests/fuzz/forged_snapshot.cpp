@@ -60,7 +60,7 @@ SnapshotBytes any_snapshot(Bytes& bytes) {
 template <int D, typename Real>
 WorldModel<D, Real> model_of(const SnapshotFields<D, Real>& fields) {
   constexpr std::uint8_t live = 1;
-  WorldModel<D, Real> model(fields.is_set(snapshot::has_predicate));
+  WorldModel<D, Real> model(fields.is_set(world::snapshot::has_predicate));
   for (std::uint32_t slot = 0; slot < fields.boxes.size(); ++slot) {
     const Filter filter = fields.filters.empty() ? Filter{} : fields.filters[slot];
     if (fields.states[slot] == live)
@@ -72,20 +72,20 @@ WorldModel<D, Real> model_of(const SnapshotFields<D, Real>& fields) {
 
 template <int D, typename Real>
 void check_life(World<D, Real>& world, const SnapshotFields<D, Real>& fields, Bytes& bytes) {
-  const bool keeps_pairs = fields.is_set(snapshot::keeps_pairs);
+  const bool keeps_pairs = fields.is_set(world::snapshot::keeps_pairs);
   const WorldEvents events =
-      fields.is_set(snapshot::tells_enlarged) ? WorldEvents::enlarged : WorldEvents::exact;
+      fields.is_set(world::snapshot::tells_enlarged) ? WorldEvents::enlarged : WorldEvents::exact;
   WorldModel<D, Real> model = model_of(fields);
   const SnapshotBytes taken = world.snapshot();
   World<D, Real> same;
   bool fails = false;
-  if (fields.is_set(snapshot::has_predicate)) same.set_predicate(Predicate{&fails});
+  if (fields.is_set(world::snapshot::has_predicate)) same.set_predicate(Predicate{&fails});
   same.restore(taken);
   expect(same.snapshot() == taken, "a snapshot of what was restored is another one");
   if (bytes.next() % 4 == 0) world.shrink_to_fit();
   for (std::size_t i = bytes.below(4); i > 0; --i) model.change(world, bytes);
   // What the predicate said before is the snapshot's to claim.
-  if (fields.is_set(snapshot::has_predicate)) world.refilter();
+  if (fields.is_set(world::snapshot::has_predicate)) world.refilter();
   HandlePairs before;
   if (keeps_pairs) before.assign(world.pairs().begin(), world.pairs().end());
   HandlePairs now = model.check_update(world, keeps_pairs, keeps_pairs ? &before : nullptr, events);
@@ -105,8 +105,8 @@ void check(Bytes& bytes) {
   const SnapshotBytes forged = sealed(fields);
   bool fails = false;
   World<D, Real> world("brute_force");
-  if (fields.is_set(snapshot::has_predicate)) world.set_predicate(Predicate{&fails});
-  WorldModel<D, Real> model(fields.is_set(snapshot::has_predicate));
+  if (fields.is_set(world::snapshot::has_predicate)) world.set_predicate(Predicate{&fails});
+  WorldModel<D, Real> model(fields.is_set(world::snapshot::has_predicate));
   for (std::size_t i = bytes.below(4); i > 0; --i) model.change(world, bytes);
   const HandlePairs nothing;
   const HandlePairs before = model.check_update(world, true, &nothing);

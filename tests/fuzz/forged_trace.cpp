@@ -170,7 +170,7 @@ struct Forgery {
   std::string encoded() const {
     std::vector<std::byte> bytes;
     detail::OutputTo output(bytes);
-    core::ByteWriter out(output);
+    world::ByteWriter out(output);
     for (const unsigned char byte : trace::magic) out.put(byte);
     out.put(has_pairs ? trace::pairs_version : trace::version);
     out.put(dimension);
@@ -202,7 +202,7 @@ struct Forgery {
     return lab::sealed_trace(std::string(begin, begin + bytes.size() - trace::checksum_bytes));
   }
 
-  static void put_pairs(const ForgedFrame& frame, core::ByteWriter& out) {
+  static void put_pairs(const ForgedFrame& frame, world::ByteWriter& out) {
     for (const SlotFilter& filter : frame.filters) {
       out.put(filter.slot);
       out.put(std::uint64_t{1});

@@ -13,8 +13,8 @@
 #include "broadside/pair.hpp"
 
 #include "world/byte_stream.hpp"
+#include "world/serializer.hpp"
 #include "world/snapshot_format.hpp"
-#include "world/snapshot_parts.hpp"
 
 namespace broadside::fuzz {
 
@@ -86,8 +86,8 @@ struct SnapshotFields {
     codec.all(generations, slots);
     codec.all(states, slots);
     codec.all(enlarged, has_margin() ? slots : 0);
-    codec.all(filters, is_set(snapshot::has_filters) ? slots : 0);
-    codec.all(user_data, is_set(snapshot::has_user_data) ? slots : 0);
+    codec.all(filters, is_set(world::snapshot::has_filters) ? slots : 0);
+    codec.all(user_data, is_set(world::snapshot::has_user_data) ? slots : 0);
     codec.removals(removed);
     codec.removals(reported);
     for (auto* const list : {&changed, &moved, &refiltered}) codec.list(*list);
@@ -107,7 +107,7 @@ struct SnapshotFields {
 /// Takes fields from the bytes of a snapshot.
 class FieldReader {
  public:
-  explicit FieldReader(std::span<const std::byte> bytes) : in_(bytes, snapshot::version) {}
+  explicit FieldReader(std::span<const std::byte> bytes) : in_(bytes, world::snapshot::version) {}
 
   template <typename T>
   void number(T& value) {
@@ -115,30 +115,30 @@ class FieldReader {
   }
   template <typename T>
   std::size_t list(std::vector<T>& parts) {
-    parts = core::get_list<T>(in_, "parts");
+    parts = world::get_list<T>(in_, "parts");
     return parts.size();
   }
   template <typename T>
   void all(std::vector<T>& parts, std::size_t count) {
-    parts = core::get_all<T>(in_, count, "parts");
+    parts = world::get_all<T>(in_, count, "parts");
   }
   template <typename Removed>
   void removals(std::vector<Removed>& list) {
     list.resize(in_.count(4, "removed boxes"));
     for (Removed& one : list) {
       one.slot = in_.get<std::uint32_t>();
-      one.box = core::Part<decltype(one.box)>::get(in_);
+      one.box = world::Serializer<decltype(one.box)>::get(in_);
     }
   }
 
  private:
-  core::ByteReader in_;
+  world::ByteReader in_;
 };
 
 /// Writes fields.
 class FieldWriter {
  public:
-  explicit FieldWriter(core::ByteWriter& out) : out_(&out) {}
+  explicit FieldWriter(world::ByteWriter& out) : out_(&out) {}
 
   template <typename T>
   void number(T& value) {
@@ -146,25 +146,25 @@ class FieldWriter {
   }
   template <typename T>
   std::size_t list(std::vector<T>& parts) {
-    core::put_list(*out_, parts);
+    world::put_list<T>(*out_, parts);
     return parts.size();
   }
   template <typename T>
   void all(std::vector<T>& parts, std::size_t count) {
     parts.resize(count);
-    core::put_all<T>(*out_, parts);
+    world::put_all<T>(*out_, parts);
   }
   template <typename Removed>
   void removals(std::vector<Removed>& list) {
     out_->put(std::uint64_t{list.size()});
     for (Removed& one : list) {
       out_->put(one.slot);
-      core::Part<decltype(one.box)>::put(*out_, one.box);
+      world::Serializer<decltype(one.box)>::put(*out_, one.box);
     }
   }
 
  private:
-  core::ByteWriter* out_;
+  world::ByteWriter* out_;
 };
 
 /// Where the fields begin: behind magic number, version, dimension, coordinate's bytes, byte order and
@@ -186,16 +186,16 @@ template <int D, typename Real>
 SnapshotBytes sealed(SnapshotFields<D, Real> fields) {
   SnapshotBytes bytes;
   detail::OutputTo output(bytes);
-  core::ByteWriter out(output);
-  for (const unsigned char byte : snapshot::magic) out.put(byte);
-  out.put(snapshot::version);
+  world::ByteWriter out(output);
+  for (const unsigned char byte : world::snapshot::magic) out.put(byte);
+  out.put(world::snapshot::version);
   out.put(static_cast<std::uint8_t>(D));
   out.put(static_cast<std::uint8_t>(sizeof(Real)));
-  out.put(snapshot::byte_order);
+  out.put(world::snapshot::byte_order);
   out.put(std::uint64_t{0});
   FieldWriter writer(out);
   fields.pass(writer);
-  out.put_at(snapshot_length_at, out.size() + snapshot::checksum_bytes);
+  out.put_at(snapshot_length_at, out.size() + world::snapshot::checksum_bytes);
   out.seal();
   return bytes;
 }

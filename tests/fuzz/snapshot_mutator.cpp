@@ -227,9 +227,9 @@ void SnapshotMutator<D, Real>::change_filter() {
 template <int D, typename Real>
 void SnapshotMutator<D, Real>::change_flags() {
   fields_.flags ^= 1U << bytes_.below(11);
-  fields_.filters.resize(fields_.is_set(snapshot::has_filters) ? slots() : 0);
-  fields_.user_data.resize(fields_.is_set(snapshot::has_user_data) ? slots() : 0);
-  if (bytes_.next() % 2 == 0 && !fields_.is_set(snapshot::keeps_pairs)) fields_.pairs.clear();
+  fields_.filters.resize(fields_.is_set(world::snapshot::has_filters) ? slots() : 0);
+  fields_.user_data.resize(fields_.is_set(world::snapshot::has_user_data) ? slots() : 0);
+  if (bytes_.next() % 2 == 0 && !fields_.is_set(world::snapshot::keeps_pairs)) fields_.pairs.clear();
 }
 
 template <int D, typename Real>
@@ -272,8 +272,8 @@ void SnapshotMutator<D, Real>::change_slot_count() {
   }
   if (fields_.has_margin())
     fields_.enlarged.resize(slots(), fields_.boxes.empty() ? box() : fields_.boxes.back());
-  if (fields_.is_set(snapshot::has_filters)) fields_.filters.resize(slots());
-  if (fields_.is_set(snapshot::has_user_data)) fields_.user_data.resize(slots());
+  if (fields_.is_set(world::snapshot::has_filters)) fields_.filters.resize(slots());
+  if (fields_.is_set(world::snapshot::has_user_data)) fields_.user_data.resize(slots());
 }
 
 template <int D, typename Real>
@@ -319,13 +319,13 @@ void SnapshotMutator<D, Real>::change_mark() {
 
 template <int D, typename Real>
 void SnapshotMutator<D, Real>::agree() {
-  if (fields_.is_set(snapshot::refines) && fields_.is_set(snapshot::keeps_pairs)) {
+  if (fields_.is_set(world::snapshot::refines) && fields_.is_set(world::snapshot::keeps_pairs)) {
     fields_.pairs.clear();
     for (std::size_t i = 0; i < fields_.edges.size(); ++i) {
       if (fields_.marks[i] == 3) fields_.pairs.push_back(fields_.edges[i]);
     }
   }
-  if (fields_.is_set(snapshot::keeps_pairs)) fields_.pair_count = fields_.pairs.size();
+  if (fields_.is_set(world::snapshot::keeps_pairs)) fields_.pair_count = fields_.pairs.size();
 }
 
 template class SnapshotMutator<2, float>;

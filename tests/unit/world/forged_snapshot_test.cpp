@@ -87,8 +87,8 @@ TEST(ForgedSnapshot, IsRefusedForWhatContradictsItself) {
       {"it counts 4 pairs; expected 3, which its boxes make", 0, [](Fields& f) { ++f.pair_count; }},
       {"its pairs are not those of its boxes", 0, [](Fields& f) { f.pairs[0] = apart; }},
       {"nothing is pending and an update has something to tell", 0,
-       [](Fields& f) { f.flags |= snapshot::was_settled; }},
-      {"it had no update and has pairs", 0, [](Fields& f) { f.flags &= ~snapshot::was_updated; }},
+       [](Fields& f) { f.flags |= world::snapshot::was_settled; }},
+      {"it had no update and has pairs", 0, [](Fields& f) { f.flags &= ~world::snapshot::was_updated; }},
       {"it refines no pairs and asks about some", 0, [](Fields& f) { f.refiltered = {BoxId{1}}; }},
       {"a box left its enlarged one and did not change", 1, [](Fields& f) { f.changed = {}; }},
       {"the last frame has a box in a slot that has none now", 0,
@@ -97,8 +97,8 @@ TEST(ForgedSnapshot, IsRefusedForWhatContradictsItself) {
        }},
       {"a filter changed and is not in the list of boxes that did", 0,
        [](Fields& f) {
-         f.last_flags |= snapshot::last_has_filters, f.last_filtered = {BoxId{1}},
-                                                     f.last_filters = {Filter{.category = 2}};
+         f.last_flags |= world::snapshot::last_has_filters, f.last_filtered = {BoxId{1}},
+                                                            f.last_filters = {Filter{.category = 2}};
        }},
       {"the pair (0, 1) is ignored now or was in the last frame", 0,
        [](Fields& f) { f.last_ignored = {first}; }},

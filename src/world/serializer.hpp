@@ -1,4 +1,5 @@
-// The parts of a snapshot: boxes, filters, pairs, and lists of them. See docs/snapshot-format.md.
+// Serializer: how boxes, filters, pairs and lists of them are written into snapshots, and read. See
+// docs/snapshot-format.md.
 #pragma once
 
 #include <cstddef>
@@ -13,38 +14,38 @@
 
 #include "world/byte_stream.hpp"
 
-namespace broadside::core {
+namespace broadside::world {
 
-/// How a part is written, how it is read, and how many bytes it takes.
+/// How a T is written, how it is read, and how many bytes it takes.
 template <typename T>
-struct Part {
+struct Serializer {
   static constexpr std::size_t bytes = sizeof(T);
   static void put(ByteWriter& out, T value) { out.put(value); }
   static T get(ByteReader& in) { return in.get<T>(); }
 };
 
 template <>
-struct Part<BoxId> {
+struct Serializer<BoxId> {
   static constexpr std::size_t bytes = 4;
   static void put(ByteWriter& out, BoxId id) { out.put(index(id)); }
   static BoxId get(ByteReader& in) { return BoxId{in.get<std::uint32_t>()}; }
 };
 
 template <>
-struct Part<Pair> {
+struct Serializer<Pair> {
   static constexpr std::size_t bytes = 8;
   static void put(ByteWriter& out, Pair pair) {
     out.put(index(pair.first));
     out.put(index(pair.second));
   }
   static Pair get(ByteReader& in) {
-    const BoxId first = Part<BoxId>::get(in);
-    return {first, Part<BoxId>::get(in)};
+    const BoxId first = Serializer<BoxId>::get(in);
+    return {first, Serializer<BoxId>::get(in)};
   }
 };
 
 template <>
-struct Part<Filter> {
+struct Serializer<Filter> {
   static constexpr std::size_t bytes = 13;  // at least: of version 1
   static void put(ByteWriter& out, const Filter& filter) {
     out.put(filter.category);
@@ -74,7 +75,7 @@ struct Part<Filter> {
 };
 
 template <int D, typename Real>
-struct Part<Box<D, Real>> {
+struct Serializer<Box<D, Real>> {
   static constexpr std::size_t bytes = 2 * D * sizeof(Real);
   static void put(ByteWriter& out, const Box<D, Real>& box) {
     for (const Real coordinate : box.min) out.put(coordinate);
@@ -90,29 +91,29 @@ struct Part<Box<D, Real>> {
   }
 };
 
-/// Parts one after the other, whose number both sides know.
+/// Elements one after the other; the reader knows their number.
 template <typename T>
 void put_all(ByteWriter& out, std::span<const T> parts) {
-  for (const T& part : parts) Part<T>::put(out, part);
+  for (const T& part : parts) Serializer<T>::put(out, part);
 }
 template <typename T>
 std::vector<T> get_all(ByteReader& in, std::size_t count, const char* things) {
-  in.need(Part<T>::bytes, count, things);
+  in.need(Serializer<T>::bytes, count, things);
   std::vector<T> parts;
   parts.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) parts.push_back(Part<T>::get(in));
+  for (std::size_t i = 0; i < count; ++i) parts.push_back(Serializer<T>::get(in));
   return parts;
 }
 
-/// Their number, and they.
+/// A length-prefixed list.
 template <typename T>
-void put_list(ByteWriter& out, const std::vector<T>& parts) {
+void put_list(ByteWriter& out, std::span<const T> parts) {
   out.put(std::uint64_t{parts.size()});
   put_all<T>(out, parts);
 }
 template <typename T>
 std::vector<T> get_list(ByteReader& in, const char* things) {
-  return get_all<T>(in, in.count(Part<T>::bytes, things), things);
+  return get_all<T>(in, in.count(Serializer<T>::bytes, things), things);
 }
 
-}  // namespace broadside::core
+}  // namespace broadside::world

@@ -1,0 +1,50 @@
+// IgnoredPairTable: the pairs of boxes that never count, and which of them are new.
+#include "world/ignored_pair_table.hpp"
+
+#include <utility>
+
+namespace broadside::world {
+
+bool IgnoredPairTable::insert(Pair pair) {
+  if (contains(pair)) return false;
+  core::make_room(changed_, 1);
+  edges_.reserve(edges_.size() + 1, std::size_t{index(pair.second)} + 1);
+  pairs_.insert(pair);
+  edges_.insert(pair);
+  changed_.push_back(pair);
+  return true;
+}
+
+bool IgnoredPairTable::erase(Pair pair) {
+  if (!contains(pair)) return false;
+  core::make_room(changed_, 1);
+  pairs_.erase(pair);
+  edges_.erase(edges_.find(pair));
+  changed_.push_back(pair);
+  return true;
+}
+
+void IgnoredPairTable::forget(std::uint32_t slot) noexcept {
+  edges_.for_each_of(BoxId{slot}, [this](PairGraph::EdgeId edge) {
+    const Pair pair = edges_.pair(edge);
+    pairs_.erase(pair);
+    changed_.push_back(pair);
+    edges_.erase(edge);
+  });
+}
+
+void IgnoredPairTable::shrink_to_fit() {
+  edges_.shrink_to_fit();
+  changed_.shrink_to_fit();
+}
+
+void IgnoredPairTable::restore(std::span<const Pair> pairs, std::vector<Pair> changed) {
+  *this = {};
+  for (const Pair pair : pairs) {
+    pairs_.insert(pair);
+    edges_.insert(pair);
+  }
+  changed_ = std::move(changed);
+}
+
+}  // namespace broadside::world

@@ -1,0 +1,123 @@
+// PairRefiner: makes the pairs of a world out of its tracker's, by the boxes themselves and a predicate.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/pair.hpp"
+#include "broadside/world.hpp"
+
+#include "core/lean.hpp"
+#include "world/box_table.hpp"
+#include "world/pair_events.hpp"
+#include "world/pair_graph.hpp"
+#include "world/slot_table.hpp"
+
+namespace broadside::world {
+
+/// The part of a PairRefiner that a world's future depends on.
+struct RefinerState {
+  bool is_refining = false;  ///< whether the tracker's pairs are candidates; else they are the world's
+  bool asks_about_all = false;
+  std::vector<std::uint32_t> asked_slots{};  ///< whose pairs the predicate is to be asked about again
+  PairGraph graph{};                         ///< the candidates, if it is refining
+  PairEvents candidates{};                   ///< the tracker's events that no step has taken yet
+  PairEvents refined{};                      ///< events that are refined and not delivered
+  std::vector<Pair> fresh{};                 ///< candidates that are new in the graph
+};
+
+/// Where a world enlarges boxes and tells exact pairs, or has a predicate, its tracker's pairs are
+/// candidates. They are kept in a graph, and each update looks at those that may hold now and did not before,
+/// or the other way round: O(candidates of the boxes that changed).
+///
+/// Each step first does all that can fail and then changes something, so that an update that throws can be
+/// tried again: what its steps had done by then waits in `candidates`, `fresh` and `refined`.
+template <int D, typename Real>
+class PairRefiner {
+ public:
+  /// `by_boxes`: whether the boxes themselves decide about pairs of enlarged ones.
+  explicit PairRefiner(bool by_boxes) noexcept : by_boxes_(by_boxes) { state_.is_refining = by_boxes; }
+
+  const RefinerState& state() const noexcept { return state_; }
+  bool is_refining() const noexcept { return state_.is_refining; }
+  bool has_predicate() const noexcept { return !core::is_lean && predicate_; }
+
+  /// Whether the predicate is to be asked about all pairs of the slot again.
+  bool asks_about(std::uint32_t slot) const noexcept {
+    return state_.asks_about_all || (slot < asked_marks_.size() && asked_marks_[slot] != 0);
+  }
+
+  /// The tracker's events, for the tracker to append to.
+  PairEvents& candidates() noexcept { return state_.candidates; }
+
+  /// Takes the pairs that hold, all of which the tracker has found, as candidates that are accepted.
+  void adopt(std::span<const HandlePair> pairs, std::size_t slots);
+
+  /// Refines from now on, by `predicate`, which it swaps for the one before. It is to be asked about all
+  /// pairs.
+  void swap_predicate(PairPredicate& predicate) noexcept;
+
+  /// Takes over another one's predicate.
+  void take_predicate(PairRefiner& other) noexcept { predicate_.swap(other.predicate_); }
+
+  /// Has the next update ask the predicate again: about the pairs of one of `slots` slots, or about all.
+  void ask_again(std::uint32_t slot, std::size_t slots);
+  void ask_again() noexcept { state_.asks_about_all |= has_predicate(); }
+
+  /// Makes the candidates' events the world's, which it returns, sorted; to be cleared when delivered.
+  PairEvents& refine(const SlotTable<D, Real>& slots, const BoxTable<D, Real>& boxes);
+
+  /// At the end of an update.
+  void settle() noexcept;
+
+  /// Gives back the memory that the candidates do not need. O(candidates).
+  void shrink_to_fit();
+
+  std::size_t bytes() const noexcept;
+
+  /// The candidates as of the tracker's last whole update, which are those that hold if it is not refining:
+  /// the given ones, sorted.
+  std::vector<Pair> tracked(std::vector<Pair> current) const;
+
+  /// The candidates in the graph, or those of them that hold; sorted.
+  std::vector<Pair> edges() const;
+  std::vector<Pair> held_edges() const;
+
+  /// Takes the state of a snapshot, of a world with `slots` slots.
+  void restore(RefinerState state, std::size_t slots);
+
+ private:
+  /// A candidate that an update looks at, and what it makes of it.
+  struct ReviewedEdge {
+    PairGraph::EdgeId edge;
+    bool overlaps;
+    bool accepted;
+  };
+
+  /// A pair that the predicate is asked about.
+  struct Question {
+    Pair pair;
+    std::size_t place;  ///< in reviewed_
+  };
+
+  void take_candidates(std::size_t slots);
+  void review_changes(const BoxTable<D, Real>& boxes);
+  void review_all(std::span<const Box<D, Real>> boxes);
+  void review_once(PairGraph::EdgeId edge, std::span<const Box<D, Real>> boxes);
+  void review(PairGraph::EdgeId edge, bool overlaps);
+  void answer(const SlotTable<D, Real>& slots);
+  void tell();
+
+  RefinerState state_;
+  PairPredicate predicate_;
+  bool by_boxes_;
+  std::vector<std::uint8_t> asked_marks_;  // by slot, as far as slots were asked about
+  std::uint32_t stamp_ = 0;                // of this update
+  std::vector<ReviewedEdge> reviewed_;
+  std::vector<Question> questions_;
+  std::vector<Pair> sorting_;
+};
+
+}  // namespace broadside::world

@@ -1,0 +1,142 @@
+// SlotTable: the slots of a world, and the handles that name the boxes in them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/world.hpp"
+
+#include "world/slot_set.hpp"
+
+namespace broadside::world {
+
+/// A slot is free, live, removed (no update has reported it yet), reported (the last update reported the
+/// removal, and the box can still be read), and free again; or retired, if its generations are used up.
+enum class SlotState : std::uint8_t { free, live, removed, reported, retired };
+
+/// A box that was removed and can still be read.
+template <int D, typename Real>
+struct RemovedBox {
+  std::uint32_t slot;
+  Box<D, Real> box;
+};
+
+/// Hands out slots under generations, so that no handle ever names a second box. New boxes get the lowest
+/// free slot, which keeps arrays by slot dense. All O(1) unless they say otherwise.
+template <int D, typename Real>
+class SlotTable {
+ public:
+  using Removed = RemovedBox<D, Real>;
+
+  /// A table without slots. `first_generation` is the generation of the first handles.
+  explicit SlotTable(std::uint32_t first_generation) noexcept
+      : table_generation_(first_generation), first_generation_(first_generation) {}
+
+  /// The number of slots, free ones among them.
+  std::size_t size() const noexcept { return states_.size(); }
+
+  /// The number of boxes in the world.
+  std::size_t live() const noexcept { return live_; }
+
+  SlotState state(std::uint32_t slot) const noexcept { return states_[slot]; }
+  std::span<const SlotState> states() const noexcept { return states_; }
+  std::span<const std::uint32_t> generations() const noexcept { return generations_; }
+
+  /// The generation of slots that do not exist yet: above that of any slot that was dropped.
+  std::uint32_t first_generation() const noexcept { return first_generation_; }
+
+  Handle handle(BoxId id) const noexcept { return {index(id), generations_[index(id)]}; }
+  HandlePair handles(Pair pair) const noexcept { return {handle(pair.first), handle(pair.second)}; }
+
+  bool is_live(Handle handle) const noexcept {
+    return handle.slot < generations_.size() && generations_[handle.slot] == handle.generation &&
+           states_[handle.slot] == SlotState::live;
+  }
+
+  /// Whether the slot may be part of a pair: of one that holds, or of one whose end is not reported yet.
+  bool is_paired(std::uint32_t slot) const noexcept {
+    return states_[slot] == SlotState::live || states_[slot] == SlotState::removed;
+  }
+
+  /// The slot of a box in the world. Throws InvalidHandle, which names the `action`, if it is not there.
+  std::uint32_t live_slot(Handle handle, const char* action) const {
+    if (!is_live(handle)) refuse(handle, action);
+    return handle.slot;
+  }
+
+  /// The slot of a box that can be read: one in the world, or removed a short while ago. Throws
+  /// InvalidHandle.
+  std::uint32_t readable_slot(Handle handle) const;
+
+  /// The box that was removed from a slot that is removed or reported; null for other slots.
+  const Box<D, Real>* removed_box(std::uint32_t slot) const noexcept;
+
+  /// Throws InvalidHandle, which says why the handle names no box.
+  [[noreturn]] void refuse(Handle handle, const char* action) const;
+
+  /// Makes room for `count` calls of add(), and returns how many slots they will append. Throws InvalidFrame
+  /// if there would be more slots than ids.
+  std::size_t reserve(std::size_t count);
+
+  /// The slot that add() will give: the lowest free one, or size().
+  std::uint32_t next() const noexcept {
+    return free_.empty() ? static_cast<std::uint32_t>(states_.size()) : free_.lowest();
+  }
+
+  Handle add() noexcept;
+
+  /// Makes room for `count` removals.
+  void reserve_removals(std::size_t count);
+
+  /// Takes the box out of a live slot.
+  void remove(std::uint32_t slot, const Box<D, Real>& box) noexcept;
+
+  /// Undoes the removals since there were `count` since the last update; their boxes are live again.
+  void undo_removals(std::size_t count) noexcept;
+
+  /// The removals since the last update, and those that the last update reported.
+  std::span<Removed> removed() noexcept { return removed_; }
+  std::span<const Removed> removed() const noexcept { return removed_; }
+  std::span<Removed> reported() noexcept { return reported_; }
+  std::span<const Removed> reported() const noexcept { return reported_; }
+
+  /// At the end of an update: frees the slots whose removal the update before reported, and makes the removed
+  /// ones reported. O(removals).
+  void recycle() noexcept;
+
+  /// Drops free slots at the end once many slots are free (hysteresis: a few that come and go cost nothing).
+  /// Returns whether any was dropped.
+  bool trim() noexcept;
+
+  /// Whether most of the slots are gone for which memory was taken.
+  bool is_mostly_gone() const noexcept;
+
+  /// Gives back the memory that the slots do not need. O(slots).
+  void shrink_to_fit();
+
+  /// The bytes of slots, and those of boxes that were removed.
+  std::size_t bytes() const noexcept;
+  std::size_t removed_bytes() const noexcept;
+
+  /// Takes the slots of a snapshot, which has been checked.
+  void restore(std::uint32_t first_generation, std::vector<std::uint32_t> generations,
+               std::vector<SlotState> states, std::vector<Removed> removed, std::vector<Removed> reported);
+
+ private:
+  std::vector<std::uint32_t> generations_;
+  std::vector<std::uint32_t> places_;  // in removed_ or reported_
+  std::vector<SlotState> states_;
+  SlotSet free_;
+  std::vector<Removed> removed_;
+  std::vector<Removed> reported_;
+  std::uint32_t table_generation_;  // of this table's first handles
+  std::uint32_t first_generation_;
+  std::size_t live_ = 0;
+  std::size_t max_slots_ = 0;  // since memory was last given back
+};
+
+}  // namespace broadside::world

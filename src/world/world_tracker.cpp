@@ -1,0 +1,161 @@
+// WorldTracker: the tracker of a world, and the way from one frame to another that restore() takes.
+#include "world/world_tracker.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "core/former_names.hpp"
+
+namespace broadside::world {
+
+template <int D, typename Real>
+TakenFrame<D, Real>::TakenFrame(const Frame<D, Real>& frame)
+    : boxes(frame.boxes.begin(), frame.boxes.end()),
+      filters(frame.filters.begin(), frame.filters.end()),
+      has_ignored(frame.ignored != nullptr) {
+  if (has_ignored) ignored = *frame.ignored;
+}
+
+template <int D, typename Real>
+Frame<D, Real> TakenFrame<D, Real>::frame() const noexcept {
+  return {boxes, {}, filters, has_ignored ? &ignored : nullptr, {}};
+}
+
+template <int D, typename Real>
+WorldTracker<D, Real>::WorldTracker(const WorldOptions& options)
+    : is_own_(true),
+      spec_(options.algorithm),
+      tracker_(!core::is_lean && options.shadow ? Either(Shadowed(spec_)) : Either(Plain(spec_))) {
+  if constexpr (!core::is_lean) spec_ = core::canonical_spec(spec_);
+}
+
+template <int D, typename Real>
+WorldTracker<D, Real>::WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options)
+    : is_own_(false),
+      tracker_(!core::is_lean && options.shadow ? Either(Shadowed(std::move(tracker)))
+                                                : Either(std::move(tracker))) {}
+
+template <int D, typename Real>
+void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& events) {
+  const std::size_t begun_before = events.begun.size();
+  const std::size_t ended_before = events.ended.size();
+  try {
+    PairCollector begun_pairs(events.begun);
+    PairCollector ended_pairs(events.ended);
+    if (Plain* const plain = std::get_if<Plain>(&tracker_))
+      statistics_ = plain->update_checked(frame, begun_pairs, ended_pairs);
+    else
+      take(frame, begun_pairs, ended_pairs);
+  } catch (...) {
+    // It will tell these again.
+    events.begun.resize(begun_before);
+    events.ended.resize(ended_before);
+    throw;
+  }
+  if (begun_before + ended_before > 0) events.cancel();
+}
+
+/// Takes any frame.
+template <int D, typename Real>
+void WorldTracker<D, Real>::take(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
+  statistics_ = std::visit([&](auto& tracker) { return tracker.update(frame, begun, ended); }, tracker_);
+}
+
+template <int D, typename Real>
+Frame<D, Real> WorldTracker<D, Real>::last_frame() const noexcept {
+  return way_back_ ? way_back_->frame() : tracker().last_frame();
+}
+
+template <int D, typename Real>
+void WorldTracker<D, Real>::renew(const Frame<D, Real>& frame) {
+  if (!is_own_) return;
+  WorldTracker fresh = remade(spec_);
+  PairCounter known;
+  fresh.take(frame, known, known);
+  *this = std::move(fresh);
+}
+
+template <int D, typename Real>
+WorldTracker<D, Real> WorldTracker<D, Real>::remade(const Spec& spec) const {
+  WorldOptions options;
+  options.algorithm = spec;
+  options.shadow = is_shadowed();
+  WorldTracker other(options);
+  other.set_workers(workers());
+  return other;
+}
+
+template <int D, typename Real>
+std::vector<Pair> WorldTracker<D, Real>::lead_to(const Taken& frame, std::optional<std::vector<Pair>> known) {
+  lead_back();
+  way_back_ = std::make_unique<Taken>(tracker().last_frame());
+  try {
+    if (!known) {
+      lead(Taken{});
+      known.emplace();
+    }
+    return symmetric_difference(*known, lead(frame));
+  } catch (...) {
+    undo();
+    throw;
+  }
+}
+
+template <int D, typename Real>
+void WorldTracker<D, Real>::undo() noexcept {
+  try {
+    lead_back();
+  } catch (...) {
+    // The next update tries again.
+  }
+}
+
+template <int D, typename Real>
+void WorldTracker<D, Real>::lead_back() {
+  if (!way_back_) return;
+  lead(*way_back_);
+  way_back_.reset();
+}
+
+/// Hands the tracker a frame in which only what differs from its last one is listed. Returns the events: the
+/// pairs that hold in one of the two, sorted.
+template <int D, typename Real>
+std::vector<Pair> WorldTracker<D, Real>::lead(const Taken& to) {
+  const Frame<D, Real> from = tracker().last_frame();
+  Frame<D, Real> frame = to.frame();
+  std::vector<BoxId> places;
+  for (std::uint32_t i = 0; i < std::min(from.boxes.size(), frame.boxes.size()); ++i) {
+    // After an update that failed there may be fewer filters than boxes; then all are taken anew.
+    const bool filters_differ =
+        i < from.filters.size() && i < frame.filters.size() && from.filters[i] != frame.filters[i];
+    if (from.boxes[i] != frame.boxes[i] || filters_differ) places.push_back(BoxId{i});
+  }
+  frame.changed = places;
+  std::vector<Pair> toggled;
+  const auto add_missing = [&toggled](const IgnoredPairs* set, const IgnoredPairs* other) {
+    if (set == nullptr || other == nullptr) return;
+    set->for_each([&](Pair pair) {
+      if (!other->contains(pair)) toggled.push_back(pair);
+    });
+  };
+  add_missing(from.ignored, frame.ignored);
+  add_missing(frame.ignored, from.ignored);
+  frame.ignored_changed = toggled;
+  PairEvents events;
+  PairCollector begun_sink(events.begun);
+  PairCollector ended_sink(events.ended);
+  take(frame, begun_sink, ended_sink);
+  return symmetric_difference(events.begun, events.ended);
+}
+
+template struct TakenFrame<2, float>;
+template struct TakenFrame<2, double>;
+template struct TakenFrame<3, float>;
+template struct TakenFrame<3, double>;
+template class WorldTracker<2, float>;
+template class WorldTracker<2, double>;
+template class WorldTracker<3, float>;
+template class WorldTracker<3, double>;
+
+}  // namespace broadside::world

@@ -1,0 +1,120 @@
+// WorldTracker: the tracker of a world, and the way from one frame to another that restore() takes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "broadside/box.hpp"
+#include "broadside/debug/shadow.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
+#include "broadside/tracker.hpp"
+#include "broadside/world.hpp"
+
+#include "core/lean.hpp"
+#include "world/pair_events.hpp"
+
+namespace broadside::world {
+
+/// A frame that a tracker has taken, with nothing listed.
+template <int D, typename Real>
+struct TakenFrame {
+  std::vector<Box<D, Real>> boxes{};
+  std::vector<Filter> filters{};
+  IgnoredPairs ignored{};
+  bool has_ignored = false;
+
+  TakenFrame() = default;
+  explicit TakenFrame(const Frame<D, Real>& frame);
+
+  Frame<D, Real> frame() const noexcept;
+};
+
+/// Follows the frames of a world, by an algorithm of the library or by a tracker of the caller's.
+template <int D, typename Real>
+class WorldTracker {
+ public:
+  using Taken = TakenFrame<D, Real>;
+
+  /// A tracker by options.algorithm, or the caller's. Where options.shadow is set, brute force runs beside it.
+  /// Throws InvalidSpec.
+  explicit WorldTracker(const WorldOptions& options);
+  WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options);
+
+  /// Whether it is by options.algorithm, so that another one can be made.
+  bool is_own() const noexcept { return is_own_; }
+
+  /// What it is made by: the canonical spec, the same for equivalent ones; the standard one where the tracker
+  /// is the caller's.
+  const Spec& spec() const noexcept { return spec_; }
+
+  /// Takes the next frame and appends its events; if it throws, none.
+  void update(const Frame<D, Real>& frame, PairEvents& events);
+
+  /// The frame from which the next events start.
+  Frame<D, Real> last_frame() const noexcept;
+
+  /// Replaces the tracker, if it is not the caller's, by a new one that knows `frame` and holds no more than
+  /// it needs.
+  void renew(const Frame<D, Real>& frame);
+
+  /// Replaces the tracker by one by another spec, with the same workers. Throws InvalidSpec.
+  WorldTracker remade(const Spec& spec) const;
+
+  /// Leads the tracker to a frame and returns the pairs that hold there, sorted. `known` is the pairs that
+  /// hold in last_frame(), if they are known. If it throws, or if undo() is called before the next update,
+  /// the tracker goes back where it was: now or, where memory is too short for that, at the next update.
+  std::vector<Pair> lead_to(const Taken& frame, std::optional<std::vector<Pair>> known);
+  void undo() noexcept;
+
+  /// Ends a lead_to(): there is no way back.
+  void stay() noexcept { way_back_.reset(); }
+
+  /// Brings the tracker back after a lead_to() that was undone, or leaves it where it is and throws.
+  void lead_back();
+
+  /// Its own index, if it has one of the boxes that it took last and is not on a way back.
+  const BoxIndex<D, Real>* box_index() const noexcept {
+    return !core::is_lean && way_back_ != nullptr ? nullptr : tracker().box_index();
+  }
+
+  /// What the last update did.
+  const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
+
+  std::string explanation() const { return tracker().explanation(); }
+  std::size_t bytes() const noexcept { return tracker().bytes(); }
+  const Workers& workers() const noexcept { return tracker().workers(); }
+  void set_workers(const Workers& workers) { tracker().set_workers(workers); }
+
+ private:
+  using Plain = Tracker<D, Real>;
+  using Shadowed = ShadowTracker<D, Real>;
+  using Either = std::variant<Plain, Shadowed>;
+
+  bool is_shadowed() const noexcept { return std::holds_alternative<Shadowed>(tracker_); }
+  const Plain& tracker() const noexcept {
+    return is_shadowed() ? std::get_if<Shadowed>(&tracker_)->tracker() : *std::get_if<Plain>(&tracker_);
+  }
+  Plain& tracker() noexcept {
+    return is_shadowed() ? std::get_if<Shadowed>(&tracker_)->tracker() : *std::get_if<Plain>(&tracker_);
+  }
+  void take(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+  std::vector<Pair> lead(const Taken& to);
+
+  bool is_own_;
+  Spec spec_;
+  Either tracker_;
+  std::optional<Statistics> statistics_;
+
+  /// The frame from which the next events start, if the tracker is at another one: restore() failed, and so
+  /// did the way back. Null otherwise.
+  std::unique_ptr<Taken> way_back_;
+};
+
+}  // namespace broadside::world

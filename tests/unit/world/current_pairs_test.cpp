@@ -1,0 +1,100 @@
+// CurrentPairs against a plain set.
+#include "world/current_pairs.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <set>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/world/random_pair.hpp"
+
+namespace broadside::world {
+namespace {
+
+/// A history of events, and what must hold after it.
+class CurrentPairsTest : public testing::Test {
+ protected:
+  void add(const std::set<Pair>& toggled) {
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    for (const Pair pair : toggled) (expected_.contains(pair) ? ended : begun).push_back(pair);
+    for (const Pair pair : ended) expected_.erase(pair);
+    expected_.insert(begun.begin(), begun.end());
+    pairs_.add(begun, ended, generations_);
+  }
+
+  void check() {
+    EXPECT_EQ(pairs_.size(), expected_.size());
+    std::vector<HandlePair> handles;
+    for (const Pair pair : expected_)
+      handles.push_back({{index(pair.first), generations_[index(pair.first)]},
+                         {index(pair.second), generations_[index(pair.second)]}});
+    ASSERT_TRUE(std::ranges::equal(pairs_.pairs(generations_), handles));
+  }
+
+  CurrentPairs pairs_{true};
+  std::set<Pair> expected_;
+  std::vector<std::uint32_t> generations_ = std::vector<std::uint32_t>(100, 1);
+};
+
+TEST_F(CurrentPairsTest, AgreesWithAPlainSet) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 500; ++i) {
+    std::set<Pair> toggled;
+    const std::uint32_t boxes = 2 + below(random, 98);
+    for (std::uint32_t count = below(random, i % 50 == 0 ? 3000 : 30); count > 0; --count)
+      toggled.insert(random_pair(random, boxes));
+    add(toggled);
+    if (below(random, 4) == 0) check();
+  }
+  check();
+}
+
+TEST_F(CurrentPairsTest, GivesAPairThatCameBackTheHandlesOfNow) {
+  const Pair pair{BoxId{3}, BoxId{5}};
+  add({pair, {BoxId{1}, BoxId{2}}, {BoxId{7}, BoxId{8}}});
+  check();
+  add({pair});
+  generations_[3] = 2;
+  add({pair});
+  check();
+}
+
+TEST_F(CurrentPairsTest, TakesInALogThatHasGrownLong) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 300; ++i) {
+    std::set<Pair> toggled;
+    for (int j = 0; j < 50; ++j) toggled.insert(random_pair(random, 100));
+    add(toggled);
+  }
+  EXPECT_LE(pairs_.bytes(), 200'000u) << "15,000 events of at most 4,950 pairs";
+  check();
+}
+
+TEST_F(CurrentPairsTest, TellsThePairsThatPersist) {
+  const Pair old{BoxId{1}, BoxId{2}};
+  const Pair fresh{BoxId{3}, BoxId{5}};
+  add({old});
+  add({fresh});
+  const std::vector<HandlePair> begun = {{{3, 1}, {5, 1}}};
+  const std::vector<HandlePair> expected = {{{1, 1}, {2, 1}}};
+  EXPECT_TRUE(std::ranges::equal(pairs_.persisting(begun, generations_), expected));
+  add({});
+  EXPECT_TRUE(std::ranges::equal(pairs_.persisting({}, generations_), pairs_.pairs(generations_)));
+}
+
+TEST(CurrentPairs, CountsPairsThatItDoesNotKeep) {
+  CurrentPairs pairs(false);
+  const std::vector<Pair> some = {{BoxId{0}, BoxId{1}}, {BoxId{0}, BoxId{2}}};
+  pairs.add(some, {}, {});
+  pairs.add({}, std::span(some).first(1), {});
+  EXPECT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs.bytes(), 0u);
+}
+
+}  // namespace
+}  // namespace broadside::world

@@ -1,0 +1,60 @@
+// PairGraph against a plain set.
+#include "world/pair_graph.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/world/random_pair.hpp"
+
+namespace broadside::world {
+namespace {
+
+TEST(PairGraph, AgreesWithAPlainSet) {
+  constexpr std::uint32_t boxes = 40;
+  std::mt19937 random(2);
+  PairGraph graph;
+  std::set<Pair> expected;
+  for (int i = 0; i < 20'000; ++i) {
+    const Pair pair = random_pair(random, boxes);
+    const PairGraph::EdgeId edge = graph.find(pair);
+    ASSERT_EQ(edge != PairGraph::none, expected.contains(pair));
+    if (edge != PairGraph::none) {
+      ASSERT_EQ(graph.mark(edge).stamp, key(pair) % 1000);
+      graph.erase(edge);
+      expected.erase(pair);
+    } else {
+      graph.mark(graph.insert(pair)).stamp = static_cast<std::uint32_t>(key(pair) % 1000);
+      expected.insert(pair);
+    }
+    if (i % 5000 == 4999) graph.shrink_to_fit();
+    const BoxId box{below(random, boxes)};
+    std::set<Pair> of_box;
+    graph.for_each_of(box, [&](PairGraph::EdgeId its) { of_box.insert(graph.pair(its)); });
+    std::set<Pair> expected_of_box;
+    std::ranges::copy_if(expected, std::inserter(expected_of_box, expected_of_box.end()),
+                         [box](Pair other) { return other.first == box || other.second == box; });
+    ASSERT_EQ(of_box, expected_of_box);
+  }
+  std::set<Pair> all;
+  graph.for_each([&](PairGraph::EdgeId edge) { all.insert(graph.pair(edge)); });
+  EXPECT_EQ(all, expected);
+  EXPECT_EQ(graph.size(), expected.size());
+}
+
+TEST(PairGraph, LosesABoxesEdgesWhileItVisitsThem) {
+  PairGraph graph;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    if (i != 7) graph.insert({BoxId{std::min(i, 7u)}, BoxId{std::max(i, 7u)}});
+  }
+  graph.for_each_of(BoxId{7}, [&](PairGraph::EdgeId edge) { graph.erase(edge); });
+  EXPECT_EQ(graph.size(), 0u);
+  graph.for_each_of(BoxId{3}, [](PairGraph::EdgeId) { ADD_FAILURE(); });
+}
+
+}  // namespace
+}  // namespace broadside::world
