@@ -350,28 +350,6 @@ class BROADSIDE_PUBLIC World {
     box_index().nearest(point, count, add, {options.filter, slot_of(options.except), options.max_distance});
   }
 
-  /// For compatibility with version 0.2: the filter and the excluded box as separate arguments.
-  template <typename Function>
-  bool overlapping(const Box<D, Real>& box, Function&& function, const Filter* filter,
-                   const Handle& except = {}) const {
-    return overlapping(box, function, QueryOptions{filter, except});
-  }
-  template <typename Function>
-  bool containing(const Point<D, Real>& point, Function&& function, const Filter* filter,
-                  const Handle& except = {}) const {
-    return overlapping({point, point}, function, QueryOptions{filter, except});
-  }
-  template <typename Shape, typename Function>
-  bool hits(const Shape& ray_or_cast, Function&& function, const Filter* filter,
-            const Handle& except = {}) const {
-    return hits(ray_or_cast, function, QueryOptions{filter, except});
-  }
-  template <typename Shape>
-  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const Filter* filter,
-                                           const Handle& except = {}) const {
-    return first_hit(ray_or_cast, QueryOptions{filter, except});
-  }
-
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
   /// the world changes.
   const BoxIndex<D, Real>& box_index() const;

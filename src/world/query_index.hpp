@@ -11,8 +11,8 @@
 
 #include "broadside/box.hpp"
 #include "broadside/filter.hpp"
-#include "broadside/pair.hpp"
 #include "broadside/index.hpp"
+#include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
 namespace broadside::world {

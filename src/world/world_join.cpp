@@ -7,9 +7,8 @@
 namespace broadside::world {
 
 template <int D, typename Real>
-void WorldJoin<D, Real>::join(const JoinSide<D, Real>& left, const JoinSide<D, Real>& right,
-                              const Spec& spec, const Workers& workers,
-                              detail::Output<HandlePair>& pairs) {
+void WorldJoin<D, Real>::join(const JoinSide<D, Real>& left, const JoinSide<D, Real>& right, const Spec& spec,
+                              const Workers& workers, detail::Output<HandlePair>& pairs) {
   // The kept finder serves one reader at a time.
   const std::unique_lock lock(in_progress_, std::try_to_lock);
   std::optional<Finder<D, Real>> another;

@@ -42,8 +42,8 @@ class WorldTracker {
  public:
   using Taken = TakenFrame<D, Real>;
 
-  /// A tracker by options.algorithm, or the caller's. Where options.shadow is set, brute force runs beside it.
-  /// Throws InvalidSpec.
+  /// A tracker by options.algorithm, or the caller's. Where options.shadow is set, brute force runs beside
+  /// it. Throws InvalidSpec.
   explicit WorldTracker(const WorldOptions& options);
   WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options);
 
