@@ -201,6 +201,11 @@ struct HandleNeighbour {
   friend constexpr bool operator==(const HandleNeighbour&, const HandleNeighbour&) = default;
 };
 
+namespace world {
+template <int D, typename Real>
+class WorldState;
+}  // namespace world
+
 /// A set of boxes that changes, and its overlapping pairs.
 ///
 /// Of boxes of floats or of doubles. What is done to boxes and filters shows its effect on pairs at the next
@@ -418,8 +423,6 @@ class BROADSIDE_PUBLIC World {
   void set_workers(const Workers& workers);
 
  private:
-  struct State;
-
   void join_into(const World& other, detail::Output<HandlePair>& pairs) const;
   void list_quarantined(detail::Output<Handle>& handles) const;
   void write_snapshot(detail::Output<std::byte>& bytes) const;
@@ -429,7 +432,7 @@ class BROADSIDE_PUBLIC World {
     return handle && contains(*handle) ? std::optional(BoxId{handle->slot}) : std::nullopt;
   }
 
-  std::unique_ptr<State> state_;
+  std::unique_ptr<world::WorldState<D, Real>> state_;
 };
 
 using World2 = World<2>;
