@@ -26,9 +26,14 @@ void FrameStates<D, Real>::take(const Frame<D, Real>& frame, bool takes_all, boo
   core::resize_by_eighths(flags_, size);
   changed_.clear();
   invalid_.clear();
+  const auto copy = [this, boxes = frame.boxes, filters = frame.filters](std::size_t place) {
+    flags_[place] = 1;
+    now_[place] = place < boxes.size() ? boxes[place] : absent_box<D, Real>();
+    if (!filters_now_.empty()) filters_now_[place] = place < filters.size() ? filters[place] : Filter{};
+  };
   const auto take_once = [&](std::size_t place) {
     if (flags_[place] != 0) return;
-    copy(frame, place);
+    copy(place);
     changed_.push_back(BoxId(place));
     if (core::is_invalid(now_[place])) {
       now_[place] = absent_box<D, Real>();
@@ -42,7 +47,7 @@ void FrameStates<D, Real>::take(const Frame<D, Real>& frame, bool takes_all, boo
   if (lists_once) {
     changed_.assign(frame.changed.begin(), frame.changed.end());
     parallel.for_ranges(changed_.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i) copy(frame, index(changed_[i]));
+      for (std::size_t i = range.begin; i < range.end; ++i) copy(index(changed_[i]));
     });
   } else {
     for (const BoxId id : frame.changed) {
@@ -51,14 +56,6 @@ void FrameStates<D, Real>::take(const Frame<D, Real>& frame, bool takes_all, boo
     }
   }
   for (std::size_t i = std::min(known_, frame.boxes.size()); i < size; ++i) take_once(i);
-}
-
-template <int D, typename Real>
-void FrameStates<D, Real>::copy(const Frame<D, Real>& frame, std::size_t place) {
-  flags_[place] = 1;
-  now_[place] = place < frame.boxes.size() ? frame.boxes[place] : absent_box<D, Real>();
-  if (!filters_now_.empty())
-    filters_now_[place] = place < frame.filters.size() ? frame.filters[place] : Filter{};
 }
 
 template <int D, typename Real>

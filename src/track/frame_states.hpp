@@ -46,8 +46,6 @@ class FrameStates {
   std::size_t bytes() const noexcept;
 
  private:
-  void copy(const Frame<D, Real>& frame, std::size_t place);
-
   std::vector<Box<D, Real>> before_;
   std::size_t known_ = 0;  // an update that failed may have left before_ longer
   std::vector<Box<D, Real>> now_;
