@@ -18,9 +18,9 @@
 
 namespace broadside::world {
 
-/// Where a world enlarges boxes, the tracker sees enlarged ones, and a new one only when the box has left it.
-/// `changed` lists slots whose box or filter differs from the last update's, `moved` those whose enlarged box
-/// or filter does, each slot once. Every array has a place for each slot.
+/// If a world enlarges boxes, its tracker sees the enlarged ones. A box gets a new enlarged box only when it
+/// has left the old one. Every array has a place for each slot. Two lists say what changed since the last
+/// update, each slot once: `changed` for boxes and filters, `moved` for enlarged boxes and filters.
 template <int D, typename Real>
 class BoxTable {
  public:
@@ -100,7 +100,7 @@ class BoxTable {
   /// At the end of an update: nothing has changed since. O(changes).
   void settle() noexcept;
 
-  /// Drops the slots from `slots` on, none of which is listed.
+  /// Drops the slots from `slots` on; no list may name one.
   void shorten(std::size_t slots) noexcept;
 
   void shrink_to_fit();

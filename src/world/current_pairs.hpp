@@ -34,9 +34,9 @@ class CurrentPairs {
   /// for the array, a pass over it. If it throws, nothing has changed.
   void add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations);
 
-  /// The pairs that hold, sorted by slots, and those of them that did not begin in the last update. Valid
-  /// until the next call of a member that is not const. Of pairs that are kept. O(events since it was last
-  /// asked), and a pass over the pairs if there were any.
+  /// The pairs that hold, sorted by slots, and the ones among them that did not begin in the last update.
+  /// Only if pairs are kept. Valid until the next call of a member that is not const. O(events since it was
+  /// last asked), and a pass over the pairs if there were any.
   std::span<const HandlePair> pairs(Generations generations) const;
   std::span<const HandlePair> persisting(std::span<const HandlePair> begun, Generations generations) const;
 

@@ -37,7 +37,7 @@ void PairRefiner<D, Real>::adopt(std::span<const HandlePair> pairs, std::size_t 
   for (const HandlePair& pair : pairs)
     graph.mark(graph.insert({BoxId{pair.first.slot}, BoxId{pair.second.slot}})) = {true, true, 0};
   state_.graph = std::move(graph);
-  // Events of an update that failed have found no way to the pairs yet, and now go the other one.
+  // Events that a failed update has left are not among the pairs yet. The next update refines them.
 }
 
 template <int D, typename Real>
@@ -100,7 +100,7 @@ void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
   candidates.clear();
 }
 
-/// Looks at the new edges, and at those of the boxes that changed.
+/// Reviews the new edges and the edges of the boxes that changed.
 template <int D, typename Real>
 void PairRefiner<D, Real>::review_changes(const BoxTable<D, Real>& boxes) {
   const PairGraph& graph = state_.graph;
@@ -115,7 +115,7 @@ void PairRefiner<D, Real>::review_changes(const BoxTable<D, Real>& boxes) {
   for (const std::uint32_t slot : state_.asked_slots) graph.for_each_of(BoxId{slot}, review_edge);
 }
 
-/// Looks at an edge that may have been looked at in this update already.
+/// Reviews an edge, unless this update has done so already.
 template <int D, typename Real>
 void PairRefiner<D, Real>::review_once(PairGraph::EdgeId edge, std::span<const Box<D, Real>> boxes) {
   PairGraph::Mark& mark = state_.graph.mark(edge);
@@ -152,7 +152,7 @@ void PairRefiner<D, Real>::review_all(std::span<const Box<D, Real>> boxes) {
   review_these();
 }
 
-/// Notes an edge, unless it stays as it was.
+/// Notes an edge if it may change.
 template <int D, typename Real>
 void PairRefiner<D, Real>::review(PairGraph::EdgeId edge, bool overlaps) {
   const PairGraph::Mark& mark = state_.graph.mark(edge);

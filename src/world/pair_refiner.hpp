@@ -21,16 +21,16 @@ namespace broadside::world {
 struct RefinerState {
   bool is_refining = false;  ///< whether the tracker's pairs are candidates; else they are the world's
   bool asks_about_all = false;
-  std::vector<std::uint32_t> asked_slots{};  ///< whose pairs the predicate is to be asked about again
+  std::vector<std::uint32_t> asked_slots{};  ///< slots to ask the predicate about again
   PairGraph graph{};                         ///< the candidates, if it is refining
   PairEvents candidates{};                   ///< the tracker's events that no step has taken yet
   PairEvents refined{};                      ///< events that are refined and not delivered
   std::vector<Pair> fresh{};                 ///< candidates that are new in the graph
 };
 
-/// Where a world enlarges boxes and tells exact pairs, or has a predicate, its tracker's pairs are
-/// candidates. They are kept in a graph, and each update looks at those that may hold now and did not before,
-/// or the other way round: O(candidates of the boxes that changed).
+/// If a world enlarges boxes and reports exact pairs, or if it has a predicate, the pairs of its tracker are
+/// only candidates. A graph keeps them. Each update reviews the candidates of the boxes that changed. Cost:
+/// O(reviewed candidates).
 ///
 /// Each step first does all that can fail and then changes something, so that an update that throws can be
 /// tried again: what its steps had done by then waits in `candidates`, `fresh` and `refined`.
@@ -52,7 +52,7 @@ class PairRefiner {
   /// The tracker's events, for the tracker to append to.
   PairEvents& candidates() noexcept { return state_.candidates; }
 
-  /// Takes the pairs that hold, all of which the tracker has found, as candidates that are accepted.
+  /// Before a first predicate: takes the pairs that hold as accepted candidates.
   void adopt(std::span<const HandlePair> pairs, std::size_t slots);
 
   /// Refines from now on, by `predicate`, which it swaps for the one before. It is to be asked about all
@@ -77,11 +77,11 @@ class PairRefiner {
 
   std::size_t bytes() const noexcept;
 
-  /// The candidates as of the tracker's last whole update, which are those that hold if it is not refining:
-  /// the given ones, sorted.
+  /// The pairs of the tracker's last whole update, sorted. If nothing is refined, they follow from `current`,
+  /// the sorted pairs that hold.
   std::vector<Pair> tracked(std::vector<Pair> current) const;
 
-  /// The candidates in the graph, or those of them that hold; sorted.
+  /// All candidates in the graph, and the candidates that hold; sorted.
   std::vector<Pair> edges() const;
   std::vector<Pair> held_edges() const;
 

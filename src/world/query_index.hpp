@@ -37,7 +37,7 @@ class QueryIndex {
     marked_.push_back(BoxId{slot});
   }
 
-  /// The same for many handles, which need no such room: those of slots that do not exist are skipped.
+  /// The same for many handles. Handles of slots that do not exist are skipped.
   void mark(std::span<const Handle> handles) noexcept {
     if (index_ == nullptr) return;
     for (const Handle handle : handles) {

@@ -12,7 +12,7 @@
 namespace broadside::world {
 
 /// Values by slot. Before use() every slot has T{} and the column takes no memory; afterwards it has a value
-/// for each slot that there is.
+/// for each slot.
 template <typename T>
 class SlotColumn {
  public:

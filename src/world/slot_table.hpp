@@ -57,7 +57,7 @@ class SlotTable {
            states_[handle.slot] == SlotState::live;
   }
 
-  /// Whether the slot may be part of a pair: of one that holds, or of one whose end is not reported yet.
+  /// Whether the slot may be part of a pair that holds, or of a pair that has ended and is not reported yet.
   bool is_paired(std::uint32_t slot) const noexcept {
     return states_[slot] == SlotState::live || states_[slot] == SlotState::removed;
   }
@@ -98,14 +98,14 @@ class SlotTable {
   /// Undoes the removals since there were `count` since the last update; their boxes are live again.
   void undo_removals(std::size_t count) noexcept;
 
-  /// The removals since the last update, and those that the last update reported.
+  /// The removals since the last update, and the removals that the last update reported.
   std::span<Removed> removed() noexcept { return removed_; }
   std::span<const Removed> removed() const noexcept { return removed_; }
   std::span<Removed> reported() noexcept { return reported_; }
   std::span<const Removed> reported() const noexcept { return reported_; }
 
-  /// At the end of an update: frees the slots whose removal the update before reported, and makes the removed
-  /// ones reported. O(removals).
+  /// At the end of an update: frees the slots that the last update reported, and takes the removed ones for
+  /// reported. O(removals).
   void recycle() noexcept;
 
   /// Drops free slots at the end once many slots are free (hysteresis: a few that come and go cost nothing).
@@ -118,7 +118,7 @@ class SlotTable {
   /// Gives back the memory that the slots do not need. O(slots).
   void shrink_to_fit();
 
-  /// The bytes of slots, and those of boxes that were removed.
+  /// The bytes of slots, and of removed boxes.
   std::size_t bytes() const noexcept;
   std::size_t removed_bytes() const noexcept;
 

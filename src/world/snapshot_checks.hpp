@@ -24,7 +24,7 @@ inline void expect(bool holds, const char* what) {
                         ", " + std::to_string(index(pair.second)) + ") " + what);
 }
 
-/// Checks decoded parts, each of which is right in itself. Everything throws InvalidSnapshot.
+/// Checks decoded parts against each other. SnapshotReader has checked each alone. Throws InvalidSnapshot.
 template <int D, typename Real>
 class SnapshotChecks {
  public:
@@ -38,7 +38,7 @@ class SnapshotChecks {
   /// What has happened, and what is still to be delivered. `is_settled`: nothing is, as the snapshot says.
   void check_pending(bool is_settled, bool asks_predicate) const;
 
-  /// The pairs found, delivered and not yet delivered against those of the tracker; sorted.
+  /// All pairs and events against the pairs of the tracker, which are sorted.
   void check_pairs(const std::vector<Pair>& tracked) const;
 
  private:

@@ -62,7 +62,7 @@ void SnapshotReader<D, Real>::read(const Parts& world, const WorldTracker<D, Rea
   read_changes();
   read_ignored();
   Parts& parts = *decoded_.parts;
-  // An update that failed is told by the flag alone where nothing is listed.
+  // If nothing is listed and the flag is not set, an update has failed.
   parts.update_failed = !is_set(snapshot::was_settled) && parts.is_settled();
   read_last_frame();
   const SnapshotChecks checks(parts);

@@ -1,9 +1,10 @@
-// WorldParts: the parts of a world that its future depends on, which are those that its snapshots hold.
+// WorldParts: the parts of a world that its future depends on. Its snapshots hold them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "broadside/pair.hpp"
