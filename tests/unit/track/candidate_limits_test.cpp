@@ -154,7 +154,8 @@ void approach_a_wall(const std::string& spec, std::size_t threads, bool at_once)
   EXPECT_GT(most.enlarged, 10U);
   EXPECT_LT(most.enlarged, 105U);
   EXPECT_LT(most.tests, 2 * first.tests + 64 * wall.boxes.size());
-  EXPECT_LT(most.allocated, static_cast<std::int64_t>(1500 * wall.boxes.size()));
+  // How many pairs of several threads wait for each other depends on how these are scheduled.
+  EXPECT_LT(most.allocated, static_cast<std::int64_t>((threads > 1 ? 3000 : 1500) * wall.boxes.size()));
   EXPECT_LT(most.bytes, first.bytes + 1500 * wall.boxes.size());
   EXPECT_LT(most.last_bytes, first.bytes + 100 * wall.boxes.size()) << "not given back";
 }
