@@ -235,8 +235,8 @@ inline void BulletBroadphase::resetPool(btDispatcher*) {
 inline void BulletBroadphase::printStats() {
   const WorldStatistics now = world_.statistics();
   std::printf("Broadside %s: %zu boxes, %zu pairs (%zu begun, %zu ended), %zu bytes. %s\n",
-              options_.algorithm.c_str(), now.boxes, now.pairs, now.begun, now.ended, now.bytes.total(),
-              now.explanation.c_str());
+              options_.algorithm.text().c_str(), now.boxes, now.pairs, now.begun, now.ended,
+              now.bytes.total(), now.explanation.c_str());
 }
 
 /// The proxy, if it is one of this broad phase that was not destroyed.
