@@ -51,9 +51,7 @@ CaseResult Laboratory::measure(const std::string& algorithms, const CaseRequest&
 
 CaseResult Laboratory::measure(const std::string& algorithms, const Scene& scene,
                                const CaseRequest& request) const {
-  const auto find = [&](std::string_view) {
-    return NamedScene{scene, {.name = request.scene, .values = {}}};
-  };
+  const auto find = [&](std::string_view) { return NamedScene{scene, Spec(request.scene, {})}; };
   return measure(*catalogue_, algorithms, request, effort(), find);
 }
 
