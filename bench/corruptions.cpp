@@ -2,6 +2,7 @@
 // at random, a pair dropped, doubled or swapped for another in one search or frame, and counts how many of
 // these `compare` catches: where it checks by the definition, where it cross-checks, and where the reference
 // has the same fault. Ends with 1 if one of an algorithm's own faults is missed.
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 #include <string>

@@ -1,4 +1,5 @@
 // Motion, claim by claim: motion PART... [options], each part a table. `motion --help` lists them.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>

@@ -2,6 +2,7 @@
 #include "broadside/distributed_world.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>

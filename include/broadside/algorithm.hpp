@@ -51,12 +51,12 @@ class BROADSIDE_PUBLIC Settings {
   Settings(const Spec& spec, std::span<const Tunable> tunables);
 
   /// Whether the tunable is left for the algorithm to choose.
-  bool is_auto(std::string_view tunable) const { return text(tunable) == "auto"; }
+  [[nodiscard]] bool is_auto(std::string_view tunable) const { return text(tunable) == "auto"; }
 
   /// The value of a tunable, which must exist and not be "auto".
-  double number(std::string_view tunable) const;
+  [[nodiscard]] double number(std::string_view tunable) const;
   std::int64_t integer(std::string_view tunable) const;
-  const std::string& text(std::string_view tunable) const { return value(tunable).text(); }
+  [[nodiscard]] const std::string& text(std::string_view tunable) const { return value(tunable).text(); }
 
  private:
   const SpecValue& value(std::string_view tunable) const;
@@ -68,7 +68,7 @@ class BROADSIDE_PUBLIC Settings {
 enum class AlgorithmKind { own, paper, literature, peer };
 
 /// "own", "paper", "literature" or "peer".
-BROADSIDE_PUBLIC std::string_view name(AlgorithmKind kind) noexcept;
+[[nodiscard]] BROADSIDE_PUBLIC std::string_view name(AlgorithmKind kind) noexcept;
 
 /// The cost of finding all pairs anew, in nanoseconds of one machine: only ratios matter.
 struct FindCosts {
@@ -143,25 +143,25 @@ struct Algorithm {
 
   /// The same by dimension.
   template <int D>
-  const MakeSearcher<D>& searcher() const noexcept {
+  [[nodiscard]] const MakeSearcher<D>& searcher() const noexcept {
     if constexpr (D == 2)
       return searcher_2d;
     else
       return searcher_3d;
   }
   template <int D>
-  std::span<const FollowerChoice<D>> followers() const noexcept {
+  [[nodiscard]] std::span<const FollowerChoice<D>> followers() const noexcept {
     if constexpr (D == 2)
       return followers_2d;
     else
       return followers_3d;
   }
   template <int D>
-  const FindCosts& find_costs() const noexcept {
+  [[nodiscard]] const FindCosts& find_costs() const noexcept {
     return D == 2 ? find_costs_2d : find_costs_3d;
   }
   template <int D>
-  const MakeOutline<D>& outline() const noexcept {
+  [[nodiscard]] const MakeOutline<D>& outline() const noexcept {
     if constexpr (D == 2)
       return outline_2d;
     else
@@ -169,18 +169,18 @@ struct Algorithm {
   }
 
   /// Whether it does `dimension`.
-  bool has_dimension(int dimension) const {
+  [[nodiscard]] bool has_dimension(int dimension) const {
     return dimension == 2 ? bool(searcher_2d) : dimension == 3 && bool(searcher_3d);
   }
 };
 
 /// Whether it can use several threads: whether it has the tunable `threads`, a whole number, which
 /// Finder and Tracker make the number of their Workers.
-BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
+[[nodiscard]] BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
 
 /// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
 /// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
-BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
+[[nodiscard]] BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
 
 /// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by
 /// its name. Throws InvalidSpec if the name is taken, or is not of lower-case letters, digits and
@@ -193,7 +193,7 @@ BROADSIDE_PUBLIC void register_algorithm(Algorithm algorithm);
 
 /// The algorithm called `name` among `among`, or a null pointer. A name of an earlier version finds what took
 /// its place: `hierarchical_grid` is `grid`.
-BROADSIDE_PUBLIC const Algorithm* find_algorithm(std::string_view name,
-                                                 std::span<const Algorithm> among = algorithms());
+[[nodiscard]] BROADSIDE_PUBLIC const Algorithm* find_algorithm(
+    std::string_view name, std::span<const Algorithm> among = algorithms());
 
 }  // namespace broadside

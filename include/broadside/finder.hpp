@@ -89,20 +89,20 @@ class BROADSIDE_PUBLIC Finder final {
 
   /// What find() and find_between() do about invalid boxes: they throw, unless set_bad_input() says
   /// otherwise.
-  BadInput bad_input() const noexcept;
+  [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
   /// The places of the last call's invalid boxes, ascending, where they are quarantined; those of a right set
   /// are counted on from the end of the left one. Valid until the next call.
-  std::span<const BoxId> quarantined() const noexcept;
+  [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
   /// The threads to search with: one, unless the spec or set_workers() says otherwise. An algorithm without
   /// the tunable `threads` uses the calling thread alone.
-  const Workers& workers() const noexcept;
+  [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
   /// If the algorithm is one that chooses: what it chose for the last search, and why, in a sentence.
-  std::string explanation() const;
+  [[nodiscard]] std::string explanation() const;
 
  private:
   class State;

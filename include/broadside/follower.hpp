@@ -40,8 +40,8 @@ struct Change {
   const Workers& workers = default_workers;
 
   /// Whether the pair held in the frame before, and whether it holds in this one.
-  bool held(BoxId a, BoxId b) const noexcept { return holds(before, filters_before, a, b); }
-  bool holds(BoxId a, BoxId b) const noexcept { return holds(now, filters_now, a, b); }
+  [[nodiscard]] bool held(BoxId a, BoxId b) const noexcept { return holds(before, filters_before, a, b); }
+  [[nodiscard]] bool holds(BoxId a, BoxId b) const noexcept { return holds(now, filters_now, a, b); }
 
   /// Writes the pair to the sink it belongs to: `begun` if it holds and did not, `ended` if it did and does
   /// not, none if nothing changed.
@@ -82,10 +82,10 @@ class BROADSIDE_PUBLIC Follower {
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
 
   /// The boxes of the last frame for queries (see queries.hpp), if the follower keeps such an index anyway.
-  virtual const BoxIndex<D, float>* box_index() const noexcept { return nullptr; }
+  [[nodiscard]] virtual const BoxIndex<D, float>* box_index() const noexcept { return nullptr; }
 
   /// The bytes kept from frame to frame.
-  virtual std::size_t bytes() const noexcept { return 0; }
+  [[nodiscard]] virtual std::size_t bytes() const noexcept { return 0; }
 };
 
 }  // namespace broadside

@@ -87,7 +87,7 @@ class BROADSIDE_PUBLIC Searcher {
   virtual std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) = 0;
 
   /// If the algorithm is one that chooses: what it chose for the last search, and why, in a sentence.
-  virtual std::string explanation() const { return {}; }
+  [[nodiscard]] virtual std::string explanation() const { return {}; }
 };
 
 }  // namespace broadside

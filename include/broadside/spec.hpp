@@ -24,11 +24,11 @@ class BROADSIDE_PUBLIC SpecValue {
   SpecValue(double number);
 
   /// The text; of a number, the shortest one that reads back to it.
-  const std::string& text() const noexcept { return text_; }
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
   operator const std::string&() const noexcept { return text_; }
 
   /// The number; empty if the value is a text, which Settings reads.
-  const std::optional<double>& number() const noexcept { return number_; }
+  [[nodiscard]] const std::optional<double>& number() const noexcept { return number_; }
 
   friend bool operator==(const SpecValue& a, const SpecValue& b) noexcept { return a.text_ == b.text_; }
 
@@ -56,7 +56,7 @@ struct BROADSIDE_PUBLIC Spec {
   Spec(const std::string& text) : Spec(std::string_view(text)) {}
 
   /// The text that reads back to the same spec.
-  std::string text() const;
+  [[nodiscard]] std::string text() const;
 
   friend bool operator==(const Spec&, const Spec&) = default;
 

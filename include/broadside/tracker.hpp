@@ -108,30 +108,30 @@ class BROADSIDE_PUBLIC Tracker final {
 
   /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
   /// otherwise.
-  BadInput bad_input() const noexcept;
+  [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
   /// The places whose boxes have been invalid since they last changed, ascending, and so count as absent.
   /// Valid until the next update.
-  std::span<const BoxId> quarantined() const noexcept;
+  [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
   /// The frame that the last whole update() took, with nothing listed: what the next one's events start from.
   /// Without boxes before the first. Valid until the next update().
-  Frame<D, Real> last_frame() const noexcept;
+  [[nodiscard]] Frame<D, Real> last_frame() const noexcept;
 
   /// The boxes of the last whole update() for queries (see queries.hpp), where the algorithm keeps such an
   /// index anyway; else null. Valid until the next update().
-  const BoxIndex<D, Real>* box_index() const noexcept;
+  [[nodiscard]] const BoxIndex<D, Real>* box_index() const noexcept;
 
   /// Which way the last update() went and, if the algorithm is one that chooses, what it chose; in a
   /// sentence. Empty for an algorithm that has one way.
-  std::string explanation() const;
+  [[nodiscard]] std::string explanation() const;
 
   /// The bytes it holds: what every tracker keeps, and what the algorithm says that it keeps.
-  std::size_t bytes() const noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
   /// As a Finder's.
-  const Workers& workers() const noexcept;
+  [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
  private:

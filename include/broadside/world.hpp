@@ -160,7 +160,9 @@ struct WorldBytes {
   std::size_t tracker = 0;  ///< what the tracker says: its copies of boxes and filters, and its structure
   std::size_t queries = 0;  ///< the index that queries are asked of, where it is not the tracker's
 
-  std::size_t total() const noexcept { return boxes + slots + filters + pairs + tracker + queries; }
+  [[nodiscard]] std::size_t total() const noexcept {
+    return boxes + slots + filters + pairs + tracker + queries;
+  }
 };
 
 /// What World::statistics() tells.
@@ -266,7 +268,7 @@ class BROADSIDE_PUBLIC World {
   /// InvalidHandle, and std::invalid_argument for a box with itself.
   void ignore(Handle a, Handle b);
   void unignore(Handle a, Handle b);
-  bool is_ignored(Handle a, Handle b) const;
+  [[nodiscard]] bool is_ignored(Handle a, Handle b) const;
 
   /// Has update() ask `predicate` about each pair before it begins, in the order of the slots, and in this
   /// thread; from the next update on, and then about all current pairs as well. It may read the world and
@@ -287,8 +289,8 @@ class BROADSIDE_PUBLIC World {
   /// The pairs that hold since the last update, sorted by slots, and those of them that did not begin in it.
   /// Valid until the next update. O(events since it was last asked), and one pass over the pairs if there
   /// were any. Throws std::logic_error in a world without `keep_pairs`.
-  std::span<const HandlePair> pairs() const;
-  std::span<const HandlePair> persisting() const;
+  [[nodiscard]] std::span<const HandlePair> pairs() const;
+  [[nodiscard]] std::span<const HandlePair> persisting() const;
 
   /// Sets each flag to 1 if the pair's boxes themselves overlap, as they are now, else to 0; a pair with a
   /// box that is not in the world does not. Filters and ignored pairs count for nothing. Some nanoseconds a
@@ -330,7 +332,8 @@ class BROADSIDE_PUBLIC World {
     return box_index().hits(ray_or_cast, call, {options.filter, slot_of(options.except)});
   }
   template <typename Shape>
-  std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast, const QueryOptions& options = {}) const {
+  [[nodiscard]] std::optional<HandleHit<Real>> first_hit(const Shape& ray_or_cast,
+                                                         const QueryOptions& options = {}) const {
     const std::optional<Hit<Real>> hit =
         box_index().first_hit(ray_or_cast, {options.filter, slot_of(options.except)});
     if (!hit) return std::nullopt;
@@ -357,27 +360,27 @@ class BROADSIDE_PUBLIC World {
 
   /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
   /// the world changes.
-  const BoxIndex<D, Real>& box_index() const;
-  Handle handle_of(BoxId slot) const noexcept;
+  [[nodiscard]] const BoxIndex<D, Real>& box_index() const;
+  [[nodiscard]] Handle handle_of(BoxId slot) const noexcept;
 
   /// Whether the box is in the world: added and not removed.
-  bool contains(Handle handle) const noexcept;
+  [[nodiscard]] bool contains(Handle handle) const noexcept;
 
   /// The box as it was last set. A removed one stays readable until the update after the one that reported
   /// its removal, so that the code that handles its ended pairs can look at it; so do its filter and user
   /// data. The reference holds until the next add(), remove() or update(). Throws InvalidHandle.
-  const Box<D, Real>& box(Handle handle) const;
+  [[nodiscard]] const Box<D, Real>& box(Handle handle) const;
 
   /// The enlarged box that the tracker sees; the box itself where boxes are not enlarged. Throws
   /// InvalidHandle if it is not in the world.
-  const Box<D, Real>& enlarged_box(Handle handle) const;
-  Filter filter(Handle handle) const;
+  [[nodiscard]] const Box<D, Real>& enlarged_box(Handle handle) const;
+  [[nodiscard]] Filter filter(Handle handle) const;
   std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);
 
   /// The boxes whose values were invalid when they were last set, by slot: where WorldOptions::bad_input is
   /// to quarantine them. box() gives the absent box for them. O(slots).
-  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
+  [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
     std::vector<Handle> handles;
     detail::OutputTo output(handles);
     list_quarantined(output);
@@ -385,14 +388,14 @@ class BROADSIDE_PUBLIC World {
   }
 
   /// The number of boxes in the world.
-  std::size_t size() const noexcept;
+  [[nodiscard]] std::size_t size() const noexcept;
 
   /// The number of slots, free ones among them: the slot of each handle of a box in the world is below it, so
   /// that arrays of your own by slot need no more places.
-  std::size_t slots() const noexcept;
+  [[nodiscard]] std::size_t slots() const noexcept;
 
   /// What the world holds and what the last update did. O(1), but for what the tracker says of itself.
-  WorldStatistics statistics() const;
+  [[nodiscard]] WorldStatistics statistics() const;
 
   /// Gives memory back that the boxes there are do not need. It costs one build; update() does it by itself
   /// when some three quarters of the slots are gone. A tracker of the caller's keeps what it has.
@@ -402,7 +405,7 @@ class BROADSIDE_PUBLIC World {
   /// caller's and the options bad_input, shadow and first_generation, which stay those of the world that
   /// restores. At any time, also between changes and the update that tells of them. O(slots + pairs).
   /// docs/snapshot-format.md describes the bytes, which are the same on every machine.
-  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
+  [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
     std::vector<std::byte> bytes;
     detail::OutputTo output(bytes);
     write_snapshot(output);
@@ -419,7 +422,7 @@ class BROADSIDE_PUBLIC World {
   void restore(std::span<const std::byte> snapshot);
 
   /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
-  const Workers& workers() const noexcept;
+  [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
  private:

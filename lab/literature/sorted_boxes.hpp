@@ -5,6 +5,7 @@
 // tested against eight others at once (part 15, with Giesen's kernel for AVX).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

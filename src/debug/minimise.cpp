@@ -2,6 +2,7 @@
 #include "broadside/debug/minimise.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>

@@ -2,6 +2,7 @@
 // one, in the same order, on every instruction set.
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

@@ -1,6 +1,7 @@
 // Worlds and queries in every floating-point environment: they tell and keep what they do in the default one.
 #include "broadside/world.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

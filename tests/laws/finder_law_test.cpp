@@ -1,4 +1,5 @@
 // The law of finders: exactly the overlapping pairs, each once, whatever the boxes and whatever came before.
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 //
 // ctest runs them with one seed, so that they pass or fail alike everywhere. Run laws_tests itself for
 // another seed each time, which it prints.
+#include <algorithm>
 #include <string>
 #include <vector>
 

@@ -1,4 +1,5 @@
 // An index of boxes that runs out of memory: it finds nothing until an update ends, and then all again.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>

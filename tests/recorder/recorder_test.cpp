@@ -2,6 +2,7 @@
 // failed.
 #include "broadside/recorder.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>

@@ -142,7 +142,7 @@ class ChangingInput : public Law {
       finder.find_across(all, boxes.size() / 3, sink);
     });
     begin();
-    try_to([&] { outline<D, Real>(spec().text(), all, finder.workers()); });
+    try_to([&] { static_cast<void>(outline<D, Real>(spec().text(), all, finder.workers())); });
   }
 
   template <int D, typename Real>

@@ -1,7 +1,9 @@
 // Parallel: work shared among workers gives what one worker gives.
 #include "core/parallel.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// History: boxes that change from frame to frame, kept so that they can be played again.
+// History: boxes that change from frame to frame, stored so that they can be replayed.
 #pragma once
 
 #include <algorithm>
@@ -19,14 +19,14 @@ namespace broadside {
 template <int D, typename Real = float>
 struct Step {
   std::size_t size;                    ///< the number of boxes from this frame on
-  detail::Vector<BoxId> changed;       ///< places whose boxes change, each once
-  detail::Vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent where one is removed
+  detail::Vector<BoxId> changed;       ///< the ids of boxes that change, each once
+  detail::Vector<Box<D, Real>> boxes;  ///< their new boxes, in the same order; absent if a box is removed
 
-  detail::Vector<Filter> filters{};  ///< their new filters, likewise; empty if all keep their filters
-  detail::Vector<Pair> toggled{};    ///< pairs that become ignored if they were not, and the other way round
+  detail::Vector<Filter> filters{};  ///< their new filters, in the same order; empty if no filter changes
+  detail::Vector<Pair> toggled{};    ///< pairs that become ignored, or cease to be ignored
 };
 
-/// The boxes of a first frame and the steps to the following ones; no steps where nothing moves.
+/// The boxes of a first frame, and the steps to the frames that follow.
 template <int D, typename Real = float>
 struct History {
   detail::Vector<Box<D, Real>> boxes;
@@ -46,15 +46,15 @@ void apply(const Step<D, Real>& step, Boxes& boxes) {
   }
 }
 
-/// How many places there are in the frame that has the most.
+/// The number of boxes in the largest frame.
 template <int D, typename Real>
-std::size_t places_of(const History<D, Real>& history) {
+[[nodiscard]] std::size_t places_of(const History<D, Real>& history) {
   std::size_t places = history.boxes.size();
   for (const Step<D, Real>& step : history.steps) places = std::max(places, step.size);
   return places;
 }
 
-/// A frame of a history, and then the next one.
+/// Replays a history, frame by frame.
 ///
 ///     Replay replay(history);
 ///     tracker.update(replay.frame(), begun, ended);
@@ -68,10 +68,12 @@ class BROADSIDE_PUBLIC Replay {
     for (const Pair pair : history.ignored) ignored_.insert(pair);
   }
 
-  /// The frame as a tracker takes it. Valid until the next call of next().
-  Frame<D, Real> frame() const noexcept { return {boxes_, changed_, filters_, &ignored_, ignored_changed_}; }
+  /// The current frame. Valid until next() is called.
+  [[nodiscard]] Frame<D, Real> frame() const noexcept {
+    return {boxes_, changed_, filters_, &ignored_, ignored_changed_};
+  }
 
-  /// The frame after the step, which is copied.
+  /// Applies the step, which is copied, and returns the new frame.
   Frame<D, Real> next(const Step<D, Real>& step);
 
  private:
@@ -82,9 +84,10 @@ class BROADSIDE_PUBLIC Replay {
   detail::Vector<Pair> ignored_changed_;
 };
 
-/// A history that begins with this frame and goes on with these steps.
+/// The history that begins with this frame and continues with these steps.
 template <int D, typename Real>
-History<D, Real> history_of(const Frame<D, Real>& frame, std::vector<Step<D, Real>> steps = {}) {
+[[nodiscard]] History<D, Real> history_of(const Frame<D, Real>& frame,
+                                          std::vector<Step<D, Real>> steps = {}) {
   History<D, Real> history{{frame.boxes.begin(), frame.boxes.end()},
                            std::move(steps),
                            {frame.filters.begin(), frame.filters.end()},
@@ -94,9 +97,10 @@ History<D, Real> history_of(const Frame<D, Real>& frame, std::vector<Step<D, Rea
   return history;
 }
 
-/// The history for people to read, a line a box, with as many boxes of a frame and as many frames as `most`
-/// says; what is left out is counted.
+/// The history as text, one line per box. It shows at most `max_items` frames, and as many boxes per frame,
+/// and counts what it leaves out.
 template <int D, typename Real>
-BROADSIDE_PUBLIC std::string text_of(const History<D, Real>& history, std::size_t most = 20);
+[[nodiscard]] BROADSIDE_PUBLIC std::string text_of(const History<D, Real>& history,
+                                                   std::size_t max_items = 20);
 
 }  // namespace broadside

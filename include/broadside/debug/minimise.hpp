@@ -1,5 +1,5 @@
-// Failing inputs made small by delta debugging (Zeller and Hildebrandt 2002): whatever can go goes, as long
-// as the failure remains.
+// minimise(): reduces failing inputs by delta debugging (Zeller and Hildebrandt 2002). It removes whatever
+// can be removed while the failure remains.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace broadside {
 
-/// Whether boxes, or a history of them, still fail. What it throws ends the search.
+/// Returns whether boxes, or a history of boxes, still fail. An exception from it ends the search.
 template <int D, typename Real>
 using BoxesFail = std::type_identity_t<std::function<bool(std::span<const Box<D, Real>>)>>;
 template <int D, typename Real>
@@ -27,22 +27,25 @@ BROADSIDE_PUBLIC std::size_t minimise(std::span<Box<D, Real>> boxes, const Boxes
                                       const std::function<bool()>& stop);
 }  // namespace detail
 
-/// Drops boxes without which `boxes`, which fail, still fail; halves first, then ever smaller parts, down to
-/// single boxes. None that is left can go alone. Calls `fails` about as often as there are boxes left times
-/// the logarithm of how many there were. `stop`, where there is one, ends it early.
+/// Removes boxes while the others still fail: first halves, then ever smaller parts, down to single boxes.
+/// Without any one of the boxes that are left, the others no longer fail. `boxes` must fail. Calls `fails`
+/// about m log n times, for m boxes left of n. If `stop` is given, the search ends early when it returns
+/// true.
 template <int D, typename Real>
 void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
               const std::function<bool()>& stop = {}) {
   boxes.resize(detail::minimise<D, Real>(boxes, fails, stop));
 }
 
-/// Likewise a history: drops frames, places of the array (those behind move up), changes, and ignored pairs.
+/// Reduces a history in the same way: removes frames, boxes (the ids of later boxes decrease), changes, and
+/// ignored pairs.
 template <int D, typename Real>
 BROADSIDE_PUBLIC void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
                                const std::function<bool()>& stop = {});
 
-/// The history of these places, which are ascending, alone; they are counted anew.
+/// The history of only these boxes, numbered from 0. `places` must be ascending.
 template <int D, typename Real>
-BROADSIDE_PUBLIC History<D, Real> only(std::span<const std::size_t> places, const History<D, Real>& history);
+[[nodiscard]] BROADSIDE_PUBLIC History<D, Real> only(std::span<const std::size_t> places,
+                                                     const History<D, Real>& history);
 
 }  // namespace broadside

@@ -20,21 +20,21 @@
 
 namespace broadside {
 
-/// A tracker whose events are not those that the definition demands. The text names the pair, the frame and
-/// both boxes, says what was expected, and ends with a short history that shows the fault.
+/// Thrown if a tracker's events differ from the definition. The message names the pair, the frame and both
+/// boxes, says what was expected, and ends with a short history that shows the fault.
 class BROADSIDE_PUBLIC Divergence : public std::logic_error {
  public:
   Divergence(const std::string& message, Pair pair, std::size_t frame, bool holds)
       : std::logic_error(message), pair_(pair), frame_(frame), holds_(holds) {}
 
-  /// The first pair, by ids, that was reported wrongly.
-  Pair pair() const noexcept { return pair_; }
+  /// The first wrong pair, in order of ids.
+  [[nodiscard]] Pair pair() const noexcept { return pair_; }
 
-  /// In which frame, counted from 0, which is the ShadowTracker's first.
-  std::size_t frame() const noexcept { return frame_; }
+  /// The frame, counted from the ShadowTracker's first frame, which is 0.
+  [[nodiscard]] std::size_t frame() const noexcept { return frame_; }
 
   /// Whether the pair holds in that frame, by the definition.
-  bool holds() const noexcept { return holds_; }
+  [[nodiscard]] bool holds() const noexcept { return holds_; }
 
  private:
   Pair pair_;
@@ -53,9 +53,9 @@ class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
 
   /// If reproduced(): the smallest history found on which a new tracker fails. Boxes are counted anew.
   /// Otherwise what the two boxes of the pair, now 0 and 1, did in the frames that were kept.
-  const History<D, Real>& history() const noexcept { return *history_; }
+  [[nodiscard]] const History<D, Real>& history() const noexcept { return *history_; }
 
-  bool reproduced() const noexcept { return reproduced_; }
+  [[nodiscard]] bool reproduced() const noexcept { return reproduced_; }
 
  private:
   std::shared_ptr<const History<D, Real>> history_;  // shared, so that a copy does not throw
@@ -99,7 +99,7 @@ class BROADSIDE_PUBLIC ShadowTracker final {
   std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
   /// The tracker that is shadowed: for its explanation, its bytes, its workers.
-  const Tracker<D, Real>& tracker() const noexcept;
+  [[nodiscard]] const Tracker<D, Real>& tracker() const noexcept;
   Tracker<D, Real>& tracker() noexcept;
 
  private:

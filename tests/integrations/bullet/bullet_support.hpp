@@ -1,6 +1,7 @@
 // What the tests of BulletBroadphase share: proxies by number, and the pairs of a cache.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,5 @@
 // The manager's pairs are those of FCL's own managers, whatever is done to it.
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <thread>

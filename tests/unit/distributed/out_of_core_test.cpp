@@ -2,7 +2,9 @@
 // happens to their files.
 #include "broadside/out_of_core.hpp"
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 
 #include <gmock/gmock.h>

@@ -1,6 +1,7 @@
 // Parts of space: every place in one, every box in all that it touches, every pair in one.
 #include "broadside/partition.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <stdexcept>

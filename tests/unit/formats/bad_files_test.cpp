@@ -1,4 +1,5 @@
 // Bad input: every reader refuses every fault by name and place, and no writer leaves half a file behind.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <memory>

@@ -1,5 +1,6 @@
 // The plain searches against the definition, whatever is left out; and what the experiment makes of tables
 // made by hand.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
 // The list of experiments, and their judges on what a machine has measured.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Our own claim: what the experiment makes of tables made by hand.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

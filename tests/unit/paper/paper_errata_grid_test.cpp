@@ -1,5 +1,6 @@
 // docs/paper/errata.md on Algorithms 1 to 4: each printed listing goes wrong on its input, the mended one
 // does not.
+#include <algorithm>
 #include <cmath>
 
 #include "paper_errata.hpp"

@@ -1,6 +1,7 @@
 // Handles as keys of hash tables.
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
