@@ -1,4 +1,6 @@
 // Families of boxes that are long or flat: plates, shelves, lines and rows.
+#include <algorithm>
+
 #include "lab/worst/boxes.hpp"
 #include "lab/worst/family.hpp"
 

@@ -1,4 +1,6 @@
 // Families made of other families: samples that are fooled, mixtures, and crowds of two sets.
+#include <algorithm>
+
 #include "lab/worst/boxes.hpp"
 #include "lab/worst/family.hpp"
 

@@ -1,4 +1,6 @@
 // Families of boxes within boxes, and clusters within clusters.
+#include <algorithm>
+
 #include "lab/worst/boxes.hpp"
 #include "lab/worst/family.hpp"
 

@@ -1,4 +1,6 @@
 // Families of even boxes, and of boxes whose sizes or places differ by orders of magnitude.
+#include <algorithm>
+
 #include "lab/worst/boxes.hpp"
 #include "lab/worst/family.hpp"
 

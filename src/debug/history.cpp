@@ -1,6 +1,8 @@
 // Histories played again, and written for people.
 #include "broadside/debug/history.hpp"
 
+#include <algorithm>
+
 #include "interface/box_text.hpp"
 
 namespace broadside {

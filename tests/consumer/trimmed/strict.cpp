@@ -1,13 +1,67 @@
-// The umbrella, which is every public header but the recorder, under the flags that engines compile with: see
+// Each public header, and what is inline in it, under the flags that engines compile with: see
 // CMakeLists.txt.
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include <broadside/broadside.hpp>
+#include <broadside/debug/history.hpp>
+#include <broadside/debug/minimise.hpp>
+#include <broadside/debug/outline.hpp>
+#include <broadside/debug/shadow.hpp>
 
-int main() {
-  const std::vector<broadside::Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}};
-  broadside::World2 world("grid");
-  world.add({{0, 0}, {1, 1}});
-  return broadside::find_pairs(boxes, {.algorithm = "grid"}).size() == 1 && world.update().begun.empty() ? 0
-                                                                                                         : 1;
+namespace {
+
+using namespace broadside;
+
+struct Wall {
+  Box2 box;
+};
+
+/// Calls the inline functions and templates, so that they are compiled.
+std::size_t all_calls(const std::vector<Box2>& boxes) {
+  std::size_t found = 0;
+  const auto count = [&found](auto&&...) { ++found; };
+  find_pairs(boxes, count, {.algorithm = "grid"});
+  found += find_pairs(boxes, boxes, {.algorithm = "grid"}).size();
+  const std::vector<Wall> walls(2);
+  found += find_pairs(boxes_of(walls, &Wall::box), {.algorithm = GridOptions{.cell = 2}}).size();
+
+  Finder<2> finder("grid");
+  finder.find(boxes, count);
+  Tracker<2> tracker("grid");
+  tracker.update({.boxes = boxes}, count, count);
+
+  BoxIndex<2> index;
+  index.update({.boxes = boxes});
+  index.overlapping(boxes[0], count);
+  index.hits(Ray<2>{{0, 0}, {1, 0}}, count);
+  found += index.nearest({0, 0}, 1).size();
+
+  World2 world("grid");
+  const Handle handle = world.add(boxes[0]);
+  world.overlapping(boxes[0], [](Handle) { return true; });
+  world.update();
+  found += world.nearest({0, 0}, 1, {.except = handle}).size() + world.snapshot().size();
+
+  IgnoredPairs ignored;
+  ignored.insert({BoxId(0), BoxId(1)});
+  ignored.for_each(count);
+  std::vector<Pair> pairs;
+  std::vector<Pair> scratch;
+  PairCollector collector(pairs);
+  collector.add(BoxId(1), BoxId(0));
+  collector.flush();
+  sort_pairs(pairs, scratch);
+
+  const History<2> history = history_of(Frame<2>{.boxes = boxes});
+  ShadowTracker<2> shadow("grid");
+  shadow.update(Replay(history).frame(), collector, collector);
+  std::vector<Box2> few = boxes;
+  minimise(few, [](std::span<const Box2> some) { return !some.empty(); });
+  return found + outline(Spec("grid"), std::span<const Box2>(few)).levels.size();
 }
+
+}  // namespace
+
+int main() { return all_calls({{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}}) > 0 ? 0 : 1; }
