@@ -126,6 +126,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   /// Checks the boxes, and returns how many are absent or quarantined. Each range that throws names its first
   /// box at fault; the first such range's exception is the one thrown.
   std::size_t count_absent(std::span<const Box<D, Real>> boxes, const char* which) const {
+    if (workers.threads == 1) return core::check_boxes(boxes, 0, bad_input, which);
     core::Parallel parallel;
     parallel.start(workers, boxes.size());
     std::atomic<std::size_t> absent = 0;
