@@ -117,10 +117,6 @@ class BROADSIDE_PUBLIC PairSink {
   /// find(). Throws std::logic_error if it is not overridden.
   virtual void merge(PairSink& clone);
 
-  /// For the library, which shares the work of its own filters among threads: this sink, if it is one of
-  /// them.
-  virtual core::FilterSink* as_filter() noexcept { return nullptr; }
-
  protected:
   PairSink() = default;
   /// A copy has the same pairs in its buffer.
@@ -132,7 +128,12 @@ class BROADSIDE_PUBLIC PairSink {
   }
 
  private:
+  friend class core::FilterSink;
+
   virtual void consume(std::span<const Pair> pairs) = 0;
+
+  /// This sink if it is one of the library's filters, whose work threads share.
+  virtual core::FilterSink* as_filter() noexcept { return nullptr; }
 
   std::size_t used_ = 0;
   std::array<Pair, 2 * max_room> buffer_;

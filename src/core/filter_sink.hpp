@@ -14,8 +14,10 @@ namespace broadside::core {
 /// threads can filter at the same time, each with a filter of its own onto a target of its own.
 class FilterSink : public PairSink {
  public:
+  /// The sink if it is a filter, else null.
+  static FilterSink* of(PairSink& sink) noexcept { return sink.as_filter(); }
+
   PairSink& target() const noexcept { return *target_; }
-  FilterSink* as_filter() noexcept final { return this; }
 
   /// The same filter onto another target, which must outlive it.
   virtual std::unique_ptr<FilterSink> onto(PairSink& target) const = 0;
@@ -38,6 +40,8 @@ class FilterSink : public PairSink {
   }
 
  private:
+  FilterSink* as_filter() noexcept final { return this; }
+
   PairSink* target_;
 };
 

@@ -70,7 +70,8 @@ class BufferSink final : public PairSink {
 /// earlier search is handed on: its pairs come before those of this one.
 std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   std::vector<const FilterSink*> filters;
-  for (FilterSink* filter = pairs.as_filter(); filter != nullptr; filter = filter->target().as_filter()) {
+  for (FilterSink* filter = FilterSink::of(pairs); filter != nullptr;
+       filter = FilterSink::of(filter->target())) {
     filter->flush();
     filters.push_back(filter);
   }

@@ -119,7 +119,7 @@ void GridFollower<D>::search(const Change<D>& change, PairSink& begun, PairSink&
   };
   if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
   // A sink with a limit must count while threads search, not after they have filled their lists.
-  const core::FilterSink* const limit = begun.as_filter();
+  const core::FilterSink* const limit = core::FilterSink::of(begun);
   parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
     for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {
       part.begun.clear();

@@ -93,6 +93,21 @@ TEST(Filters, StaticBoxesNeverMeetWhateverTheirGroup) {
   EXPECT_TRUE(accepts(moving, still));
 }
 
+TEST(IgnoredPairs, AreCopiedAndMoved) {
+  IgnoredPairs original;
+  original.insert(pair(1, 2));
+  IgnoredPairs copy = original;
+  copy.insert(pair(3, 4));
+  EXPECT_TRUE(copy.contains(pair(1, 2)));
+  EXPECT_FALSE(original.contains(pair(3, 4)));
+  original = copy;
+  EXPECT_EQ(original.size(), 2U);
+  const IgnoredPairs moved = std::move(copy);
+  EXPECT_EQ(moved.size(), 2U);
+  original.clear();
+  EXPECT_TRUE(original.empty() && !original.contains(pair(1, 2)) && !original.erase(pair(1, 2)));
+}
+
 TEST(IgnoredPairs, TakePairsInEitherOrderAndNoBoxWithItself) {
   IgnoredPairs ignored;
   EXPECT_TRUE(ignored.insert(pair(5, 2)));

@@ -1,0 +1,64 @@
+// BoxView: a range over boxes in the caller's memory.
+#include "broadside/box_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <ranges>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/boxes.hpp"
+
+namespace broadside {
+namespace {
+
+using testing::ElementsAreArray;
+
+static_assert(std::ranges::random_access_range<BoxView<2>> && std::ranges::sized_range<BoxView<2>>);
+static_assert(std::ranges::view<BoxView<2>> && std::ranges::borrowed_range<BoxView<2>>);
+static_assert(std::is_convertible_v<std::array<Box3, 2>, BoxView<3>>);
+static_assert(std::is_convertible_v<const Box2 (&)[2], BoxView<2>>);
+static_assert(std::is_convertible_v<std::span<Box2>, BoxView<2>>);
+static_assert(!std::is_convertible_v<std::vector<Box3>, BoxView<2>>);
+static_assert(!std::is_convertible_v<std::vector<DoubleBox2>, BoxView<2>>);
+static_assert(!BoxRange<std::vector<int>> && !BoxRange<std::vector<Box<4>>> && !BoxRange<int>);
+
+struct Body {
+  char name;
+  Box2 box;
+};
+
+const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}, {{2, 0}, {3, 1}}, {{4, 0}, {5, 1}}};
+const std::vector<Body> bodies = {{'a', boxes[0]}, {'b', boxes[1]}, {'c', boxes[2]}};
+const std::array<BoxView<2>, 2> views = {BoxView<2>(boxes),
+                                         BoxView<2>(&bodies[0].box, bodies.size(), sizeof(Body))};
+
+TEST(BoxView, IsARange) {
+  for (const BoxView<2>& view : views) {
+    std::vector<Box2> seen;
+    for (const Box2& box : view) seen.push_back(box);
+    EXPECT_THAT(seen, ElementsAreArray(boxes));
+    EXPECT_EQ(std::ranges::find(view, boxes[1]) - view.begin(), 1);
+    EXPECT_EQ(std::vector<Box2>(view.begin(), view.end()), boxes);
+  }
+}
+
+TEST(BoxView, IsReadInAnyOrder) {
+  for (const BoxView<2>& view : views) {
+    auto it = view.end();
+    EXPECT_EQ(*--it, boxes[2]);
+    EXPECT_EQ(*(it - 2), boxes[0]);
+    EXPECT_EQ(view.begin()[1], boxes[1]);
+    EXPECT_LT(view.begin(), it);
+    EXPECT_EQ(*std::ranges::prev(it--), boxes[1]);
+    EXPECT_EQ(*it++, boxes[1]);
+  }
+}
+
+}  // namespace
+}  // namespace broadside
