@@ -75,7 +75,7 @@ typedef struct broadside_error {
   char message[1000]; /**< UTF-8, ends with a 0; a longer one is cut off */
 } broadside_error;
 
-/** The name of a status, such as "invalid input"; of a number that is none, "unknown status". */
+/** The name of a status, such as "invalid input"; "unknown status" for a number that is not a status. */
 BROADSIDE_API const char* broadside_status_name(broadside_status status);
 
 /** The library's version, such as "0.2.0". */
@@ -115,7 +115,7 @@ typedef struct broadside_pair {
   uint32_t second;
 } broadside_pair;
 
-/** What a box is and what it wants to meet: two boxes count as a pair if each one's mask has a bit of the
+/** The categories of a box and those it collides with: two boxes may pair if each one's mask has a bit of the
  * other one's category and not both are static. Boxes of one group other than 0 meet whatever their bits if it
  * is positive, and never if it is negative. */
 typedef struct broadside_filter {
@@ -146,7 +146,7 @@ typedef struct broadside_find_options {
   const broadside_filter* right_filters; /**< of two sets: one for each box of the right one, or null */
   const broadside_pair* ignored;         /**< pairs that never count, in any order; of one set only */
   size_t ignored_count;
-  const broadside_executor* executor; /**< whose threads search, where the spec allows several; null: its own */
+  const broadside_executor* executor; /**< runs searches if the spec allows several threads; null: the library's */
   int quarantines; /**< 1: invalid boxes pair with nothing, instead of being refused */
 } broadside_find_options;
 

@@ -1,5 +1,5 @@
-// World: boxes that come, move and go under stable handles, and the pairs that begin and end. The face for
-// engines.
+// World: for game and physics engines. Boxes are added, moved and removed by stable handles, and each update
+// reports the pairs that began and ended.
 #pragma once
 
 #include <array>
@@ -97,7 +97,7 @@ namespace broadside {
 
 /// What comes with a box when it is added.
 struct BoxOptions {
-  Filter filter{};              ///< which boxes it meets, and whether it is static
+  Filter filter{};              ///< which boxes it may pair with, and whether it is static
   std::uint64_t user_data = 0;  ///< the caller's; the world only keeps it
 };
 
@@ -147,7 +147,7 @@ struct WorldOptions {
   bool shadow = false;
 };
 
-/// Whether two boxes that overlap and whose filters accept each other are to count as a pair;
+/// Whether two boxes that overlap and accept each other by their filters count as a pair;
 /// first.slot < second.slot.
 using PairPredicate = std::function<bool(Handle first, Handle second)>;
 
@@ -421,7 +421,7 @@ class BROADSIDE_PUBLIC World {
   /// it had then: little for a rollback of few frames, and one build where the worlds have nothing in common.
   void restore(std::span<const std::byte> snapshot);
 
-  /// Who does the work of update(): one thread, unless the spec or set_workers() says otherwise.
+  /// The threads of update(): one, unless the spec or set_workers() says otherwise.
   [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
