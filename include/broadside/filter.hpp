@@ -31,12 +31,20 @@ struct Filter {
   friend constexpr bool operator==(const Filter&, const Filter&) = default;
 };
 
+namespace detail {
+/// Whether the bits of two filters accept each other, whatever their groups are. Two static boxes never
+/// collide.
+constexpr bool bits_accept(const Filter& a, const Filter& b) noexcept {
+  return (a.mask & b.category) != 0 && (b.mask & a.category) != 0 && !(a.is_static && b.is_static);
+}
+}  // namespace detail
+
 /// Whether boxes with these filters may be a pair: they are not both static, and either their common group is
 /// positive or, without a common group, the mask of each has a bit of the other's category.
 [[nodiscard]] constexpr bool accepts(const Filter& a, const Filter& b) noexcept {
   if (a.is_static && b.is_static) return false;
   if (a.group == b.group && a.group != 0) return a.group > 0;
-  return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
+  return detail::bits_accept(a, b);
 }
 
 /// A set of pairs that never count, whatever their boxes and filters are, such as bodies that a joint
@@ -86,10 +94,9 @@ class BROADSIDE_PUBLIC IgnoredPairs {
 
 /// Which overlapping boxes of one search count as pairs: by default all.
 struct PairFilters {
-  std::span<const Filter> filters{};  ///< one for each box (of the left set), or none
-  std::span<const Filter>
-      right_filters{};  ///< if two sets are searched: one for each box of the right set, or none
-  const IgnoredPairs* ignored = nullptr;  ///< pairs that never count; only if one set is searched
+  std::span<const Filter> filters{};        ///< one for each box (of the left set), or none
+  std::span<const Filter> right_filters{};  ///< of two sets: one for each box of the right set, or none
+  const IgnoredPairs* ignored = nullptr;    ///< pairs that never count; only if one set is searched
 
   [[nodiscard]] bool empty() const noexcept {
     return filters.empty() && right_filters.empty() && (ignored == nullptr || ignored->empty());

@@ -20,17 +20,22 @@ namespace broadside {
 /// overlap and accept each other.
 template <int D, typename Real = float>
 struct Change {
-  std::span<const Box<D, Real>>
-      before;                         ///< boxes of the frame before; as long as `now`, filled up with absent
-  std::span<const Box<D, Real>> now;  ///< boxes of this frame, likewise; each one present or absent
-  std::span<const BoxId> changed;     ///< places where the two, or their filters, may differ, each once
-  std::span<const std::uint8_t> flags;  ///< for each place, 1 if it is in `changed`
+  /// The boxes of the frame before and of this one, each present or absent. The shorter array is filled up
+  /// with absent boxes.
+  std::span<const Box<D, Real>> before;
+  std::span<const Box<D, Real>> now;
+
+  /// The places where the two, or their filters, may differ, each once; and for each place, 1 if it is
+  /// listed.
+  std::span<const BoxId> changed;
+  std::span<const std::uint8_t> flags;
 
   /// Nothing kept from earlier frames can be relied on: what a follower keeps is built anew from `before`.
   bool rebuild = false;
 
-  std::span<const Filter> filters_before{};  ///< likewise; both empty where there are no filters
-  std::span<const Filter> filters_now{};     ///<
+  /// The filters of both frames, likewise; both empty where there are no filters.
+  std::span<const Filter> filters_before{};
+  std::span<const Filter> filters_now{};
 
   /// Events are not asked for, but candidates: the pair of each changed box with every other one that
   /// overlaps where it was or where it is. Only for an algorithm with Algorithm::gives_candidates.

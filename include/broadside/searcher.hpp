@@ -30,10 +30,10 @@ template <int D>
 class Successor {
  public:
   /// Whether the search that gave up has not written the pair of these two overlapping boxes.
-  using IsLeft = std::function<bool(const Box<D>& a, BoxId a_id, const Box<D>& b, BoxId b_id)>;
+  using IsMissing = std::function<bool(const Box<D>& a, BoxId a_id, const Box<D>& b, BoxId b_id)>;
 
-  /// Writes every pair of the same input for which `is_left` is true.
-  virtual void finish(const IsLeft& is_left) = 0;
+  /// Writes every pair of the same input for which `is_missing` is true.
+  virtual void finish(const IsMissing& is_missing) = 0;
 
  protected:
   Successor() = default;

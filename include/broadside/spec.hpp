@@ -114,8 +114,7 @@ struct SweepAndPruneOptions {
 
 /// Nodes split at medians until they hold few boxes; an octree in 3D.
 struct QuadtreeOptions {
-  std::optional<std::size_t>
-      capacity{};  ///< the maximum number of boxes in a leaf that could be split, from 1
+  std::optional<std::size_t> capacity{};  ///< a node of up to so many boxes is not split; at least 1
   std::size_t threads = 1;
   Update update = Update::automatic;
 

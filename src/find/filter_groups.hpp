@@ -12,11 +12,6 @@
 
 namespace broadside::find {
 
-/// Whether the bits of two filters accept each other, whatever their groups. Two static boxes never meet.
-constexpr bool bits_accept(const Filter& a, const Filter& b) noexcept {
-  return (a.mask & b.category) != 0 && (b.mask & a.category) != 0 && !(a.is_static && b.is_static);
-}
-
 /// The filters of a search's boxes, by the boxes' places in the search.
 class BoxFilters {
  public:

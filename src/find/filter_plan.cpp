@@ -66,7 +66,7 @@ void FilterPlan::relate(bool by_negative_group) {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& other = nodes_[i];
       if (are_two_sets_ && node.is_right == other.is_right) continue;
-      const bool accept = bits_accept(node.filter, other.filter);
+      const bool accept = detail::bits_accept(node.filter, other.filter);
       const bool share = node.has_negative && other.has_negative &&
                          (!by_negative_group || node.filter.group == other.filter.group);
       if (accept && !(share && by_negative_group)) node.meets |= bit(i);
@@ -130,7 +130,7 @@ void FilterPlan::plan_group(std::span<const FilterGroup> groups, std::span<const
     for (std::size_t j = 0; j < same.size(); ++j) {
       const FilterGroup& other = groups[same[j]];
       if (are_two_sets_ && group.is_right == other.is_right) continue;
-      const bool is_found_by_bits = bits_accept(group.filter, other.filter);
+      const bool is_found_by_bits = detail::bits_accept(group.filter, other.filter);
       const bool are_static = group.filter.is_static && other.filter.is_static;
       (is_found_by_bits || are_static ? node.rejects : node.meets) |= bit(j);
     }

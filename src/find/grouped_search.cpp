@@ -74,7 +74,7 @@ class GroupSink final : public core::FilterSink {
   }
 
   bool counts(const Filter& a, const Filter& b) const {
-    return accepts(a, b) && bits_accept(a, b) == (test_ == FilterTest::by_bits);
+    return accepts(a, b) && detail::bits_accept(a, b) == (test_ == FilterTest::by_bits);
   }
 
   std::span<const BoxId> ids_;

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "broadside/box.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/follower.hpp"
 
 namespace broadside::core {
 
@@ -46,7 +46,7 @@ struct Margins {
     unsigned keeps = 1;
     for (int axis = 0; axis < D; ++axis) {
       const Real way = velocity == nullptr ? 0 : std::abs(frames * (*velocity)[axis]);
-      // False for what is no number.
+      // False for NaN.
       const bool fits = kept.max[axis] - kept.min[axis] <= box.max[axis] - box.min[axis] + slack + way;
       keeps &= static_cast<unsigned>(kept.min[axis] <= box.min[axis]) &
                static_cast<unsigned>(box.max[axis] <= kept.max[axis]) & static_cast<unsigned>(fits);

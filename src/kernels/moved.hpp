@@ -1,4 +1,4 @@
-// The kernels of trackers: boxes that moved against boxes that are kept in blocks, in cells of blocks or in a
+// The kernels of followers: boxes that moved against boxes that are kept in blocks, in cells of blocks or in a
 // run, and which overlaps begin or end by it.
 #pragma once
 

@@ -28,7 +28,7 @@ struct LimitPassed {};
 template <int D>
 class LimitedTests final : public Successor<D> {
  public:
-  void finish(const typename Successor<D>::IsLeft& /*is_left*/) override { throw LimitPassed(); }
+  void finish(const typename Successor<D>::IsMissing& /*is_missing*/) override { throw LimitPassed(); }
 };
 
 /// The maximum number of candidates: a constant, plus a number for each candidate that holds.

@@ -64,10 +64,13 @@ class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
 
 /// What a ShadowTracker spends.
 struct ShadowOptions {
-  std::size_t frames = 256;                   ///< how far it can go back to show how a fault came about,
-  std::size_t bytes = std::size_t{64} << 20;  ///< as long as their changes take no more than this, or by one
-  std::uint64_t tests =
-      2'000'000'000;  ///< about how many pairs of boxes are compared to make a history small
+  /// How many frames back it can show how a fault came about; fewer, but at least one, if their changes take
+  /// more than `bytes`.
+  std::size_t frames = 256;
+  std::size_t bytes = std::size_t{64} << 20;
+
+  /// About how many pairs of boxes are compared to make a history small.
+  std::uint64_t tests = 2'000'000'000;
 };
 
 /// Runs a tracker and compares its events with those of brute force, by the definition, in every frame; the

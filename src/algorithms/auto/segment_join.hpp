@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
+#include "broadside/searcher.hpp"
 
 #include "core/large_array.hpp"
 #include "core/radix_sort.hpp"

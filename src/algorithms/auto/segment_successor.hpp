@@ -15,18 +15,18 @@ namespace broadside::algorithm {
 template <int D>
 class SegmentSuccessor final : public Successor<D> {
  public:
-  using IsLeft = typename Successor<D>::IsLeft;
+  using IsMissing = typename Successor<D>::IsMissing;
 
   /// Makes `join` when it is first needed; its memory serves later searches.
   SegmentSuccessor(const SearchInput<D>& input, PairSink& pairs, std::unique_ptr<SegmentJoin<D>>& join)
       : input_(input), pairs_(pairs), join_(join) {}
 
-  void finish(const IsLeft& is_left) override {
+  void finish(const IsMissing& is_missing) override {
     if (!join_) join_ = std::make_unique<SegmentJoin<D>>();
-    LeftSink left(is_left, input_.boxes, pairs_);
+    MissingSink missing(is_missing, input_.boxes, pairs_);
     Checkpoint checkpoint(input_.workers.checkpoint);
-    work_ = join_->join(input_.boxes, input_.left_count, input_.doubles, checkpoint, left);
-    left.flush();
+    work_ = join_->join(input_.boxes, input_.left_count, input_.doubles, checkpoint, missing);
+    missing.flush();
   }
 
   /// What finish() did; empty if the search did not give up.
@@ -34,13 +34,13 @@ class SegmentSuccessor final : public Successor<D> {
 
  private:
   /// Passes on the pairs that a search did not write before it gave up.
-  class LeftSink final : public core::FilterSink {
+  class MissingSink final : public core::FilterSink {
    public:
-    LeftSink(const IsLeft& is_left, std::span<const Box<D>> boxes, PairSink& target)
-        : FilterSink(target), is_left_(is_left), boxes_(boxes) {}
+    MissingSink(const IsMissing& is_missing, std::span<const Box<D>> boxes, PairSink& target)
+        : FilterSink(target), is_missing_(is_missing), boxes_(boxes) {}
 
     std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-      return std::make_unique<LeftSink>(is_left_, boxes_, target);
+      return std::make_unique<MissingSink>(is_missing_, boxes_, target);
     }
 
    private:
@@ -48,11 +48,11 @@ class SegmentSuccessor final : public Successor<D> {
       for (const Pair pair : pairs) {
         const Box<D>& first = boxes_[index(pair.first)];
         const Box<D>& second = boxes_[index(pair.second)];
-        if (is_left_(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
+        if (is_missing_(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
       }
     }
 
-    const IsLeft& is_left_;
+    const IsMissing& is_missing_;
     std::span<const Box<D>> boxes_;
   };
 

@@ -1,4 +1,4 @@
-// The dynamic bounding volume hierarchy that the tracker and BoxIndex search: sixteen children to a node.
+// The dynamic bounding volume hierarchy that its follower and BoxIndex search: sixteen children to a node.
 #pragma once
 
 #include <array>

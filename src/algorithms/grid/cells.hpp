@@ -1,4 +1,4 @@
-// HierarchicalCells: what the grid's tracker keeps, a hierarchical grid: levels of cells with blocks of
+// HierarchicalCells: what GridFollower keeps, a hierarchical grid: levels of cells with blocks of
 // sixteen boxes.
 #pragma once
 

@@ -71,7 +71,7 @@ class GridSearcher final : public Searcher<D> {
       gave_up |= swept_to_[slab] < layout_.slab_begin(slab + 1) * layout_.row_length();
     if (gave_up) {
       input.successor->finish(
-          [this](const Box<D>& a, BoxId, const Box<D>& b, BoxId) { return is_left(a, b); });
+          [this](const Box<D>& a, BoxId, const Box<D>& b, BoxId) { return is_missing(a, b); });
     }
     return statistics;
   }
@@ -108,7 +108,7 @@ class GridSearcher final : public Searcher<D> {
 
  private:
   /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
-  bool is_left(const Box<D>& a, const Box<D>& b) const {
+  bool is_missing(const Box<D>& a, const Box<D>& b) const {
     Box<D> corner = a;
     for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
     const std::size_t row = layout_.row_of(corner);

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/finder.hpp"
 #include "broadside/pair.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/searcher.hpp"
 
 #include "algorithms/grid/layout.hpp"
 #include "core/cell_axis.hpp"

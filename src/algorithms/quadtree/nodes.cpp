@@ -1,4 +1,4 @@
-// The quadtree that stays: built, split and merged. Section V of the paper; nodes are split as the finder
+// The quadtree that stays: built, split and merged. Section V of the paper; nodes are split as the searcher
 // splits them, at medians, so clusters and outliers do not deepen the tree.
 #include "algorithms/quadtree/nodes.hpp"
 
