@@ -78,7 +78,7 @@ typedef struct broadside_error {
 /** The name of a status, such as "invalid input"; "unknown status" for a number that is not a status. */
 BROADSIDE_API const char* broadside_status_name(broadside_status status);
 
-/** The library's version, such as "0.2.0". */
+/** The library's version, such as "0.3.0". */
 BROADSIDE_API const char* broadside_version(void);
 
 /** The version of this interface that the library has. A program compiled with a header of another one gets

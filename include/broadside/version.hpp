@@ -6,9 +6,9 @@
 
 // Read by the build as well: write it here and nowhere else.
 #define BROADSIDE_VERSION_MAJOR 0
-#define BROADSIDE_VERSION_MINOR 2
+#define BROADSIDE_VERSION_MINOR 3
 #define BROADSIDE_VERSION_PATCH 0
-#define BROADSIDE_VERSION "0.2.0"
+#define BROADSIDE_VERSION "0.3.0"
 
 // MSVC says C++98 in __cplusplus unless told otherwise. Compilers before C++20 was final call it 201709.
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L

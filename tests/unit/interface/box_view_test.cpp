@@ -33,30 +33,30 @@ struct Body {
   Box2 box;
 };
 
-const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}, {{2, 0}, {3, 1}}, {{4, 0}, {5, 1}}};
-const std::vector<Body> bodies = {{'a', boxes[0]}, {'b', boxes[1]}, {'c', boxes[2]}};
-const std::array<BoxView<2>, 2> views = {BoxView<2>(boxes),
+const std::vector<Box2> three_boxes = {{{0, 0}, {1, 1}}, {{2, 0}, {3, 1}}, {{4, 0}, {5, 1}}};
+const std::vector<Body> bodies = {{'a', three_boxes[0]}, {'b', three_boxes[1]}, {'c', three_boxes[2]}};
+const std::array<BoxView<2>, 2> views = {BoxView<2>(three_boxes),
                                          BoxView<2>(&bodies[0].box, bodies.size(), sizeof(Body))};
 
 TEST(BoxView, IsARange) {
   for (const BoxView<2>& view : views) {
     std::vector<Box2> seen;
     for (const Box2& box : view) seen.push_back(box);
-    EXPECT_THAT(seen, ElementsAreArray(boxes));
-    EXPECT_EQ(std::ranges::find(view, boxes[1]) - view.begin(), 1);
-    EXPECT_EQ(std::vector<Box2>(view.begin(), view.end()), boxes);
+    EXPECT_THAT(seen, ElementsAreArray(three_boxes));
+    EXPECT_EQ(std::ranges::find(view, three_boxes[1]) - view.begin(), 1);
+    EXPECT_EQ(std::vector<Box2>(view.begin(), view.end()), three_boxes);
   }
 }
 
 TEST(BoxView, IsReadInAnyOrder) {
   for (const BoxView<2>& view : views) {
     auto it = view.end();
-    EXPECT_EQ(*--it, boxes[2]);
-    EXPECT_EQ(*(it - 2), boxes[0]);
-    EXPECT_EQ(view.begin()[1], boxes[1]);
+    EXPECT_EQ(*--it, three_boxes[2]);
+    EXPECT_EQ(*(it - 2), three_boxes[0]);
+    EXPECT_EQ(view.begin()[1], three_boxes[1]);
     EXPECT_LT(view.begin(), it);
-    EXPECT_EQ(*std::ranges::prev(it--), boxes[1]);
-    EXPECT_EQ(*it++, boxes[1]);
+    EXPECT_EQ(*std::ranges::prev(it--), three_boxes[1]);
+    EXPECT_EQ(*it++, three_boxes[1]);
   }
 }
 
