@@ -1,5 +1,5 @@
-// What the library knows of an algorithm: its description, its spec (such as "grid:cell=2.5"), how to make
-// one from a spec, and the list of all algorithms, to which users add their own.
+// The description of an algorithm (its tunables, limits and costs, and how to make its searcher and its
+// followers from a spec), and the list of all algorithms, to which users add their own.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ class Settings;
 template <int D, typename Real>
 struct Outline;
 
-/// What a search by these settings would lay over the boxes, which are all present; there is one at least.
-/// Parts may be infinite.
+/// Makes the outline of a search with these settings. All boxes are present, and there is at least one. The
+/// parts of the outline may be infinite.
 template <int D>
 using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
                                                     const Settings& settings)>;
@@ -43,11 +43,11 @@ struct Tunable {
   detail::Vector<std::string> choices{};  ///< for choice: the values allowed
 };
 
-/// A spec's values, checked against the tunables they are for; those not given have their standard value.
+/// A spec's values, checked against an algorithm's tunables; a tunable not given has its standard value.
 class BROADSIDE_PUBLIC Settings {
  public:
   /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
-  /// range. "auto" is a value of a tunable if and only if it is its standard one.
+  /// range. "auto" is allowed if and only if it is the tunable's standard value.
   Settings(const Spec& spec, std::span<const Tunable> tunables);
 
   /// Whether the tunable is left for the algorithm to choose.
@@ -72,17 +72,17 @@ enum class AlgorithmKind { own, paper, literature, peer };
 
 /// The cost of finding all pairs anew, in nanoseconds of one machine: only ratios matter.
 struct FindCosts {
-  double box = 40;                ///< a box, without its pairs, with 64 tests and 4 references
+  double box = 40;                ///< per box: with 64 tests and 4 references, without its pairs
   double further_test = 0.5;      ///< each further test of a box
   double further_reference = 30;  ///< each further reference to a box
   double pair = 7;
 };
 
-/// The cost of following boxes in a structure, likewise.
+/// The cost of following boxes in a structure, in the same unit.
 struct FollowCosts {
-  double start = 100;        ///< to build the structure, a box
-  double mover = 160;        ///< to follow a box that moves, before any was followed
-  double mover_alone = 140;  ///< to follow a box that moves, without its tests
+  double start = 100;        ///< per box, to build the structure
+  double mover = 160;        ///< per mover, with its tests, before any was followed
+  double mover_alone = 140;  ///< per mover, without its tests
   double test = 1;           ///< each of a mover's first 64 tests
   double further_test = 1;   ///< each further one
 };
@@ -97,12 +97,12 @@ struct FollowerChoice {
   std::function<std::unique_ptr<Follower<D>>(const Settings&)> make;
   FollowCosts costs{};
 
-  /// Not 0: it compares each changed box with all others, so that its cost is known beforehand. It is used
-  /// for up to so many boxes whatever the others cost, and for more where they make about as many tests.
+  /// If not 0, it compares each changed box with all others, so its cost is known beforehand. It is used for
+  /// up to this number of boxes whatever the others cost, and for more if they make about as many tests.
   std::size_t max_boxes = 0;
 };
 
-/// A broad-phase algorithm, described. One's own is made the same way as the library's: see
+/// The description of a broad-phase algorithm. Your own algorithm has one like those of the library: see
 /// examples/own_algorithm.
 struct Algorithm {
   std::string name;     ///< as in a spec: lower case, digits and underscores
@@ -112,18 +112,18 @@ struct Algorithm {
   std::string version{};  ///< of the library behind it; empty for what is part of Broadside
   detail::Vector<Tunable> tunables{};
 
-  MakeSearcher<2> searcher_2d{};  ///< empty where the algorithm does not do that dimension
+  MakeSearcher<2> searcher_2d{};  ///< empty if the algorithm does not support that dimension
   MakeSearcher<3> searcher_3d{};
 
-  /// The structures that follow boxes; empty where a Tracker finds all pairs anew in each frame. With the
-  /// tunable `update` a Tracker also finds anew, by FindCosts and FollowCosts;
-  /// without it, it always follows, by the first.
+  /// The structures that follow boxes; if there are none, a Tracker finds all pairs anew in each frame. If
+  /// the tunable `update` has the choice "follow", a Tracker decides by FindCosts and FollowCosts whether it
+  /// follows boxes or finds all pairs anew. Otherwise it always follows, by the first structure.
   detail::Vector<FollowerChoice<2>> followers_2d{};
   detail::Vector<FollowerChoice<3>> followers_3d{};
   FindCosts find_costs_2d{};
   FindCosts find_costs_3d{};
 
-  /// What a search would lay over boxes, to be drawn: see debug/outline.hpp. Empty where there is nothing.
+  /// Makes what a search lays over boxes, to be drawn: see debug/outline.hpp. Empty if there is nothing.
   MakeOutline<2> outline_2d{};
   MakeOutline<3> outline_3d{};
 
@@ -135,10 +135,10 @@ struct Algorithm {
   /// Declared limit: the greatest magnitude of a finite coordinate that is within it.
   double largest_coordinate = std::numeric_limits<double>::max();
 
-  /// Declared limit: the most boxes it takes at once.
+  /// Declared limit: the maximum number of boxes.
   std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
 
-  /// Whether it takes memory otherwise than through operator new, so that the lab cannot count it.
+  /// Whether it allocates memory other than through operator new, so that the lab cannot count it.
   bool own_allocator = false;
 
   /// The same by dimension.
@@ -168,22 +168,22 @@ struct Algorithm {
       return outline_3d;
   }
 
-  /// Whether it does `dimension`.
+  /// Whether it supports `dimension`.
   [[nodiscard]] bool has_dimension(int dimension) const {
     return dimension == 2 ? bool(searcher_2d) : dimension == 3 && bool(searcher_3d);
   }
 };
 
-/// Whether it can use several threads: whether it has the tunable `threads`, a whole number, which
-/// Finder and Tracker make the number of their Workers.
+/// Whether it can use several threads: it then has the tunable `threads`, a whole number, from which Finder
+/// and Tracker set the number of threads of their Workers.
 [[nodiscard]] BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
 
 /// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
 /// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
 [[nodiscard]] BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
 
-/// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by
-/// its name. Throws InvalidSpec if the name is taken, or is not of lower-case letters, digits and
+/// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by its name.
+/// Throws InvalidSpec if the name is taken, or has characters other than lower-case letters, digits and
 /// underscores.
 ///
 /// Call it before anything is made by name: it must not run at the same time as anything that looks up a
@@ -191,8 +191,8 @@ struct Algorithm {
 /// not grow. Cost: a copy of the list, once for each algorithm.
 BROADSIDE_PUBLIC void register_algorithm(Algorithm algorithm);
 
-/// The algorithm called `name` among `among`, or a null pointer. A name of an earlier version finds what took
-/// its place: `hierarchical_grid` is `grid`.
+/// The algorithm called `name` among `among`, or a null pointer. The former name of an algorithm finds the
+/// one that replaced it: `hierarchical_grid` is `grid`.
 [[nodiscard]] BROADSIDE_PUBLIC const Algorithm* find_algorithm(
     std::string_view name, std::span<const Algorithm> among = algorithms());
 

@@ -78,11 +78,11 @@ void refuse_argument() {
       "or of a std::span<const Pair>, and then options such as {.algorithm = \"grid\"}");
 }
 
-/// Any argument but the last one.
+/// Any argument but the options.
 template <typename T>
 concept NoOptions = !std::is_same_v<std::remove_cvref_t<T>, FindOptions>;
 
-/// A second argument that must be boxes, since it is nothing else.
+/// A second argument that must be boxes, since it is neither options nor where pairs go.
 template <typename T>
 concept OtherBoxes = NoOptions<T> && !PairTarget<T>;
 

@@ -1,4 +1,4 @@
-// Finder: boxes to pairs, from nothing, at each call.
+// Finder: finds all pairs in an array of boxes, from nothing, at each call.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +24,9 @@ struct Algorithm;
 
 /// Finds every overlapping pair in an array of boxes, from nothing, at each call.
 ///
-/// A finder keeps its scratch memory between calls, and nothing else that can be observed. It is to be called
-/// by one thread at a time; it may itself use several, which changes nothing but the time. A finder that was
-/// moved from may only be assigned to or destroyed.
+/// A finder keeps its scratch memory between calls, and nothing else that can be observed. Call it from one
+/// thread at a time; it may itself use several, which changes nothing but the time. A finder that was moved
+/// from may only be assigned to or destroyed.
 ///
 /// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
 /// origin and at a scale of their own, and tests in double where floats cannot tell: its pairs are exact.
@@ -36,30 +36,30 @@ class BROADSIDE_PUBLIC Finder final {
 
  public:
   /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5" or
-  /// GridOptions{.cell = 2.5}. Throws InvalidSpec, naming the
-  /// algorithms there are, if there is none of that name.
+  /// GridOptions{.cell = 2.5}. Throws InvalidSpec, which names all algorithms if there is none of that
+  /// name.
   explicit Finder(const Spec& spec = {});
 
-  /// A finder by `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec if a
-  /// value is wrong or the algorithm does not do D dimensions.
+  /// A finder by `algorithm` with the values in `spec`, whose name is ignored. Throws InvalidSpec if a value
+  /// is wrong or the algorithm does not support D dimensions.
   Finder(const Algorithm& algorithm, const Spec& spec);
 
-  /// A finder by a searcher of your own, which decides pairs by floats alone; boxes of doubles are tested
-  /// after it. Throws std::invalid_argument if it is null.
+  /// A finder by a searcher of your own, which compares floats alone; pairs of boxes of doubles are tested
+  /// afterwards. Throws std::invalid_argument if it is null.
   explicit Finder(std::unique_ptr<Searcher<D>> searcher);
 
   Finder(Finder&& other) noexcept;
   Finder& operator=(Finder&& other) noexcept;
   ~Finder();
 
-  /// Writes each pair of overlapping boxes to `pairs` once, as ids = places in `boxes`, and flushes it. The
-  /// order is fixed by the algorithm, the boxes and the filters, whatever the workers. Absent boxes pair with
-  /// nothing. Returns what the search did; nothing if the algorithm does not count.
+  /// Writes each pair of overlapping boxes to `pairs` once, as places in `boxes`, and flushes it. The order
+  /// depends on the algorithm, the boxes and the filters, not on the workers. Absent boxes pair with nothing.
+  /// Returns what the search did, or nothing if the algorithm does not count.
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
   /// max without being absent, unless bad_input() says otherwise; and what the sink throws. Boxes that are no
-  /// array are gathered first. With `filters`, pairs that they do not let count are not written; throws
-  /// InvalidFrame if there are some and not one for each box.
+  /// array are gathered first. With `filters`, pairs that they reject are not written; throws InvalidFrame if
+  /// there are filters, but not one for each box.
   std::optional<Statistics> find(BoxView<D, Real> boxes, PairSink& pairs, const PairFilters& filters = {});
 
   /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
@@ -69,7 +69,7 @@ class BROADSIDE_PUBLIC Finder final {
                                          const PairFilters& filters = {});
 
   /// find_between() for two sets in one array: the first `left_count` <= boxes.size() boxes are the left set.
-  /// Where none is absent this saves copying them.
+  /// If none is absent, this saves copying them.
   std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                         PairSink& pairs);
 
@@ -93,7 +93,7 @@ class BROADSIDE_PUBLIC Finder final {
   void set_bad_input(BadInput bad_input) noexcept;
 
   /// The places of the last call's invalid boxes, ascending, where they are quarantined; those of a right set
-  /// are counted on from the end of the left one. Valid until the next call.
+  /// are counted on from the end of the left set. Valid until the next call.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
   /// The threads to search with: one, unless the spec or set_workers() says otherwise. An algorithm without
@@ -101,7 +101,7 @@ class BROADSIDE_PUBLIC Finder final {
   [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
-  /// If the algorithm is one that chooses: what it chose for the last search, and why, in a sentence.
+  /// If the algorithm chooses among others: what it chose for the last search and why, in one sentence.
   [[nodiscard]] std::string explanation() const;
 
  private:

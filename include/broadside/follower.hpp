@@ -30,15 +30,15 @@ struct Change {
   std::span<const BoxId> changed;
   std::span<const std::uint8_t> flags;
 
-  /// Nothing kept from earlier frames can be relied on: what a follower keeps is built anew from `before`.
+  /// Nothing kept from earlier frames can be relied on: the follower builds its structure from `before`.
   bool rebuild = false;
 
   /// The filters of both frames, likewise; both empty where there are no filters.
   std::span<const Filter> filters_before{};
   std::span<const Filter> filters_now{};
 
-  /// Events are not asked for, but candidates: the pair of each changed box with every other one that
-  /// overlaps where it was or where it is. Only for an algorithm with Algorithm::gives_candidates.
+  /// Asks for candidates instead of events: the pairs of each changed box with all other boxes that overlap
+  /// the box as it was or as it is. Only for an algorithm with Algorithm::gives_candidates.
   bool wants_candidates = false;
 
   /// Threads and checkpoint, as in SearchInput.
@@ -48,8 +48,8 @@ struct Change {
   [[nodiscard]] bool held(BoxId a, BoxId b) const noexcept { return holds(before, filters_before, a, b); }
   [[nodiscard]] bool holds(BoxId a, BoxId b) const noexcept { return holds(now, filters_now, a, b); }
 
-  /// Writes the pair to the sink it belongs to: `begun` if it holds and did not, `ended` if it did and does
-  /// not, none if nothing changed.
+  /// Writes the pair to `begun` if it holds now and did not before, to `ended` if it held before and does not
+  /// now, and nowhere if nothing changed.
   void report(BoxId a, BoxId b, PairSink& begun, PairSink& ended) const {
     const bool is = holds(a, b);
     if (is != held(a, b)) (is ? begun : ended).add(a, b);
@@ -70,8 +70,8 @@ class BoxIndex;
 
 /// Follows boxes of floats in a structure of its own.
 ///
-/// Tracker does the rest: it checks the frame, keeps both states of each box, sorts the events and delivers
-/// each once, whatever is ignored or quarantined. A follower is called by one thread at a time.
+/// Tracker does the rest: it checks the frame, keeps both states of each box, takes care of quarantined boxes
+/// and ignored pairs, sorts the events and delivers each once. A follower has one caller at a time.
 template <int D>
 class BROADSIDE_PUBLIC Follower {
  public:
@@ -81,7 +81,7 @@ class BROADSIDE_PUBLIC Follower {
   virtual ~Follower() = default;
 
   /// Takes a frame, and writes to `begun` the pairs that hold now and did not before, to `ended` those that
-  /// did and do not now, in any order. An event may be written more than once. Candidates, where
+  /// did and do not now, in any order. An event may be written more than once. Candidates, if
   /// change.wants_candidates, all go to `begun`. Returns what it did, or nothing if it does not count. After
   /// an exception the next change has `rebuild`.
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;

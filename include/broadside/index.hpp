@@ -71,8 +71,8 @@ class BROADSIDE_PUBLIC BoxIndex final {
     return hits(as_cast(ray), visitor, options);
   }
 
-  /// The box that the cast box or the ray hits first: the one with the least t_enter, and of several, the one
-  /// with the least id.
+  /// The box that the cast box or the ray hits first: the one with the smallest t_enter and, among equals,
+  /// with the smallest id.
   [[nodiscard]] std::optional<Hit<Real>> first_hit(const BoxCast<D, Real>& cast,
                                                    const QueryOptions& options = {}) const;
   [[nodiscard]] std::optional<Hit<Real>> first_hit(const Ray<D, Real>& ray,

@@ -21,7 +21,7 @@ namespace broadside {
 struct Statistics {
   std::uint64_t tests = 0;       ///< pairs of boxes compared
   std::uint64_t references = 0;  ///< entries of boxes in cells, leaves or lists
-  std::uint64_t cells = 0;       ///< cells or nodes that there are
+  std::uint64_t cells = 0;       ///< cells or nodes of the structure
   std::uint64_t hits = 0;  ///< of the tests, those of boxes that overlap; the others are false positives
 };
 
@@ -86,7 +86,7 @@ class BROADSIDE_PUBLIC Searcher {
   /// checkpoint throw.
   virtual std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) = 0;
 
-  /// If the algorithm is one that chooses: what it chose for the last search, and why, in a sentence.
+  /// If the algorithm chooses among others: what it chose for the last search and why, in one sentence.
   [[nodiscard]] virtual std::string explanation() const { return {}; }
 };
 

@@ -64,14 +64,14 @@ struct BROADSIDE_PUBLIC Spec {
   detail::Vector<std::pair<std::string, SpecValue>> values;
 };
 
-/// How a Tracker brings pairs up to date: as costs less in each frame, by following the boxes that changed,
-/// or by finding all pairs anew.
+/// How a Tracker brings its pairs up to date: by whichever costs less in each frame, by following the boxes
+/// that changed, or by finding all pairs anew.
 enum class Update : std::uint8_t { automatic, follow, rebuild };
 
 enum class Axis : std::uint8_t { x, y, z };
 
 // Options of the library's algorithms. Each converts to a Spec; a value that is out of range is refused, by
-// InvalidSpec, where the Spec is used. An empty value is left for the algorithm to choose. `threads` is the
+// InvalidSpec, where the Spec is used. If a value is empty, the algorithm chooses it. `threads` is the
 // maximum number of threads of a search, 0 to 1024; 0: as many as the executor has. `update` is for trackers
 // and worlds alone.
 
@@ -93,7 +93,7 @@ struct BruteForceOptions {
 
 /// Cells over all axes but one, and a sweep along that one in each.
 struct GridOptions {
-  /// The size of a cell in the boxes' unit, above 0; made larger where there would be over 4 cells a box. Of
+  /// The size of a cell in the boxes' unit, above 0; made larger if there would be over 4 cells per box. In
   /// trackers, the size of the smallest cells.
   std::optional<double> cell{};
   std::size_t threads = 1;
@@ -114,7 +114,7 @@ struct SweepAndPruneOptions {
 
 /// Nodes split at medians until they hold few boxes; an octree in 3D.
 struct QuadtreeOptions {
-  std::optional<std::size_t> capacity{};  ///< a node of up to so many boxes is not split; at least 1
+  std::optional<std::size_t> capacity{};  ///< a node of up to this number of boxes is not split; from 1
   std::size_t threads = 1;
   Update update = Update::automatic;
 

@@ -1,4 +1,4 @@
-// Tracker: changes to pairs begun and ended, frame after frame.
+// Tracker: turns changes of boxes into pairs begun and ended, frame after frame.
 #pragma once
 
 #include <cstddef>
@@ -40,8 +40,8 @@ struct Frame {
   /// The pairs that do not count, or null for none.
   const IgnoredPairs* ignored = nullptr;
 
-  /// Those that were put into `ignored` or taken from it since the frame before, as `changed` lists boxes.
-  /// Not needed where the frame before had no set.
+  /// The pairs that were added to `ignored` or removed from it since the frame before, in any order. Not
+  /// needed if the frame before had no set.
   std::span<const Pair> ignored_changed{};
 };
 
@@ -58,7 +58,7 @@ class WorldTracker;
 /// same way.
 ///
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps. Cost of an update
-/// around the algorithm's: O(changed), whatever the number of boxes. A tracker that was moved from may only
+/// besides the algorithm's: O(changed), whatever the number of boxes. A tracker that was moved from may only
 /// be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC Tracker final {
@@ -66,12 +66,12 @@ class BROADSIDE_PUBLIC Tracker final {
 
  public:
   /// A tracker by one of algorithms(), from a spec such as "grid:update=follow" or
-  /// GridOptions{.update = Update::follow}. Throws InvalidSpec, naming
-  /// the algorithms there are, if there is none of that name.
+  /// GridOptions{.update = Update::follow}. Throws InvalidSpec, which names all algorithms if there is none
+  /// of that name.
   explicit Tracker(const Spec& spec = {});
 
-  /// A tracker by `algorithm` with the values in `spec`, whose name is not looked at. Throws InvalidSpec if a
-  /// value is wrong or the algorithm does not do D dimensions.
+  /// A tracker by `algorithm` with the values in `spec`, whose name is ignored. Throws InvalidSpec if a value
+  /// is wrong or the algorithm does not support D dimensions.
   Tracker(const Algorithm& algorithm, const Spec& spec);
 
   /// A tracker by a searcher of your own, which finds all pairs anew in each frame. Cost of a frame: one
@@ -79,7 +79,7 @@ class BROADSIDE_PUBLIC Tracker final {
   /// it is null.
   explicit Tracker(std::unique_ptr<Searcher<D>> searcher);
 
-  /// A tracker by a follower of your own, which takes every frame; of boxes of floats only. Throws
+  /// A tracker by a follower of your own, which gets every frame. For boxes of floats only. Throws
   /// std::invalid_argument if it is null.
   explicit Tracker(std::unique_ptr<Follower<D>> follower) requires std::is_same_v<Real, float>;
 
@@ -94,7 +94,7 @@ class BROADSIDE_PUBLIC Tracker final {
   /// Throws before anything has changed: InvalidInput if a changed box is invalid (unless bad_input() says
   /// otherwise); InvalidFrame if an id in `changed` lies beyond both this frame's array and the last one's,
   /// or if there are filters and not one for each box. If a sink throws or memory runs out, the frame counts
-  /// as not taken: the next update rebuilds, takes every box for changed and delivers the events since the
+  /// as not taken: the next update rebuilds, takes every box as changed and delivers the events since the
   /// last whole update.
   std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
@@ -123,14 +123,14 @@ class BROADSIDE_PUBLIC Tracker final {
   /// index anyway; else null. Valid until the next update().
   [[nodiscard]] const BoxIndex<D, Real>* box_index() const noexcept;
 
-  /// Which way the last update() went and, if the algorithm is one that chooses, what it chose; in a
-  /// sentence. Empty for an algorithm that has one way.
+  /// In one sentence, how the last update() was done and, if the algorithm chooses among others, what it
+  /// chose. Empty for an algorithm that has only one way.
   [[nodiscard]] std::string explanation() const;
 
-  /// The bytes it holds: what every tracker keeps, and what the algorithm says that it keeps.
+  /// The number of bytes held by the tracker and, as far as it reports them, by the algorithm.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
-  /// As a Finder's.
+  /// As Finder::workers() and Finder::set_workers().
   [[nodiscard]] const Workers& workers() const noexcept;
   void set_workers(const Workers& workers);
 
