@@ -28,18 +28,18 @@ static_assert(!std::is_convertible_v<std::vector<Box3>, BoxView<2>>);
 static_assert(!std::is_convertible_v<std::vector<DoubleBox2>, BoxView<2>>);
 static_assert(!BoxRange<std::vector<int>> && !BoxRange<std::vector<Box<4>>> && !BoxRange<int>);
 
-struct Body {
+struct Labelled {
   char name;
   Box2 box;
 };
 
 const std::vector<Box2> three_boxes = {{{0, 0}, {1, 1}}, {{2, 0}, {3, 1}}, {{4, 0}, {5, 1}}};
-const std::vector<Body> bodies = {{'a', three_boxes[0]}, {'b', three_boxes[1]}, {'c', three_boxes[2]}};
-const std::array<BoxView<2>, 2> views = {BoxView<2>(three_boxes),
-                                         BoxView<2>(&bodies[0].box, bodies.size(), sizeof(Body))};
+const std::vector<Labelled> labelled = {{'a', three_boxes[0]}, {'b', three_boxes[1]}, {'c', three_boxes[2]}};
+const std::array<BoxView<2>, 2> views_of_three = {
+    BoxView<2>(three_boxes), BoxView<2>(&labelled[0].box, labelled.size(), sizeof(Labelled))};
 
 TEST(BoxView, IsARange) {
-  for (const BoxView<2>& view : views) {
+  for (const BoxView<2>& view : views_of_three) {
     std::vector<Box2> seen;
     for (const Box2& box : view) seen.push_back(box);
     EXPECT_THAT(seen, ElementsAreArray(three_boxes));
@@ -49,7 +49,7 @@ TEST(BoxView, IsARange) {
 }
 
 TEST(BoxView, IsReadInAnyOrder) {
-  for (const BoxView<2>& view : views) {
+  for (const BoxView<2>& view : views_of_three) {
     auto it = view.end();
     EXPECT_EQ(*--it, three_boxes[2]);
     EXPECT_EQ(*(it - 2), three_boxes[0]);
