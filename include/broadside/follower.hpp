@@ -84,6 +84,9 @@ class BROADSIDE_PUBLIC Follower {
   /// did and do not now, in any order. An event may be written more than once. Candidates, if
   /// change.wants_candidates, all go to `begun`. Returns what it did, or nothing if it does not count. After
   /// an exception the next change has `rebuild`.
+  ///
+  /// Ids must be below change.now.size(); otherwise the behaviour is undefined. A missing or wrong event is
+  /// passed on: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
 
   /// The boxes of the last frame for queries (see queries.hpp), if the follower keeps such an index anyway.

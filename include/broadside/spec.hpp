@@ -52,8 +52,9 @@ struct BROADSIDE_PUBLIC Spec {
   /// Reads a text. Throws InvalidSpec, naming text and place, if it is empty, a part has no `=`, or a tunable
   /// is given twice.
   Spec(std::string_view text);
-  Spec(const char* text) : Spec(std::string_view(text)) {}
+  Spec(const char* text) : Spec(text == nullptr ? std::string_view() : std::string_view(text)) {}
   Spec(const std::string& text) : Spec(std::string_view(text)) {}
+  Spec(std::nullptr_t) = delete;
 
   /// The text that reads back to the same spec.
   [[nodiscard]] std::string text() const;

@@ -91,6 +91,7 @@ std::string Spec::text() const {
 
 Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
   for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.standard);
+  std::vector<bool> is_given(tunables.size());
   for (const auto& [name, given] : spec.values) {
     const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
     if (tunable == tunables.end()) {
@@ -100,8 +101,11 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
                                  "; expected ", names.empty() ? "" : "one of: ", listed(names),
                                  core::former_tunable(spec.name, name)}));
     }
-    values_[static_cast<std::size_t>(tunable - tunables.begin())].second =
-        checked(spec.name, *tunable, given);
+    const auto place = static_cast<std::size_t>(tunable - tunables.begin());
+    if (is_given[place])
+      throw InvalidSpec(message({spec.name, ": ", name, " is given twice; expected one value"}));
+    is_given[place] = true;
+    values_[place].second = checked(spec.name, *tunable, given);
   }
 }
 

@@ -47,7 +47,7 @@ bool FilterPlan::make_nodes(std::span<const FilterGroup> groups, std::size_t nod
     Filter filter = groups[i].filter;
     const bool is_negative = filter.group < 0;
     if (!is_negative || !by_negative_group) filter.group = 0;
-    const auto same = std::ranges::find_if(nodes_, [&](const Node& node) {
+    const auto same = std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& node) {
       return node.filter == filter && node.is_right == groups[i].is_right;
     });
     if (same == nodes_.end() && nodes_.size() == nodes) return false;
@@ -95,7 +95,7 @@ void FilterPlan::plan_positive_groups(std::span<const FilterGroup> groups,
   for (std::uint32_t i = 0; i < groups.size(); ++i) {
     if (number(i) > 0) positive_.push_back(i);
   }
-  std::ranges::stable_sort(positive_, {}, number);
+  std::ranges::sort(positive_, {}, [&](std::uint32_t group) { return std::pair(number(group), group); });
   rejected_in_positive_.clear();
   std::ranges::copy_if(rejected, std::back_inserter(rejected_in_positive_), [&](const GroupPair& pair) {
     return number(pair.first) > 0 && number(pair.first) == number(pair.second);
@@ -109,7 +109,10 @@ void FilterPlan::plan_positive_groups(std::span<const FilterGroup> groups,
     while (next != rejected_in_positive_.end() && number(next->first) < of_these) ++next;
     const auto first = next;
     while (next != rejected_in_positive_.end() && number(next->first) == of_these) ++next;
-    plan_group(groups, std::span(positive_).subspan(begin, end - begin), {first, next});
+    const auto of_group = std::span<const GroupPair>(rejected_in_positive_)
+                              .subspan(static_cast<std::size_t>(first - rejected_in_positive_.begin()),
+                                       static_cast<std::size_t>(next - first));
+    plan_group(groups, std::span(positive_).subspan(begin, end - begin), of_group);
     begin = end;
   }
 }

@@ -12,7 +12,7 @@ namespace broadside::find {
 namespace {
 
 /// Up to this many boxes have too few pairs for filters to matter.
-constexpr std::size_t few_boxes = 128;
+constexpr std::size_t max_ungrouped_boxes = 128;
 
 constexpr std::size_t max_sample = 1024;
 
@@ -20,8 +20,16 @@ constexpr std::size_t max_sample = 1024;
 /// sqrt(n) of n boxes then has about as many in all, which is enough to tell them from chance.
 constexpr double rejected_per_box = 8;
 
-/// Boxes are also grouped if at least one of this number accepts no other one.
+/// Boxes are also grouped if at least one of this number can accept no other one.
 constexpr std::size_t boxes_per_lonely_box = 8;
+
+/// Several searches must promise to cost this many times less than one: boxes that are searched several times
+/// cost more where they overlap many others, which PlanCosts does not know.
+constexpr double min_gain = 2;
+
+bool is_lonely(const Filter& filter) {
+  return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
+}
 
 /// Passes on the pairs that filters let count.
 class AcceptingSink final : public core::FilterSink {
@@ -121,13 +129,14 @@ std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const 
 template <int D>
 bool GroupedSearch<D>::is_grouped(const SearchInput<D>& input, const BoxFilters& filters) {
   const std::size_t boxes = input.boxes.size();
-  if (boxes <= few_boxes || !sample(input, filters)) return false;
+  if (boxes <= max_ungrouped_boxes || !sample(input, filters)) return false;
   if (!groups_.build(filters, boxes, input.left_count)) return false;
   rejected_groups_.clear();
   for (const auto& [a, b] : rejected_) rejected_groups_.push_back({groups_.group_of(a), groups_.group_of(b)});
   const double rejected = static_cast<double>(rejected_.size()) * weight_;
+  const double cost_of_all = static_cast<double>(boxes) * PlanCosts::box + PlanCosts::search + rejected;
   return plan_.make(groups_.groups(), input.left_count != 0, rejected_groups_, weight_) &&
-         plan_.cost() < static_cast<double>(boxes) * PlanCosts::box + PlanCosts::search + rejected;
+         plan_.cost() < cost_of_all / (plan_.searches().size() > 1 ? min_gain : 1);
 }
 
 /// Compares a sample of the boxes with each other, in about half a test for each box there is. Sets what is
@@ -141,22 +150,21 @@ bool GroupedSearch<D>::sample(const SearchInput<D>& input, const BoxFilters& fil
   weight_ = static_cast<double>(boxes) * static_cast<double>(boxes) / static_cast<double>(count * count);
   sample_.clear();
   rejected_.clear();
+  std::size_t lonely = 0;
   for (std::size_t i = 0; i < count; ++i) {
     // One box of each stretch, but not always the same: filters may follow each other in a pattern.
     const std::size_t place = i * boxes / count + mixed(i) % stride;
-    SampledBox next{place, input.boxes[place], filters[place], false};
-    for (SampledBox& other : sample_) {
+    const SampledBox next{place, input.boxes[place], filters[place]};
+    for (const SampledBox& other : sample_) {
       if (input.left_count != 0 && (other.place < input.left_count) == (place < input.left_count)) continue;
-      if (accepts(other.filter, next.filter))
-        other.meets_any = next.meets_any = true;
-      else if (overlap(other.box, next.box))
+      if (!accepts(other.filter, next.filter) && overlap(other.box, next.box))
         rejected_.emplace_back(other.place, place);
     }
     sample_.push_back(next);
+    lonely += static_cast<std::size_t>(is_lonely(next.filter));
   }
-  const auto lonely = std::ranges::count(sample_, false, &SampledBox::meets_any);
   return static_cast<double>(rejected_.size()) * weight_ >= rejected_per_box * static_cast<double>(boxes) ||
-         static_cast<std::size_t>(lonely) * boxes_per_lonely_box >= count;
+         lonely * boxes_per_lonely_box >= count;
 }
 
 template <int D>

@@ -49,7 +49,6 @@ class GroupedSearch {
     std::size_t place;
     Box<D> box;
     Filter filter;
-    bool meets_any;
   };
 
   FilterGroups groups_;

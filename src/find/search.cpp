@@ -174,7 +174,7 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   take_present(left);
   const std::size_t left_count = present_.size();
   take_present(right);
-  if (left_count == 0 || left_count == present_.size()) return Statistics{};
+  if (left_count == 0 || left_count == present_.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
   return through(RenamingSink(ids_, left_count, pairs), [&](PairSink& renamed) {
     return search_filtered(present_, left_count, options, filters, renamed);
@@ -187,7 +187,7 @@ std::optional<Statistics> Search<D, Real>::find_across(std::span<const Box<D, Re
                                                        const SearchOptions<D>& options, PairSink& pairs) {
   if (options.absent != 0)
     return find_between(boxes.first(left_count), boxes.subspan(left_count), options, pairs);
-  if (left_count == 0 || left_count == boxes.size()) return Statistics{};
+  if (left_count == 0 || left_count == boxes.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count);
   return through(CrossingSink(left_count, pairs), [&](PairSink& crossing) {
     return search_filtered(boxes, left_count, options, filters, crossing);

@@ -58,6 +58,10 @@ class Search {
  private:
   std::optional<Statistics> find_within(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
                                         PairSink& pairs);
+  std::optional<Statistics> nothing_found() noexcept {
+    searches_ = 1;
+    return Statistics{};
+  }
   std::optional<Statistics> search_filtered(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                             const SearchOptions<D>& options, const BoxFilters& filters,
                                             PairSink& pairs);

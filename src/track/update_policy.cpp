@@ -2,6 +2,7 @@
 #include "track/update_policy.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace broadside::track {
@@ -70,7 +71,8 @@ FollowPolicy::FollowPolicy(Update update, const FindCosts& finding, std::vector<
       of_box_(finding.box) {
   for (const StructureCosts& structure : structures_) of_mover_.push_back(structure.costs.mover);
   // The structure that compares all is for special cases.
-  const auto usual = std::ranges::find_if_not(structures_, &StructureCosts::compares_all);
+  const auto usual =
+      std::find_if_not(structures_.begin(), structures_.end(), std::mem_fn(&StructureCosts::compares_all));
   if (usual != structures_.end()) current_ = static_cast<std::size_t>(usual - structures_.begin());
 }
 
@@ -109,7 +111,7 @@ void FollowPolicy::take_count(std::size_t boxes) {
   if (update_ != Update::automatic || structures_.size() < 2) return;
   for (std::size_t i = 0; i < structures_.size(); ++i) {
     const std::size_t max = structures_[i].max_boxes;
-    if (boxes > (were_few ? max + max / 4 : max)) continue;
+    if (max == 0 || boxes > (were_few ? max + max / 4 : max)) continue;
     are_few_ = true;
     if (current_ == i) continue;
     use(i);

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "core/lean.hpp"
 #include "core/number_text.hpp"
 #include "track/candidate_limit.hpp"
 
@@ -26,6 +27,8 @@ Updater<D, Real>::Updater(TrackerPlan<D> plan)
 template <int D, typename Real>
 std::optional<Statistics> Updater<D, Real>::update(const Change<D, Real>& change, PairSink& begun,
                                                    PairSink& ended) {
+  // Lean builds, which are to be small, do not enlarge boxes.
+  if constexpr (core::is_lean) return pairs_.update(change, begun, ended);
   was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
   if (was_enlarged_) return statistics_;
   update_exactly(change, begun, ended);

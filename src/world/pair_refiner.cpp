@@ -85,6 +85,7 @@ void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
   const bool is_retry = !refined.ended.empty() || !fresh.empty();
   for (const Pair pair : candidates.ended) {
     const PairGraph::EdgeId edge = graph.find(pair);
+    if (edge == PairGraph::none) continue;  // ended and never began: an algorithm of the caller's is wrong
     if (graph.mark(edge).overlaps && graph.mark(edge).accepted) refined.ended.push_back(pair);
     graph.erase(edge);
   }

@@ -153,8 +153,8 @@ void WorldState<D, Real>::shift_origin(const Point<D, Real>& origin) {
 template <int D, typename Real>
 void WorldState<D, Real>::set_filter(std::uint32_t slot, const Filter& filter) {
   if (filter == parts.boxes.filters().get(slot)) return;
-  reserve(0, true, false);
   parts.boxes.reserve_changes(1);
+  reserve(0, true, false);  // begins to use filters, so it comes last
   parts.boxes.set_filter(slot, filter);
   query_index.mark(slot);
 }

@@ -24,17 +24,13 @@ Frame<D, Real> TakenFrame<D, Real>::frame() const noexcept {
 
 template <int D, typename Real>
 WorldTracker<D, Real>::WorldTracker(const WorldOptions& options)
-    : is_own_(true),
-      spec_(options.algorithm),
-      tracker_(!core::is_lean && options.shadow ? Either(Shadowed(spec_)) : Either(Plain(spec_))) {
+    : is_own_(true), spec_(options.algorithm), tracker_(make(spec_, options.shadow)) {
   if constexpr (!core::is_lean) spec_ = core::canonical_spec(spec_);
 }
 
 template <int D, typename Real>
 WorldTracker<D, Real>::WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options)
-    : is_own_(false),
-      tracker_(!core::is_lean && options.shadow ? Either(Shadowed(std::move(tracker)))
-                                                : Either(std::move(tracker))) {}
+    : is_own_(false), tracker_(make(std::move(tracker), options.shadow)) {}
 
 template <int D, typename Real>
 void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& events) {
@@ -80,7 +76,7 @@ template <int D, typename Real>
 WorldTracker<D, Real> WorldTracker<D, Real>::remade(const Spec& spec) const {
   WorldOptions options;
   options.algorithm = spec;
-  options.shadow = is_shadowed();
+  options.shadow = std::get_if<Plain>(&tracker_) == nullptr;
   WorldTracker other(options);
   other.set_workers(workers());
   return other;

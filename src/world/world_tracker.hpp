@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -95,15 +97,24 @@ class WorldTracker {
  private:
   using Plain = Tracker<D, Real>;
   using Shadowed = ShadowTracker<D, Real>;
-  using Either = std::variant<Plain, Shadowed>;
+  /// Lean builds have no shadows.
+  using Either = std::conditional_t<core::is_lean, std::variant<Plain>, std::variant<Plain, Shadowed>>;
 
-  bool is_shadowed() const noexcept { return std::holds_alternative<Shadowed>(tracker_); }
+  template <typename Source>
+  static Either make(Source&& source, bool is_shadowed) {
+    if constexpr (!core::is_lean) {
+      if (is_shadowed) return Shadowed(std::forward<Source>(source));
+    }
+    return Plain(std::forward<Source>(source));
+  }
+
   const Plain& tracker() const noexcept {
-    return is_shadowed() ? std::get_if<Shadowed>(&tracker_)->tracker() : *std::get_if<Plain>(&tracker_);
+    if constexpr (!core::is_lean) {
+      if (const auto* const shadowed = std::get_if<Shadowed>(&tracker_)) return shadowed->tracker();
+    }
+    return *std::get_if<Plain>(&tracker_);
   }
-  Plain& tracker() noexcept {
-    return is_shadowed() ? std::get_if<Shadowed>(&tracker_)->tracker() : *std::get_if<Plain>(&tracker_);
-  }
+  Plain& tracker() noexcept { return const_cast<Plain&>(std::as_const(*this).tracker()); }
   void take(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
   std::vector<Pair> lead(const Taken& to);
 

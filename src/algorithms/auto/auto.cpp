@@ -198,7 +198,7 @@ class AutoSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
+std::unique_ptr<Searcher<D>> make_automatic_searcher(const Settings&) {
   return std::make_unique<AutoSearcher<D>>();
 }
 
@@ -214,7 +214,7 @@ FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, s
 
 /// The later ones take over where the grid's cells make too many tests. A build may lack some.
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> automatic_followers() {
   detail::Vector<FollowerChoice<D>> followers = {
       follower_of<D>("brute_force", core::brute_force_following, core::boxes_for_brute_force),
       follower_of<D>("grid", core::grid_following<D>),
@@ -225,7 +225,7 @@ detail::Vector<FollowerChoice<D>> followers() {
 }
 
 template <int D>
-Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
+Outline<D> make_automatic_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
   return AutoSearcher<D>().lay_out(boxes, workers);
 }
 
@@ -238,14 +238,14 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame"),
       .source = core::unless_lean("Broadside's measurements"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_automatic_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_automatic_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(automatic_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(automatic_followers<3>),
       .find_costs_2d = core::grid_finding<2>,
       .find_costs_3d = core::grid_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .outline_2d = core::outline_in_dimension<2>(make_automatic_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_automatic_outline<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

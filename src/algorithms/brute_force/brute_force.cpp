@@ -61,12 +61,12 @@ class BruteForceSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
+std::unique_ptr<Searcher<D>> make_brute_force_searcher(const Settings&) {
   return std::make_unique<BruteForceSearcher<D>>();
 }
 
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> brute_force_followers() {
   return {{"brute_force", [](const Settings&) { return make_brute_force_follower<D>(); },
            core::brute_force_following, 1}};
 }
@@ -79,10 +79,10 @@ Algorithm brute_force() {
       .summary = core::unless_lean("every box against every other, over a structure of arrays"),
       .source = core::unless_lean("paper.md, sections II and VI-A"),
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_brute_force_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_brute_force_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(brute_force_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(brute_force_followers<3>),
       .find_costs_2d = core::brute_force_finding,
       .find_costs_3d = core::brute_force_finding,
       .tests_doubles = true,

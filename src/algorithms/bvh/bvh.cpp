@@ -158,17 +158,17 @@ class BvhSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings&) {
+std::unique_ptr<Searcher<D>> make_bvh_searcher(const Settings&) {
   return std::make_unique<BvhSearcher<D>>();
 }
 
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> bvh_followers() {
   return {{"bvh", [](const Settings&) { return make_bvh_follower<D>(); }, core::bvh_following<D>}};
 }
 
 template <int D>
-Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
+Outline<D> make_bvh_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
   return BvhSearcher<D>().lay_out(boxes, workers);
 }
 
@@ -182,14 +182,14 @@ Algorithm bvh() {
       .source = core::unless_lean(
           "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_bvh_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_bvh_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(bvh_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(bvh_followers<3>),
       .find_costs_2d = core::tree_finding<2>,
       .find_costs_3d = core::tree_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .outline_2d = core::outline_in_dimension<2>(make_bvh_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_bvh_outline<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -238,18 +238,18 @@ std::optional<double> cell_edge(const Settings& settings) {
 }
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make_grid_searcher(const Settings& settings) {
   return std::make_unique<GridSearcher<D>>(cell_edge(settings));
 }
 
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> grid_followers() {
   return {{"grid", [](const Settings& settings) { return make_grid_follower<D>(cell_edge(settings)); },
            core::grid_following<D>}};
 }
 
 template <int D>
-Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+Outline<D> make_grid_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
   return GridSearcher<D>(cell_edge(settings)).lay_out(boxes);
 }
 
@@ -273,14 +273,14 @@ Algorithm grid() {
                     .least = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_grid_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_grid_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(grid_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(grid_followers<3>),
       .find_costs_2d = core::grid_finding<2>,
       .find_costs_3d = core::grid_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .outline_2d = core::outline_in_dimension<2>(make_grid_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_grid_outline<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

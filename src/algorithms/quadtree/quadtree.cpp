@@ -277,12 +277,12 @@ std::size_t capacity_of(const Settings& settings) {
 }
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make_quadtree_searcher(const Settings& settings) {
   return std::make_unique<QuadtreeSearcher<D>>(capacity_of<D>(settings));
 }
 
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> quadtree_followers() {
   const auto make = [](const Settings& settings) {
     return make_quadtree_follower<D>(settings.is_auto("capacity")
                                          ? following_capacity
@@ -292,7 +292,7 @@ detail::Vector<FollowerChoice<D>> followers() {
 }
 
 template <int D>
-Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+Outline<D> make_quadtree_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
   return QuadtreeSearcher<D>(capacity_of<D>(settings)).lay_out(boxes);
 }
 
@@ -312,14 +312,14 @@ Algorithm quadtree() {
                     .most = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_quadtree_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_quadtree_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(quadtree_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(quadtree_followers<3>),
       .find_costs_2d = core::tree_finding<2>,
       .find_costs_3d = core::tree_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .outline_2d = core::outline_in_dimension<2>(make_quadtree_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_quadtree_outline<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -205,19 +205,20 @@ class SweepAndPruneSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_searcher(const Settings& settings) {
+std::unique_ptr<Searcher<D>> make_sweep_and_prune_searcher(const Settings& settings) {
   return std::make_unique<SweepAndPruneSearcher<D>>(settings);
 }
 
 template <int D>
-detail::Vector<FollowerChoice<D>> followers() {
+detail::Vector<FollowerChoice<D>> sweep_and_prune_followers() {
   return {{"sweep_and_prune",
            [](const Settings& settings) { return make_sweep_and_prune_follower<D>(axis_of(settings)); },
            core::sweep_following<D>}};
 }
 
 template <int D>
-Outline<D> make_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
+Outline<D> make_sweep_and_prune_outline(std::span<const Box<D>> boxes, const Workers&,
+                                        const Settings& settings) {
   return SweepAndPruneSearcher<D>(settings).lay_out(boxes);
 }
 
@@ -242,14 +243,14 @@ Algorithm sweep_and_prune() {
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(followers<3>),
+      .searcher_2d = core::in_dimension<2>(make_sweep_and_prune_searcher<2>),
+      .searcher_3d = core::in_dimension<3>(make_sweep_and_prune_searcher<3>),
+      .followers_2d = core::followers_in_dimension<2>(sweep_and_prune_followers<2>),
+      .followers_3d = core::followers_in_dimension<3>(sweep_and_prune_followers<3>),
       .find_costs_2d = core::sweep_finding<2>,
       .find_costs_3d = core::sweep_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_outline<3>),
+      .outline_2d = core::outline_in_dimension<2>(make_sweep_and_prune_outline<2>),
+      .outline_3d = core::outline_in_dimension<3>(make_sweep_and_prune_outline<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -81,6 +81,9 @@ TEST(TypedOptions, AreRefusedWithTheValueFoundAndTheValuesExpected) {
   EXPECT_PRED2(names, refusal<2>(AutoOptions{.threads = static_cast<std::size_t>(-1)}), "threads is '");
   EXPECT_PRED2(names, refusal<2>(SweepAndPruneOptions{.axis = Axis::z}), "axis is 'z'");
   EXPECT_EQ(refusal<3>(SweepAndPruneOptions{.axis = Axis::z}), "");
+  EXPECT_PRED2(names, refusal<3>(SweepAndPruneOptions{.axis = Axis{5}}), "axis is '5'");
+  EXPECT_PRED2(names, refusal<2>(BvhOptions{.update = Update{9}}), "update is '9'");
+  EXPECT_PRED2(names, refusal<2>(Spec("grid", {{"cell", 2}, {"cell", 3}})), "cell is given twice");
 }
 
 }  // namespace
