@@ -1,5 +1,5 @@
-// The kernels of followers: boxes that moved against boxes that are kept in blocks, in cells of blocks or in a
-// run, and which overlaps begin or end by it.
+// The kernels of followers: boxes that moved against boxes that are kept in blocks, in cells of blocks or in
+// a run, and which overlaps begin or end by it.
 #pragma once
 
 #include <array>

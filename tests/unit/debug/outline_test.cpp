@@ -43,8 +43,7 @@ template <int D>
 std::vector<std::string> outlined() {
   std::vector<std::string> all;
   for (const Algorithm& algorithm : algorithms()) {
-    if (algorithm.has_dimension(D) && !algorithm.name.ends_with("brute_force"))
-      all.push_back(algorithm.name);
+    if (algorithm.has_dimension(D) && !algorithm.name.ends_with("brute_force")) all.push_back(algorithm.name);
   }
   return all;
 }

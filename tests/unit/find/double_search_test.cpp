@@ -1,5 +1,5 @@
-// Finders of doubles against the definition, where floats cannot tell many boxes apart: by searchers that test
-// doubles in their kernels, and by one that knows nothing of them.
+// Finders of doubles against the definition, where floats cannot tell many boxes apart: by searchers that
+// test doubles in their kernels, and by one that knows nothing of them.
 #include "find/double_search.hpp"
 
 #include <memory>
