@@ -28,7 +28,7 @@ template <int D, typename Real>
 class BoxView {
  public:
   class Iterator;
-  using value_type = Box<D, Real>;
+  using value_type = Box<D, Real>;  // NOLINT(readability-identifier-naming)
 
   BoxView() = default;
 
@@ -76,12 +76,12 @@ class BoxView {
 template <int D, typename Real>
 class BoxView<D, Real>::Iterator {
  public:
-  using iterator_concept = std::random_access_iterator_tag;
-  using iterator_category = std::input_iterator_tag;  // because it returns boxes by value
-  using value_type = Box<D, Real>;
-  using difference_type = std::ptrdiff_t;
-  using pointer = void;
-  using reference = Box<D, Real>;
+  using iterator_concept = std::random_access_iterator_tag;  // NOLINT(readability-identifier-naming)
+  using iterator_category = std::input_iterator_tag;         // NOLINT(readability-identifier-naming)
+  using value_type = Box<D, Real>;                           // NOLINT(readability-identifier-naming)
+  using difference_type = std::ptrdiff_t;                    // NOLINT(readability-identifier-naming)
+  using pointer = void;                                      // NOLINT(readability-identifier-naming)
+  using reference = Box<D, Real>;                            // NOLINT(readability-identifier-naming)
 
   Iterator() = default;
   constexpr Iterator(const BoxView& view, std::size_t place) noexcept
@@ -132,7 +132,7 @@ struct ViewOfBox {};
 template <int D, typename Real>
 requires is_supported<D, Real>
 struct ViewOfBox<Box<D, Real>> {
-  using type = BoxView<D, Real>;
+  using type = BoxView<D, Real>;  // NOLINT(readability-identifier-naming)
 };
 
 /// The BoxView to which a range of boxes converts.
