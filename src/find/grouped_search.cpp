@@ -132,7 +132,8 @@ bool GroupedSearch<D>::is_grouped(const SearchInput<D>& input, const BoxFilters&
   if (boxes <= max_ungrouped_boxes || !sample(input, filters)) return false;
   if (!groups_.build(filters, boxes, input.left_count)) return false;
   rejected_groups_.clear();
-  for (const auto& [a, b] : rejected_) rejected_groups_.emplace_back(groups_.group_of(a), groups_.group_of(b));
+  for (const auto& [a, b] : rejected_)
+    rejected_groups_.emplace_back(groups_.group_of(a), groups_.group_of(b));
   const double rejected = static_cast<double>(rejected_.size()) * weight_;
   const double cost_of_all = static_cast<double>(boxes) * PlanCosts::box + PlanCosts::search + rejected;
   return plan_.make(groups_.groups(), input.left_count != 0, rejected_groups_, weight_) &&
