@@ -77,57 +77,57 @@ enum class Axis : std::uint8_t { x, y, z };
 // and worlds alone.
 
 /// Chooses among the other algorithms by a sample of the boxes; where boxes move, in each frame.
-struct AutoOptions {
+struct BROADSIDE_PUBLIC AutoOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 /// Every box against every other.
-struct BruteForceOptions {
+struct BROADSIDE_PUBLIC BruteForceOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 /// Cells over all axes but one, and a sweep along that one in each.
-struct GridOptions {
+struct BROADSIDE_PUBLIC GridOptions {
   /// The size of a cell in the boxes' unit, above 0; made larger if there would be over 4 cells per box. In
   /// trackers, the size of the smallest cells.
   std::optional<double> cell{};
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 /// A sorted sweep along one axis, in stripes of a second axis where that pays.
-struct SweepAndPruneOptions {
+struct BROADSIDE_PUBLIC SweepAndPruneOptions {
   std::optional<Axis> axis{};        ///< the axis to sweep along
   std::optional<bool> is_striped{};  ///< whether a second axis is cut into stripes
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 /// Nodes split at medians until they hold few boxes; an octree in 3D.
-struct QuadtreeOptions {
+struct BROADSIDE_PUBLIC QuadtreeOptions {
   std::optional<std::size_t> capacity{};  ///< a node of up to this number of boxes is not split; from 1
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 /// A tree of bounds, sixteen to a node, joined with itself.
-struct BvhOptions {
+struct BROADSIDE_PUBLIC BvhOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;
 
-  BROADSIDE_PUBLIC operator Spec() const;
+  operator Spec() const;
 };
 
 }  // namespace broadside
