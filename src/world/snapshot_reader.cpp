@@ -113,7 +113,7 @@ void SnapshotReader<D, Real>::read_options(const Parts& world, const WorldTracke
 
 template <int D, typename Real>
 void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
-  constexpr std::uint32_t last_generation = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::uint32_t max_generation = std::numeric_limits<std::uint32_t>::max();
   const std::size_t count = in_.count(Serializer<Box<D, Real>>::bytes, "slots");
   auto boxes = get_all<Box<D, Real>>(in_, count, "boxes");
   auto generations = get_all<std::uint32_t>(in_, count, "generations");
@@ -123,7 +123,7 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
     const auto found = in_.get<std::uint8_t>();
     expect(found <= static_cast<std::uint8_t>(SlotState::retired), "a slot is in no state that there is");
     states[slot] = static_cast<SlotState>(found);
-    expect(states[slot] != SlotState::retired || generations[slot] == last_generation,
+    expect(states[slot] != SlotState::retired || generations[slot] == max_generation,
            "a slot is used up and has generations left");
     // One that was invalid is live and absent.
     expect(states[slot] == SlotState::live || !is_present(boxes[slot]), "a slot is not live and has a box");
