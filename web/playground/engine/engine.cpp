@@ -132,32 +132,31 @@ std::string to_json(const Algorithm& algorithm) {
        {"source", quoted(algorithm.source)},
        {"kind", quoted(name(algorithm.kind))},
        {"dimensions", dimensions_of(algorithm)},
-       {"tracks", algorithm.tracker_2d || algorithm.tracker_3d ? "true" : "false"},
+       {"tracks", algorithm.followers_2d.empty() && algorithm.followers_3d.empty() ? "false" : "true"},
        {"tunables", array_of(algorithm.tunables, [](const Tunable& each) { return to_json(each); })}});
 }
 
 /// The finders that were asked for, which keep their memory between calls, as a program's would.
 template <int D>
-PairFinder<D>& finder_of(const std::string& spec) {
-  constexpr std::size_t most_kept = 32;
-  static std::map<std::string, std::unique_ptr<PairFinder<D>>> finders;
+Finder<D>& finder_of(const std::string& spec) {
+  constexpr std::size_t max_kept = 32;
+  static std::map<std::string, Finder<D>> finders;
   auto found = finders.find(spec);
   if (found == finders.end()) {
-    auto made = make_finder<D>(spec);
-    if (finders.size() == most_kept) finders.clear();
+    Finder<D> made(spec);
+    if (finders.size() == max_kept) finders.clear();
     found = finders.emplace(spec, std::move(made)).first;
   }
-  return *found->second;
+  return found->second;
 }
 
 template <int D>
 void find(std::size_t count) {
-  PairFinder<D>& finder = finder_of<D>(input.text);
+  Finder<D>& finder = finder_of<D>(input.text);
   const std::vector<Box<D>> boxes = boxes_of<D>(count);
   kernels::observed_tests().clear();
   PairCollector pairs(answers.pairs);
-  finder.find(boxes, pairs);
-  Statistics statistics = finder.statistics().value_or(Statistics{});
+  Statistics statistics = finder.find(boxes, pairs).value_or(Statistics{});
   if constexpr (kernels::is_observing) {
     answers.more_pairs.swap(kernels::observed_tests());
     statistics.hits = 0;
@@ -170,10 +169,11 @@ void find(std::size_t count) {
 
 template <int D>
 void outline_of(std::size_t count) {
-  const Outline<D> laid_out = outline(finder_of<D>(input.text), boxes_of<D>(count));
+  const std::vector<Box<D>> boxes = boxes_of<D>(count);
+  const Outline<D> laid_out = outline<D, float>(input.text, boxes);
   answers.text = laid_out.kind + "\n" + laid_out.caption;
   answers.numbers.push_back(laid_out.swept_axis);
-  for (const std::vector<Box<D>>& level : laid_out.levels) {
+  for (const auto& level : laid_out.levels) {
     answers.numbers.push_back(static_cast<double>(level.size()));
     answer_boxes<D>(level);
   }
@@ -194,7 +194,7 @@ class Following {
 template <int D>
 class FollowingIn final : public Following {
  public:
-  explicit FollowingIn(const std::string& spec) : tracker_(make_tracker<D>(spec)) {}
+  explicit FollowingIn(const std::string& spec) : tracker_(spec) {}
 
  private:
   void update(std::size_t count) override {
@@ -206,14 +206,13 @@ class FollowingIn final : public Following {
     }
     PairCollector begun(answers.pairs);
     PairCollector ended(answers.more_pairs);
-    tracker_->update({boxes, changed}, begun, ended);
+    answer_statistics(tracker_.update({boxes, changed}, begun, ended));
     before_ = std::move(boxes);
-    answer_statistics(tracker_->statistics());
-    answers.numbers.push_back(static_cast<double>(tracker_->bytes()));
-    answers.text = tracker_->explanation();
+    answers.numbers.push_back(static_cast<double>(tracker_.bytes()));
+    answers.text = tracker_.explanation();
   }
 
-  std::unique_ptr<PairTracker<D>> tracker_;
+  Tracker<D> tracker_;
   std::vector<Box<D>> before_;
 };
 
