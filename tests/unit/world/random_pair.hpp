@@ -14,9 +14,9 @@ inline std::uint32_t below(std::mt19937& random, std::uint32_t end) {
 }
 
 inline Pair random_pair(std::mt19937& random, std::uint32_t boxes) {
-  const std::uint32_t a = below(random, boxes);
-  const std::uint32_t b = (a + 1 + below(random, boxes - 1)) % boxes;
-  return {BoxId{std::min(a, b)}, BoxId{std::max(a, b)}};
+  const std::uint32_t one = below(random, boxes);
+  const std::uint32_t other = (one + 1 + below(random, boxes - 1)) % boxes;
+  return {BoxId{std::min(one, other)}, BoxId{std::max(one, other)}};
 }
 
 }  // namespace broadside::world
