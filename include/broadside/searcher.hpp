@@ -85,9 +85,9 @@ class BROADSIDE_PUBLIC Searcher {
   /// boxes alone. Returns what it did, or nothing if it does not count. Throws what the sink and the
   /// checkpoint throw.
   ///
-  /// Ids must be below boxes.size(); otherwise the behaviour is undefined. A pair that is missing, doubled or
-  /// wrong makes a Finder, a Tracker or a World report wrong pairs, and nothing worse: ShadowTracker and
-  /// WorldOptions::shadow find such faults.
+  /// A pair with an id that is not below boxes.size(), or of a box with itself, is refused by
+  /// std::logic_error. A pair that is missing, doubled or wrong makes a Finder, a Tracker or a World report
+  /// wrong pairs, and nothing worse: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) = 0;
 
   /// If the algorithm chooses among others: what it chose for the last search and why, in one sentence.

@@ -17,6 +17,7 @@
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "find/callers_sink.hpp"
+#include "find/checked_searcher.hpp"
 #include "find/search.hpp"
 #include "interface/input_check.hpp"
 
@@ -153,7 +154,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
 template <int D, typename Real>
 Finder<D, Real>::Finder(const Algorithm& algorithm, const Spec& spec) {
   const Settings settings = algorithm::settings_of(algorithm, spec);
-  state_ = std::make_unique<State>(algorithm::searcher<D>(algorithm, settings), algorithm.tests_doubles,
+  state_ = std::make_unique<State>(find::searcher_of<D>(algorithm, settings), algorithm.tests_doubles,
                                    algorithm::threads_of(algorithm, settings));
 }
 
@@ -163,7 +164,7 @@ Finder<D, Real>::Finder(const Spec& spec) : Finder(algorithm::require_algorithm(
 template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
   if (searcher == nullptr) throw std::invalid_argument("Finder was given a null searcher; expected one");
-  state_ = std::make_unique<State>(std::move(searcher), false, 1);
+  state_ = std::make_unique<State>(std::make_unique<find::CheckedSearcher<D>>(std::move(searcher)), false, 1);
 }
 
 template <int D, typename Real>

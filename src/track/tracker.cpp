@@ -15,6 +15,7 @@
 #include "core/lean.hpp"
 #include "core/sort_pairs.hpp"
 #include "core/tunables.hpp"
+#include "find/checked_searcher.hpp"
 #include "interface/input_check.hpp"
 #include "track/tracker_state.hpp"
 
@@ -52,7 +53,7 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
     plan.update = chooses ? core::update_of(settings) : Update::follow;
   plan.explains = chooses && !plan.structures.empty();
   // Also where it is not used: it says whether the algorithm does the dimension.
-  std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);
+  std::unique_ptr<Searcher<D>> searcher = find::searcher_of<D>(algorithm, settings);
   if (plan.update != Update::follow) plan.searcher = std::move(searcher);
   return plan;
 }
@@ -139,7 +140,7 @@ Tracker<D, Real>::Tracker(std::unique_ptr<Searcher<D>> searcher) {
   if (!searcher) throw std::invalid_argument("Tracker was given a null searcher; expected a searcher");
   track::TrackerPlan<D> plan;
   plan.update = Update::rebuild;
-  plan.searcher = std::move(searcher);
+  plan.searcher = std::make_unique<find::CheckedSearcher<D>>(std::move(searcher));
   plan.explains = false;
   state_ = std::make_unique<State>(std::move(plan), 1);
 }

@@ -152,6 +152,22 @@ TEST(Finder, DropsPairsWithinASetThatItsSearcherWrites) {
   EXPECT_EQ(pairs, (std::vector<Pair>{{BoxId{0}, BoxId{0}}, {BoxId{0}, BoxId{1}}, {BoxId{0}, BoxId{2}}}));
 }
 
+TEST(Finder, RefusesIdsOutOfRangeOfItsSearcher) {
+  for (const Pair wrong : {Pair{BoxId{1}, BoxId{3}}, Pair{BoxId{2}, BoxId{2}}}) {
+    const auto write = [wrong](std::span<const Box2>, PairSink& pairs) {
+      pairs.add(wrong.first, wrong.second);
+    };
+    Finder<2> finder = stub_finder(write);
+    // One is absent: ids are renamed behind the searcher, in an array that ends with them.
+    for (const Box2& last : {at(2), absent_box<2>()}) {
+      std::vector<Pair> taken;
+      PairCollector sink(taken);
+      EXPECT_THROW(finder.find(std::vector{at(0), at(1), last}, sink), std::logic_error);
+      EXPECT_TRUE(taken.empty());
+    }
+  }
+}
+
 TEST(Finder, HandsItsWorkersToItsSearcher) {
   std::size_t threads = 0;
   Finder<2> finder(std::make_unique<StubSearcher>([&](const SearchInput<2>& input, PairSink&) {
