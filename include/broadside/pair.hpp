@@ -132,7 +132,7 @@ class BROADSIDE_PUBLIC PairSink {
 
   virtual void consume(std::span<const Pair> pairs) = 0;
 
-  /// This sink if it is one of the library's filters, whose work threads share.
+  /// This sink if it is one of the library's filters, else null. Threads share the work of a filter.
   virtual core::FilterSink* as_filter() noexcept { return nullptr; }
 
   std::size_t used_ = 0;

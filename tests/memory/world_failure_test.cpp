@@ -1,10 +1,12 @@
 // Worlds that run out of memory: a call that throws std::bad_alloc has changed nothing, and an update that
 // has failed can be tried again.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <set>
 #include <span>
@@ -15,6 +17,7 @@
 
 #include "broadside/world.hpp"
 
+#include "failing_allocation.hpp"
 #include "injection.hpp"
 #include "memory_case.hpp"
 
@@ -293,6 +296,26 @@ class Model {
   std::optional<Kept> kept_;
   bool is_owed_ = false;  // something was done since the last whole update
 };
+
+TEST(WorldFailureExample, KeepsItsFiltersWhereSettingOneFails) {
+  bool has_failed = true;
+  for (std::uint64_t number = 0; has_failed; ++number) {
+    World2 world;
+    const Handle handle = world.add({{0, 0}, {1, 1}});
+    world.add({{0, 0}, {1, 1}});
+    static_cast<void>(world.update());
+    world.shrink_to_fit();
+    const std::vector<std::byte> before = world.snapshot();
+    has_failed = false;
+    try {
+      const FailingAllocation failing(number, FailureKind::once);
+      world.set_filter(handle, {.category = 2});
+    } catch (const std::bad_alloc&) {
+      has_failed = true;
+    }
+    EXPECT_EQ(world.snapshot() == before, has_failed) << "allocation " << number;
+  }
+}
 
 TEST(WorldFailureExample, TellsWhatAFailedUpdateOwesOfMovedBoxesAndIgnoredPairs) {
   for (std::uint64_t k = 0, failures = 1; failures > 0; ++k) {
