@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/filter_sink.hpp"
+#include "core/sample.hpp"
 #include "kernels/observed_tests.hpp"
 
 namespace broadside::find {
@@ -91,14 +92,6 @@ class GroupSink final : public core::FilterSink {
   BoxFilters filters_;
 };
 
-/// A number that looks random, from a counter (S. Vigna's splitmix64).
-std::uint64_t mixed(std::uint64_t number) noexcept {
-  number = (number + 1) * 0x9e3779b97f4a7c15U;
-  number = (number ^ number >> 30) * 0xbf58476d1ce4e5b9U;
-  number = (number ^ number >> 27) * 0x94d049bb133111ebU;
-  return number ^ number >> 31;
-}
-
 }  // namespace
 
 template <int D>
@@ -147,14 +140,12 @@ bool GroupedSearch<D>::sample(const SearchInput<D>& input, const BoxFilters& fil
   const std::size_t boxes = input.boxes.size();
   const auto root = static_cast<std::size_t>(std::sqrt(static_cast<double>(boxes)));
   const std::size_t count = std::min(root, max_sample);
-  const std::size_t stride = boxes / count;
   weight_ = static_cast<double>(boxes) * static_cast<double>(boxes) / static_cast<double>(count * count);
   sample_.clear();
   rejected_.clear();
   std::size_t lonely = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // One box of each stretch, but not always the same: filters may follow each other in a pattern.
-    const std::size_t place = i * boxes / count + mixed(i) % stride;
+    const std::size_t place = core::sampled_place(i, boxes);
     const SampledBox next{place, input.boxes[place], filters[place]};
     for (const SampledBox& other : sample_) {
       if (input.left_count != 0 && (other.place < input.left_count) == (place < input.left_count)) continue;
