@@ -35,13 +35,13 @@ class BROADSIDE_PUBLIC Finder final {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5" or
-  /// GridOptions{.cell = 2.5}. Throws InvalidSpec, which names all algorithms if there is none of that
-  /// name.
+  /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5" or GridOptions{.cell = 2.5}. Throws
+  /// InvalidSpec if the spec is wrong. If there is no algorithm of its name, the message lists the algorithms
+  /// that there are.
   explicit Finder(const Spec& spec = {});
 
-  /// A finder by `algorithm` with the values in `spec`, whose name is ignored. Throws InvalidSpec if a value
-  /// is wrong or the algorithm does not support D dimensions.
+  /// A finder by `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws InvalidSpec if
+  /// a value is wrong or the algorithm does not support D dimensions.
   Finder(const Algorithm& algorithm, const Spec& spec);
 
   /// A finder by a searcher of your own, which compares floats alone; pairs of boxes of doubles are tested

@@ -70,8 +70,8 @@ class BROADSIDE_PUBLIC Tracker final {
   /// of that name.
   explicit Tracker(const Spec& spec = {});
 
-  /// A tracker by `algorithm` with the values in `spec`, whose name is ignored. Throws InvalidSpec if a value
-  /// is wrong or the algorithm does not support D dimensions.
+  /// A tracker by `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws InvalidSpec if
+  /// a value is wrong or the algorithm does not support D dimensions.
   Tracker(const Algorithm& algorithm, const Spec& spec);
 
   /// A tracker by a searcher of your own, which finds all pairs anew in each frame. Cost of a frame: one

@@ -204,7 +204,7 @@ class FindCase {
     return watch.milliseconds();
   }
 
-  /// Milliseconds for one search, whose pairs are then in pairs_ and whose statistics in statistics_.
+  /// Times one search, in milliseconds. Sets pairs_ and statistics_.
   double call(TornDownFinder<D, Real>& kept, std::span<const Box<D, Real>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);

@@ -125,7 +125,7 @@ class TrackCase {
     return least;
   }
 
-  /// Milliseconds for one frame, whose events are then in events_ and whose statistics in statistics_.
+  /// Times one frame, in milliseconds. Sets events_ and statistics_.
   double update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame) {
     events_.begun.clear();
     events_.ended.clear();

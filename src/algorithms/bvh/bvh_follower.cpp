@@ -160,7 +160,7 @@ class BvhFollower final : public Follower<D> {
            (is_worse_ || tree_.nodes() * kernels::fan_out > 4 * tree_.size() + 4096);
   }
 
-  BoxIndex<D> index_;  // answers queries by the tree whose boxes move here
+  BoxIndex<D> index_;  // answers queries by tree_
   BvhIndex<D, float>& tree_index_ = BvhIndex<D, float>::of(index_);
   DynamicBvh<D>& tree_ = tree_index_.tree();
   std::vector<Box<D>> packed_;
