@@ -30,8 +30,15 @@ class FixedSearcher final : public Searcher<2> {
   Pairs pairs_;
 };
 
+// By a peer: whether a user's searcher writes pairs of two boxes is checked before the law sees them.
 std::optional<Divergence> divergence_of(const Pairs& found) {
-  Finder<2> finder(std::make_unique<FixedSearcher>(found));
+  const Algorithm fixed = {
+      .name = "fixed",
+      .summary = "",
+      .source = "",
+      .kind = AlgorithmKind::peer,
+      .searcher_2d = [found](const Settings&) { return std::make_unique<FixedSearcher>(found); }};
+  Finder<2> finder(fixed, Spec("fixed"));
   return check_finder<2>(finder, chain, "fixed");
 }
 
