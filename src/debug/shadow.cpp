@@ -15,8 +15,6 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
 
   Tracker<D, Real> tracker;
   core::ShadowCheck<D, Real> check;
-  bool is_whole = false;          // whether the last update's events were delivered
-  std::vector<Pair> delivered{};  // if not: the pairs that hold by those that were
 };
 
 template <int D, typename Real>
@@ -39,35 +37,18 @@ ShadowTracker<D, Real>& ShadowTracker<D, Real>::operator=(ShadowTracker&& other)
 template <int D, typename Real>
 ShadowTracker<D, Real>::~ShadowTracker() = default;
 
-/// An update that the tracker would refuse changes nothing; after one that lists too little, all is taken
-/// anew. The tracker may have taken a frame that a sink of this one's caller has not: then the next events
-/// start from the pairs that were delivered.
 template <int D, typename Real>
 std::optional<Statistics> ShadowTracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun,
                                                          PairSink& ended) {
-  State& state = *state_;
-  const bool was_whole = state.is_whole;
-  core::EventPairs events;
-  try {
+  std::optional<Statistics> statistics;
+  {
     const core::DefaultEnvironment environment;
-    if (was_whole) state.delivered = state.check.pairs();
-    events = state.check.update(state.tracker, frame, !was_whole);
-    state.is_whole = false;
-    if (!was_whole) events = core::events_between(state.delivered, state.check.pairs());
-  } catch (...) {
-    state.is_whole = state.is_whole && state.check.is_whole();
-    throw;
+    statistics = state_->check.update(state_->tracker, frame, begun, ended);
   }
-  try {
-    begun.put(events.begun);
-    ended.put(events.ended);
-  } catch (...) {
-    begun.discard();
-    ended.discard();
-    throw;
-  }
-  state.is_whole = true;
-  return state.check.statistics();
+  // Where there were no events, they may hold what their owner has put there.
+  begun.flush();
+  ended.flush();
+  return statistics;
 }
 
 template <int D, typename Real>

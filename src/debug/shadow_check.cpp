@@ -67,13 +67,24 @@ void check_listed(const Pairs& toggled, std::span<const Pair> listed, std::size_
   }
 }
 
+void hand_on(const EventPairs& events, PairSink& begun, PairSink& ended) {
+  try {
+    begun.put(events.begun);
+    ended.put(events.ended);
+  } catch (...) {
+    begun.discard();
+    ended.discard();
+    throw;
+  }
+}
+
 }  // namespace
 
 template <int D, typename Real>
-EventPairs ShadowCheck<D, Real>::update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
-                                        bool takes_all) {
+std::optional<Statistics> ShadowCheck<D, Real>::update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
+                                                       PairSink& begun, PairSink& ended) {
   if (fault_) diverge(*fault_, faulty_);
-  const bool lists_count = std::exchange(is_whole_, false) && !takes_all;
+  const bool lists_count = std::exchange(is_whole_, false);
   const Frame<D, Real> last = tracker.last_frame();
   const Pairs toggled = difference(last.ignored, frame.ignored);
   Frame<D, Real> checked = frame;
@@ -105,7 +116,17 @@ EventPairs ShadowCheck<D, Real>::update(Tracker<D, Real>& tracker, const Frame<D
   const EventPairs expected = events_between(pairs_, now);
   log_.prepare(seen, toggled);
   EventPairs events;
-  statistics_ = take_events(tracker, {frame.boxes, changed_, frame.filters, frame.ignored, toggled}, events);
+  // As soon as all are there and right, they are handed on. If a sink then throws, the tracker has not taken
+  // the frame either.
+  const auto collect_in = [&](std::vector<Pair>& some) {
+    return [&](std::span<const Pair> pairs) {
+      some.insert(some.end(), pairs.begin(), pairs.end());
+      if (events == expected) hand_on(events, begun, ended);
+    };
+  };
+  const std::optional<Statistics> statistics =
+      tracker.update({frame.boxes, changed_, frame.filters, frame.ignored, toggled}, collect_in(events.begun),
+                     collect_in(events.ended));
   log_.add();
   fault_ = fault_of(events, expected);
   if (fault_) {
@@ -114,7 +135,7 @@ EventPairs ShadowCheck<D, Real>::update(Tracker<D, Real>& tracker, const Frame<D
   }
   pairs_ = std::move(now);
   is_whole_ = true;
-  return events;
+  return statistics;
 }
 
 template <int D, typename Real>

@@ -17,7 +17,7 @@
 
 namespace broadside::core {
 
-/// What ShadowTracker does, and a World where WorldOptions::shadow is set.
+/// What ShadowTracker does beside its tracker.
 template <int D, typename Real>
 class ShadowCheck {
  public:
@@ -31,22 +31,14 @@ class ShadowCheck {
         options_(options),
         log_(options.frames, options.bytes) {}
 
-  /// Has the tracker take a frame, and returns its events. `takes_all`: what the frame lists does not count,
-  /// and everything may have changed; so it is in the first frame and after one that failed.
+  /// Has the tracker take a frame, and writes its events. What the first frame lists, and one after a frame
+  /// that failed, does not count: everything may have changed.
   ///
   /// Throws, besides what Tracker::update() throws: DivergenceOf, and from then on the same each time; and,
   /// before the tracker is asked, InvalidFrame if a box, a filter or an ignored pair has changed and is not
   /// listed.
-  EventPairs update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, bool takes_all = false);
-
-  /// Whether the last update that was not refused ended.
-  bool is_whole() const noexcept { return is_whole_; }
-
-  /// What the last update did.
-  const std::optional<Statistics>& statistics() const noexcept { return statistics_; }
-
-  /// The pairs that hold since the last update, by the definition; sorted.
-  const std::vector<Pair>& pairs() const noexcept { return pairs_; }
+  std::optional<Statistics> update(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, PairSink& begun,
+                                   PairSink& ended);
 
   std::size_t bytes() const noexcept { return log_.bytes() + pairs_.capacity() * sizeof(Pair); }
 
@@ -60,14 +52,13 @@ class ShadowCheck {
   Make make_;
   ShadowOptions options_;
   FrameLog<D, Real> log_;
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_;          // that hold since the last update, by the definition; sorted
   std::vector<Box<D, Real>> boxes_;  // of the frame, as the tracker sees them
   std::vector<BoxId> changed_;       // likewise
   bool is_whole_ = false;            // whether the last update ended
-  std::optional<Statistics> statistics_;
-  std::optional<Fault> fault_;     // in the last frame of the log
-  std::vector<Pair> faulty_;       // the pairs of that frame
-  std::exception_ptr divergence_;  // which tells all about it
+  std::optional<Fault> fault_;       // in the last frame of the log
+  std::vector<Pair> faulty_;         // the pairs of that frame
+  std::exception_ptr divergence_;    // which tells all about it
 };
 
 }  // namespace broadside::core

@@ -30,16 +30,16 @@ std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, b
   return Fault{is_reported ? *found : *expected, began, is_reported};
 }
 
-}  // namespace
-
+/// Has a tracker take a frame, and sets `events` to what it reports.
 template <int D, typename Real>
-std::optional<Statistics> take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
-                                      EventPairs& events) {
+void take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, EventPairs& events) {
   events = {};
   PairCollector begun(events.begun);
   PairCollector ended(events.ended);
-  return tracker.update(frame, begun, ended);
+  tracker.update(frame, begun, ended);
 }
+
+}  // namespace
 
 std::string text_of(const Fault& fault) {
   return std::string(fault.reported ? "reported" : "did not report") + " that the pair (" +
@@ -102,10 +102,6 @@ std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
   return history;
 }
 
-template std::optional<Statistics> take_events(Tracker<2>&, const Frame<2>&, EventPairs&);
-template std::optional<Statistics> take_events(Tracker<3>&, const Frame<3>&, EventPairs&);
-template std::optional<Statistics> take_events(Tracker<2, double>&, const Frame<2, double>&, EventPairs&);
-template std::optional<Statistics> take_events(Tracker<3, double>&, const Frame<3, double>&, EventPairs&);
 template std::optional<Fault> fault_at_the_end(Tracker<2>&, const History<2>&);
 template std::optional<Fault> fault_at_the_end(Tracker<3>&, const History<3>&);
 template std::optional<Fault> fault_at_the_end(Tracker<2, double>&, const History<2, double>&);

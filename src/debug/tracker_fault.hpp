@@ -16,12 +16,9 @@ namespace broadside::core {
 struct EventPairs {
   std::vector<Pair> begun;
   std::vector<Pair> ended;
-};
 
-/// Has a tracker take a frame, and sets `events` to what it reports.
-template <int D, typename Real>
-std::optional<Statistics> take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame,
-                                      EventPairs& events);
+  friend bool operator==(const EventPairs&, const EventPairs&) = default;
+};
 
 /// A pair that was reported wrongly.
 struct Fault {

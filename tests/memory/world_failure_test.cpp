@@ -338,6 +338,29 @@ TEST(WorldFailureExample, TellsWhatAFailedUpdateOwesOfMovedBoxesAndIgnoredPairs)
   }
 }
 
+TEST(WorldFailureExample, WritesASnapshotThatCanBeRestoredAfterAFailedUpdate) {
+  for (const WorldOptions& options : {WorldOptions{}, WorldOptions{.shadow = true}}) {
+    for (std::uint64_t k = 0, failures = 1; failures > 0; ++k) {
+      World2 world(options);
+      const Box2 near{{0, 0}, {1, 1}};
+      const Handle a = world.add(near);
+      world.add(near);
+      world.update();
+      world.move(a, {{5, 5}, {6, 6}});
+      world.add(near);
+      Injector injector(k, FailureKind::once);
+      if (injector.attempt([&] { world.update(); })) world.move(a, near);
+      failures = injector.failures();
+      World2 restored(options);
+      restored.restore(world.snapshot());
+      const Events expected = world.update();
+      const Events events = restored.update();
+      EXPECT_TRUE(std::ranges::equal(events.begun, expected.begun)) << "allocation " << k;
+      EXPECT_TRUE(std::ranges::equal(events.ended, expected.ended)) << "allocation " << k;
+    }
+  }
+}
+
 class WorldFailure : public MemoryTest {
  protected:
   /// Plays histories with each allocation failing, and many with some failing at random.
