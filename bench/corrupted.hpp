@@ -168,18 +168,21 @@ class Corrupted {
     Algorithm algorithm;
     algorithm.name = "corrupted_" + base_;
     algorithm.tunables = {{"number", "which corruption", "0", Tunable::Type::integer, 0, 1e15}};
-    algorithm.searcher_2d = [this](const Settings& settings) { return searcher<2>(settings); };
-    algorithm.searcher_3d = [this](const Settings& settings) { return searcher<3>(settings); };
-    algorithm.followers_2d = {
-        {.name = base_, .make = [this](const Settings& settings) { return follower<2>(settings); }}};
-    algorithm.followers_3d = {
-        {.name = base_, .make = [this](const Settings& settings) { return follower<3>(settings); }}};
+    algorithm.in_2d = strategies<2>();
+    algorithm.in_3d = strategies<3>();
     return algorithm;
   }
 
   Corruption& at(std::uint64_t number) { return all_.try_emplace(number, number, calls_).first->second; }
 
  private:
+  template <int D>
+  Strategies<D> strategies() {
+    return {.searcher = [this](const Settings& settings) { return searcher<D>(settings); },
+            .followers = {
+                {.name = base_, .make = [this](const Settings& settings) { return follower<D>(settings); }}}};
+  }
+
   template <int D>
   std::unique_ptr<Searcher<D>> searcher(const Settings& settings) {
     Corruption& corruption = at(static_cast<std::uint64_t>(settings.integer("number")));
@@ -269,7 +272,7 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
     const auto faulty = [&](std::string name) {
       Algorithm algorithm;
       algorithm.name = std::move(name);
-      algorithm.searcher_2d = [&is_applied, number, &request](const Settings&) {
+      algorithm.in_2d.searcher = [&is_applied, number, &request](const Settings&) {
         return spoilt_searcher<2>(
             "grid", [&is_applied, number, &request](std::vector<Pair>& pairs, std::size_t boxes) {
               // The same place in the array each time, so that it is the same pair while that holds.

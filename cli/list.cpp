@@ -21,12 +21,12 @@ namespace broadside::cli {
 namespace {
 
 std::string range_of(const Tunable& tunable) {
-  const std::string least = fmt::format("from {:g}", tunable.least);
+  const std::string min = fmt::format("from {:g}", tunable.min);
   // Bounds that only keep a value a float say nothing to a reader.
   constexpr double largest = std::numeric_limits<float>::max();
   constexpr double smallest = std::numeric_limits<float>::min();
-  std::string range = tunable.least <= -largest ? "" : tunable.least == smallest ? "above 0" : least;
-  if (tunable.most < largest) range += fmt::format(" to {:g}", tunable.most);
+  std::string range = tunable.min <= -largest ? "" : tunable.min == smallest ? "above 0" : min;
+  if (tunable.max < largest) range += fmt::format(" to {:g}", tunable.max);
   return range;
 }
 
@@ -94,7 +94,7 @@ void print_list(std::string_view title, const std::vector<Listed>& list) {
     for (const Tunable& tunable : item.tunables) {
       print_wrapped(
           fmt::format("      :{}=  ", tunable.name),
-          fmt::format("{} ({}; standard {})", tunable.summary, values_of(tunable), tunable.standard));
+          fmt::format("{} ({}; default {})", tunable.summary, values_of(tunable), tunable.default_value));
     }
   }
   print("\n");
@@ -122,11 +122,10 @@ Exit run(const lab::Catalogue& catalogue) {
         fmt::format("  {:<10} {:<13}  ", format.name, access),
         fmt::format("{} ({})", format.missing.empty() ? format.summary : "not there: " + format.missing,
                     fmt::join(format.extensions, " ")));
-    std::string_view standard = "; standard";
+    std::string_view suffix = "; default";
     for (const lab::Part& part : format.parts) {
-      print_wrapped(fmt::format("      --boxes {}  ", part.name),
-                    fmt::format("{}{}", part.summary, standard));
-      standard = "";
+      print_wrapped(fmt::format("      --boxes {}  ", part.name), fmt::format("{}{}", part.summary, suffix));
+      suffix = "";
     }
   }
   return Exit::fine;

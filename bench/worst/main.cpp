@@ -41,7 +41,7 @@ std::string families() {
     text += fmt::format("\n  {:<11} {}", family.name, family.summary);
     for (const lab::DrawnTunable& drawn : family.tunables)
       text += fmt::format("\n    {:<11} {} ({})", drawn.tunable.name, drawn.tunable.summary,
-                          drawn.tunable.standard);
+                          drawn.tunable.default_value);
   }
   return text;
 }

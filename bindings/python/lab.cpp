@@ -36,7 +36,7 @@ nb::list algorithms() {
   for (const Algorithm& algorithm : broadside::algorithms()) {
     nb::list tunables;
     for (const Tunable& tunable : algorithm.tunables)
-      tunables.append(nb::make_tuple(tunable.name, tunable.summary, tunable.standard));
+      tunables.append(nb::make_tuple(tunable.name, tunable.summary, tunable.default_value));
     nb::list dimensions;
     for (const int dimension : {2, 3}) {
       if (algorithm.has_dimension(dimension)) dimensions.append(dimension);

@@ -55,17 +55,17 @@ struct Search {
   bool quarantine = false;
 
   /// Of boxes that are of one kind already.
-  Search(Rows first, std::optional<Rows> second, std::string spec, nb::handle most_threads)
+  Search(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
       : boxes(std::move(first)),
         other(std::move(second)),
         algorithm(std::move(spec)),
-        threads(threads_of(most_threads, algorithm)) {}
+        threads(threads_of(max_threads, algorithm)) {}
 
-  Search(nb::handle first, nb::handle second, std::string spec, nb::handle most_threads,
+  Search(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
          nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs, bool quarantines)
       : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
-        threads(threads_of(most_threads, algorithm)),
+        threads(threads_of(max_threads, algorithm)),
         filters(python::filters(first_filters, boxes.size(), "filters")),
         quarantine(quarantines) {
     if (!second.is_none()) take_other(first, second, second_filters);

@@ -293,9 +293,9 @@ std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std:
                              .events = exact ? WorldEvents::exact : WorldEvents::enlarged,
                              .first_generation = first_generation,
                              .bad_input = quarantine ? BadInput::quarantine : BadInput::reject};
-  const std::size_t most_threads = threads_of(threads, algorithm);
+  const std::size_t max_threads = threads_of(threads, algorithm);
   return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyWorld> {
-    return std::make_unique<WorldOf<D, Real>>(options, most_threads);
+    return std::make_unique<WorldOf<D, Real>>(options, max_threads);
   });
 }
 

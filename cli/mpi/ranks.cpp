@@ -8,7 +8,7 @@ namespace broadside::cli {
 namespace {
 
 constexpr int tag = 1;
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;  // MPI counts in ints
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;  // MPI counts in ints
 
 std::string text_of(const std::exception_ptr& error) {
   try {
@@ -57,7 +57,7 @@ std::uint64_t sum_of_ranks(std::uint64_t number) {
 void send(const void* bytes, std::uint64_t size, int to) {
   const auto* next = static_cast<const std::byte*>(bytes);
   while (size > 0) {
-    const std::uint64_t piece = std::min(size, most_bytes);
+    const std::uint64_t piece = std::min(size, max_bytes);
     MPI_Send(next, static_cast<int>(piece), MPI_BYTE, to, tag, MPI_COMM_WORLD);
     next += piece;
     size -= piece;
@@ -67,7 +67,7 @@ void send(const void* bytes, std::uint64_t size, int to) {
 void receive(void* bytes, std::uint64_t size, int from) {
   auto* next = static_cast<std::byte*>(bytes);
   while (size > 0) {
-    const std::uint64_t piece = std::min(size, most_bytes);
+    const std::uint64_t piece = std::min(size, max_bytes);
     MPI_Recv(next, static_cast<int>(piece), MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     next += piece;
     size -= piece;

@@ -57,13 +57,13 @@ Fault fault_of(const std::exception_ptr& error, int rank) {
 }
 
 /// MPI counts in ints.
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
 
 /// Calls use(bytes, count) for pieces that MPI can count.
 template <typename Use>
 void for_each_piece(std::byte* bytes, std::uint64_t size, const Use& use) {
   while (size > 0) {
-    const std::uint64_t piece = std::min(size, most_bytes);
+    const std::uint64_t piece = std::min(size, max_bytes);
     use(bytes, static_cast<int>(piece));
     bytes += piece;
     size -= piece;
@@ -153,7 +153,7 @@ void Communicator::exchange_counts(std::span<const std::uint64_t> to, std::span<
 void Communicator::reserve_requests(std::span<const Block> out, std::span<const Block> in) {
   std::size_t pieces = 0;
   for (const std::span<const Block> blocks : {out, in})
-    for (const Block& block : blocks) pieces += static_cast<std::size_t>(block.size / most_bytes) + 1;
+    for (const Block& block : blocks) pieces += static_cast<std::size_t>(block.size / max_bytes) + 1;
   requests_.reserve(pieces);
 }
 

@@ -28,7 +28,7 @@ std::uint64_t fingerprint(const DistributedWorldOptions& options, std::uint64_t 
   for (const char c : options.algorithm) add(static_cast<unsigned char>(c));
   add(options.threads.value_or(std::numeric_limits<std::size_t>::max()));
   add(options.sample);
-  add(std::hash<double>()(options.most_imbalance));
+  add(std::hash<double>()(options.max_imbalance));
   add(kind);
   return hash;
 }
@@ -65,9 +65,9 @@ class DistributedWorld<D, Real>::State {
     comm_.check_same(fingerprint(options, std::uint64_t{D} << 8 | sizeof(Real)),
                      "spec, threads, imbalance, sample, dimension or type of coordinate");
     comm_.together([&] {
-      if (!(options.most_imbalance > 1))
-        throw std::invalid_argument("DistributedWorldOptions: most_imbalance is " +
-                                    std::to_string(options.most_imbalance) + "; expected more than 1");
+      if (!(options.max_imbalance > 1))
+        throw std::invalid_argument("DistributedWorldOptions: max_imbalance is " +
+                                    std::to_string(options.max_imbalance) + "; expected more than 1");
       make_part();
     });
   }
@@ -279,10 +279,10 @@ class DistributedWorld<D, Real>::State {
     const std::uint64_t boxes = comm_.sum(std::uint64_t{part_->boxes()});
     const double imbalance = all > 0 ? comm_.max(work) * static_cast<double>(comm_.size()) / all : 1;
     statistics_.largest_over_mean_work = imbalance;
-    const std::uint64_t least_boxes = 256 * comm_.size();
+    const std::uint64_t min_boxes = 256 * comm_.size();
     if (std::exchange(has_just_cut_, false)) {
       // A few boxes say nothing about what cuts can achieve.
-      achieved_ = boxes < least_boxes ? 1 : imbalance;
+      achieved_ = boxes < min_boxes ? 1 : imbalance;
       boxes_at_cut_ = boxes;
       work_at_cut_ = all;
     }
@@ -292,7 +292,7 @@ class DistributedWorld<D, Real>::State {
     const bool is_worse = imbalance > 1.1 * achieved_;
     const bool is_another_world = boxes >= 2 * boxes_at_cut_ || all <= work_at_cut_ / 2;
     is_to_be_cut_ =
-        boxes >= least_boxes && imbalance > options_.most_imbalance && (is_worse || is_another_world);
+        boxes >= min_boxes && imbalance > options_.max_imbalance && (is_worse || is_another_world);
   }
 
   Communicator comm_;

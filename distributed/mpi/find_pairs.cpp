@@ -20,7 +20,7 @@
 namespace broadside::mpi {
 namespace {
 
-constexpr std::uint64_t most_small_ids = std::uint64_t{1} << 32;
+constexpr std::uint64_t max_small_ids = std::uint64_t{1} << 32;
 
 /// One set of boxes: those handed in on this rank, and those that touch its part of space.
 template <int D, typename Real, typename Id>
@@ -294,7 +294,7 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
     most = std::max(most, counts.back());
     comm.together([&] { ends.push_back(std::move(counts)); });
   }
-  if (most <= most_small_ids && !options.has_large_ids)
+  if (most <= max_small_ids && !options.has_large_ids)
     return join<std::uint32_t, Pair>(comm, *finder, views, std::move(ends), pairs, options);
   return join<std::uint64_t, LargePair>(comm, *finder, views, std::move(ends), pairs, options);
 }

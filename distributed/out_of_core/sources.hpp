@@ -49,13 +49,13 @@ class Sources {
   Sample sample(std::size_t most) const {
     Sample sample;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
-      const std::size_t most_yet = most * (source + 1) / sources_.size();
+      const std::size_t max_yet = most * (source + 1) / sources_.size();
       sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {
-        if (sample.boxes.size() < most_yet)
+        if (sample.boxes.size() < max_yet)
           sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());
-        return sample.boxes.size() < most_yet;
+        return sample.boxes.size() < max_yet;
       });
-      if (sample.boxes.size() >= most_yet) sample.is_all = false;
+      if (sample.boxes.size() >= max_yet) sample.is_all = false;
     }
     return sample;
   }

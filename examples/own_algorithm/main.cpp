@@ -1,7 +1,6 @@
 // A broad phase of your own, a sweep over the first axis, in the program: all verbs know it as "mine".
 #include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -43,11 +42,6 @@ class FirstAxisSweep final : public broadside::Searcher<D> {
   std::vector<std::uint32_t> order_;  // kept between calls for its memory
 };
 
-template <int D>
-std::unique_ptr<broadside::Searcher<D>> make(const broadside::Settings& settings) {
-  return std::make_unique<FirstAxisSweep<D>>(settings);
-}
-
 broadside::Algorithm mine() {
   return {
       .name = "mine",
@@ -58,11 +52,11 @@ broadside::Algorithm mine() {
       .tunables = {{.name = "touching",
                     .summary =
                         "whether boxes that touch on the first axis overlap; they do, so `no` is a fault",
-                    .standard = "yes",
+                    .default_value = "yes",
                     .type = broadside::Tunable::Type::choice,
                     .choices = {"yes", "no"}}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
+      .in_2d = {.searcher = broadside::make_strategy<FirstAxisSweep<2>>},
+      .in_3d = {.searcher = broadside::make_strategy<FirstAxisSweep<3>>},
   };
 }
 

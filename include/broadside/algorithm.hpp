@@ -1,5 +1,5 @@
-// The description of an algorithm (its tunables, limits and costs, and how to make its searcher and its
-// followers from a spec), and the list of all algorithms, to which users add their own.
+// Algorithm: the description of a broad-phase algorithm, from which Finder, Tracker and World make its
+// searcher and its followers; and the list of all algorithms, to which you can add your own.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "broadside/export.hpp"
@@ -20,43 +21,40 @@
 
 namespace broadside {
 
-class Settings;
 template <int D, typename Real>
 struct Outline;
 
-/// Makes the outline of a search with these settings. All boxes are present, and there is at least one. The
-/// parts of the outline may be infinite.
-template <int D>
-using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
-                                                    const Settings& settings)>;
-
-/// A parameter that a user may set in a spec.
+/// A parameter of an algorithm that a spec can set.
 struct Tunable {
   enum class Type { number, integer, choice };
 
   std::string name;
-  std::string summary;   ///< one line, with the unit
-  std::string standard;  ///< the value when none is given; "auto" where the algorithm chooses by itself
+  std::string summary;        ///< one line, with the unit
+  std::string default_value;  ///< "auto" if the algorithm then chooses a value itself
   Type type = Type::number;
-  double least = 0;  ///< for number and integer: the range of values allowed, both ends included
-  double most = std::numeric_limits<double>::max();
-  detail::Vector<std::string> choices{};  ///< for choice: the values allowed
+  double min = 0;  ///< of a number or an integer: the range of values allowed, both ends included
+  double max = std::numeric_limits<double>::max();
+  detail::Vector<std::string> choices{};  ///< of a choice: the values allowed
 };
 
-/// A spec's values, checked against an algorithm's tunables; a tunable not given has its standard value.
+/// The values of an algorithm's tunables, checked: those that a spec gives, and the default values of the
+/// others.
 class BROADSIDE_PUBLIC Settings {
  public:
   /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
-  /// range. "auto" is allowed if and only if it is the tunable's standard value.
+  /// range. "auto" is allowed if and only if it is the tunable's default value.
   Settings(const Spec& spec, std::span<const Tunable> tunables);
 
-  /// Whether the tunable is left for the algorithm to choose.
+  /// Whether the algorithm is to choose the value itself.
   [[nodiscard]] bool is_auto(std::string_view tunable) const { return text(tunable) == "auto"; }
 
-  /// The value of a tunable, which must exist and not be "auto".
+  /// The value of a tunable, which must exist. Numbers must not be "auto".
   [[nodiscard]] double number(std::string_view tunable) const;
   std::int64_t integer(std::string_view tunable) const;
   [[nodiscard]] const std::string& text(std::string_view tunable) const { return value(tunable).text(); }
+
+  /// The number, or nothing if the value is "auto".
+  [[nodiscard]] std::optional<double> optional_number(std::string_view tunable) const;
 
  private:
   const SpecValue& value(std::string_view tunable) const;
@@ -89,21 +87,63 @@ struct FollowCosts {
 
 template <int D>
 using MakeSearcher = std::function<std::unique_ptr<Searcher<D>>(const Settings&)>;
+template <int D>
+using MakeFollower = std::function<std::unique_ptr<Follower<D>>(const Settings&)>;
+
+/// Makes a searcher or a follower of class T, by T(settings) or by T(). Use it as `.searcher =
+/// make_strategy<MySearcher<2>>`.
+template <typename T>
+std::unique_ptr<T> make_strategy([[maybe_unused]] const Settings& settings) {
+  if constexpr (std::is_constructible_v<T, const Settings&>)
+    return std::make_unique<T>(settings);
+  else
+    return std::make_unique<T>();
+}
+
+/// Makes the outline of a search with these settings, to be drawn: see debug/outline.hpp. All boxes are
+/// present, and there is at least one. The parts of the outline may be infinite.
+template <int D>
+using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
+                                                    const Settings& settings)>;
 
 /// A follower that a Tracker may choose.
 template <int D>
 struct FollowerChoice {
   std::string name;  ///< as explanations name it
-  std::function<std::unique_ptr<Follower<D>>(const Settings&)> make;
+  MakeFollower<D> make;
   FollowCosts costs{};
 
-  /// If not 0, it compares each changed box with all others, so its cost is known beforehand. It is used for
-  /// up to this number of boxes whatever the others cost, and for more if they make about as many tests.
+  /// Not 0 if the follower compares each changed box with all others, so that its cost is known beforehand.
+  /// It is used for up to this number of boxes whatever the others cost, and for more if they make about as
+  /// many tests.
   std::size_t max_boxes = 0;
 };
 
-/// The description of a broad-phase algorithm. Your own algorithm has one like those of the library: see
-/// examples/own_algorithm.
+/// What an algorithm has for boxes of D dimensions.
+template <int D>
+struct Strategies {
+  MakeSearcher<D> searcher{};  ///< empty if the algorithm does not support D dimensions
+
+  /// The structures in which it follows moving boxes. Without any, a Tracker finds all pairs anew in each
+  /// frame. With some, it follows by the first. If the algorithm has a tunable `update` with the choice
+  /// "follow", as the library's have, a Tracker compares FollowCosts and FindCosts in each frame, and then
+  /// follows by the follower that costs least, or finds all pairs anew.
+  detail::Vector<FollowerChoice<D>> followers{};
+  FindCosts find_costs{};
+
+  MakeOutline<D> outline{};  ///< empty if there is nothing to draw
+};
+
+/// The input that an algorithm declares to support. The lab does not give it any other; the library does not
+/// check it.
+struct InputLimits {
+  bool infinite_boxes = true;                                  ///< whether boxes may have infinite extents
+  double max_coordinate = std::numeric_limits<double>::max();  ///< greatest magnitude of a finite coordinate
+  std::size_t max_boxes = std::numeric_limits<std::size_t>::max();
+};
+
+/// The description of a broad-phase algorithm: how it is named and set, and how its strategies are made.
+/// Describe your own algorithm likewise, and pass it to register_algorithm(): see examples/own_algorithm.
 struct Algorithm {
   std::string name;     ///< as in a spec: lower case, digits and underscores
   std::string summary;  ///< one line
@@ -112,65 +152,28 @@ struct Algorithm {
   std::string version{};  ///< of the library behind it; empty for what is part of Broadside
   detail::Vector<Tunable> tunables{};
 
-  MakeSearcher<2> searcher_2d{};  ///< empty if the algorithm does not support that dimension
-  MakeSearcher<3> searcher_3d{};
-
-  /// The structures that follow boxes; if there are none, a Tracker finds all pairs anew in each frame. If
-  /// the tunable `update` has the choice "follow", a Tracker decides by FindCosts and FollowCosts whether it
-  /// follows boxes or finds all pairs anew. Otherwise it always follows, by the first structure.
-  detail::Vector<FollowerChoice<2>> followers_2d{};
-  detail::Vector<FollowerChoice<3>> followers_3d{};
-  FindCosts find_costs_2d{};
-  FindCosts find_costs_3d{};
-
-  /// Makes what a search lays over boxes, to be drawn: see debug/outline.hpp. Empty if there is nothing.
-  MakeOutline<2> outline_2d{};
-  MakeOutline<3> outline_3d{};
+  Strategies<2> in_2d{};
+  Strategies<3> in_3d{};
 
   bool tests_doubles = false;     ///< whether the searcher heeds SearchInput::doubles
   bool gives_candidates = false;  ///< whether every follower heeds Change::wants_candidates
-
-  bool infinite_boxes = true;  ///< declared limit: false if boxes with infinite extents are beyond it
-
-  /// Declared limit: the greatest magnitude of a finite coordinate that is within it.
-  double largest_coordinate = std::numeric_limits<double>::max();
-
-  /// Declared limit: the maximum number of boxes.
-  std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
+  InputLimits limits{};
 
   /// Whether it allocates memory other than through operator new, so that the lab cannot count it.
   bool own_allocator = false;
 
-  /// The same by dimension.
+  /// in_2d or in_3d.
   template <int D>
-  [[nodiscard]] const MakeSearcher<D>& searcher() const noexcept {
+  [[nodiscard]] const Strategies<D>& in() const noexcept {
     if constexpr (D == 2)
-      return searcher_2d;
+      return in_2d;
     else
-      return searcher_3d;
-  }
-  template <int D>
-  [[nodiscard]] std::span<const FollowerChoice<D>> followers() const noexcept {
-    if constexpr (D == 2)
-      return followers_2d;
-    else
-      return followers_3d;
-  }
-  template <int D>
-  [[nodiscard]] const FindCosts& find_costs() const noexcept {
-    return D == 2 ? find_costs_2d : find_costs_3d;
-  }
-  template <int D>
-  [[nodiscard]] const MakeOutline<D>& outline() const noexcept {
-    if constexpr (D == 2)
-      return outline_2d;
-    else
-      return outline_3d;
+      return in_3d;
   }
 
-  /// Whether it supports `dimension`.
+  /// Whether it supports boxes of `dimension` dimensions.
   [[nodiscard]] bool has_dimension(int dimension) const {
-    return dimension == 2 ? bool(searcher_2d) : dimension == 3 && bool(searcher_3d);
+    return dimension == 2 ? bool(in_2d.searcher) : dimension == 3 && bool(in_3d.searcher);
   }
 };
 

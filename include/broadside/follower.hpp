@@ -16,35 +16,36 @@
 
 namespace broadside {
 
-/// What changed from one frame to the next, as a follower sees it. A pair holds where two boxes are present,
-/// overlap and accept each other.
+/// What changed from one frame to the next. A pair holds in a frame if both boxes are present, overlap and
+/// accept each other by their filters.
 template <int D, typename Real = float>
 struct Change {
-  /// The boxes of the frame before and of this one, each present or absent. The shorter array is filled up
-  /// with absent boxes.
+  /// The boxes of the previous frame and of this one. Some may be absent. Both arrays have the same size:
+  /// absent boxes fill up the shorter one.
   std::span<const Box<D, Real>> before;
   std::span<const Box<D, Real>> now;
 
-  /// The places where the two, or their filters, may differ, each once; and for each place, 1 if it is
-  /// listed.
+  /// The places at which boxes or filters may have changed, each once. flags[i] is 1 if place i is among
+  /// them, and otherwise 0.
   std::span<const BoxId> changed;
   std::span<const std::uint8_t> flags;
 
-  /// Nothing kept from earlier frames can be relied on: the follower builds its structure from `before`.
+  /// Whether the follower must discard what it kept from earlier frames, and build its structure from
+  /// `before`.
   bool rebuild = false;
 
-  /// The filters of both frames, likewise; both empty where there are no filters.
+  /// The filters of both frames, by place; empty if there are none.
   std::span<const Filter> filters_before{};
   std::span<const Filter> filters_now{};
 
-  /// Asks for candidates instead of events: the pairs of each changed box with all other boxes that overlap
-  /// the box as it was or as it is. Only for an algorithm with Algorithm::gives_candidates.
+  /// Whether to write candidates instead of events: the pairs of each changed box with every other box that
+  /// overlaps it as it was or as it is now. Only set for an algorithm with Algorithm::gives_candidates.
   bool wants_candidates = false;
 
-  /// Threads and checkpoint, as in SearchInput.
+  /// The threads to use and the checkpoint to call, as in SearchInput.
   const Workers& workers = default_workers;
 
-  /// Whether the pair held in the frame before, and whether it holds in this one.
+  /// Whether the pair held in the previous frame, and whether it holds in this one.
   [[nodiscard]] bool held(BoxId a, BoxId b) const noexcept { return holds(before, filters_before, a, b); }
   [[nodiscard]] bool holds(BoxId a, BoxId b) const noexcept { return holds(now, filters_now, a, b); }
 
@@ -68,10 +69,11 @@ struct Change {
 template <int D, typename Real>
 class BoxIndex;
 
-/// Follows boxes of floats in a structure of its own.
+/// The part of a Tracker that you write for an algorithm of your own: it follows moving boxes in a structure
+/// that stays from frame to frame.
 ///
 /// Tracker does the rest: it checks the frame, keeps both states of each box, takes care of quarantined boxes
-/// and ignored pairs, sorts the events and delivers each once. A follower has one caller at a time.
+/// and ignored pairs, sorts the events and delivers each once. Only one thread at a time calls a follower.
 template <int D>
 class BROADSIDE_PUBLIC Follower {
  public:
@@ -80,19 +82,20 @@ class BROADSIDE_PUBLIC Follower {
   Follower& operator=(const Follower&) = delete;
   virtual ~Follower() = default;
 
-  /// Takes a frame, and writes to `begun` the pairs that hold now and did not before, to `ended` those that
-  /// did and do not now, in any order. An event may be written more than once. Candidates, if
-  /// change.wants_candidates, all go to `begun`. Returns what it did, or nothing if it does not count. After
-  /// an exception the next change has `rebuild`.
+  /// Brings the structure up to date with the frame. Writes to `begun` the pairs that hold now and did not
+  /// before, and to `ended` the pairs that held before and do not now, in any order; repeated events do no
+  /// harm. It suffices to call change.report() for every pair of a changed box that may be one of these. If
+  /// change.wants_candidates, writes all candidates to `begun`. Returns what it did, or nothing if it does
+  /// not count. After an exception, the next change has `rebuild`.
   ///
-  /// Ids must be below change.now.size(); otherwise the behaviour is undefined. A missing or wrong event is
-  /// passed on: ShadowTracker and WorldOptions::shadow find such faults.
+  /// Ids must be below change.now.size(); otherwise the behaviour is undefined. Tracker passes missing and
+  /// wrong events on: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
 
-  /// The boxes of the last frame for queries (see queries.hpp), if the follower keeps such an index anyway.
+  /// An index of the last frame's boxes for queries (see index.hpp), if the follower keeps one anyway.
   [[nodiscard]] virtual const BoxIndex<D, float>* box_index() const noexcept { return nullptr; }
 
-  /// The bytes kept from frame to frame.
+  /// The memory kept from frame to frame, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const noexcept { return 0; }
 };
 

@@ -25,7 +25,7 @@ struct Statistics {
   std::uint64_t hits = 0;  ///< of the tests, those of boxes that overlap; the others are false positives
 };
 
-/// Finishes a search that gave up.
+/// Takes over from a search that gives up.
 template <int D>
 class Successor {
  public:
@@ -42,37 +42,39 @@ class Successor {
   ~Successor() = default;
 };
 
-/// What a Searcher searches.
+/// The boxes to search, and how.
 template <int D>
 struct SearchInput {
-  /// The boxes: all present (min <= max, no NaN), perhaps infinite. They may be the caller's own array, and
+  /// All are present (min <= max, no NaN); some may be infinite. They may be the caller's own array, and
   /// another thread may break the rules and write to it. Two reads of a box may then differ, but must not
   /// cause an access out of bounds.
   std::span<const Box<D>> boxes;
 
-  /// 0 if every overlapping pair is asked for. Otherwise, the boxes before this place are the left set and
-  /// the others are the right set. Pairs within a set need not be written; they will be dropped.
+  /// If not 0, the boxes before this place are one set and the others another one, and only pairs across the
+  /// sets are asked for. Pairs within a set need not be written; they are dropped.
   std::size_t left_count = 0;
 
-  /// Not null if floats cannot tell whether two boxes overlap: then `boxes` are these boxes, rounded in the
-  /// same order, and the pairs asked for are those that overlap in double. Only for an algorithm with
+  /// The same boxes as doubles, if these decide: write only pairs that overlap as doubles. Boxes that do also
+  /// overlap as floats, since rounding keeps their order. Null if `boxes` decide, and for an algorithm without
   /// Algorithm::tests_doubles.
   const Box<D, double>* doubles = nullptr;
 
-  /// Not null if the search may give up where it makes far more tests than its boxes and pairs account for.
-  /// It then calls finish() at its end. Whether it gives up, and where, must depend on the boxes alone. An
-  /// algorithm that never gives up ignores it.
+  /// Not null if the search may give up when it makes far more tests than its boxes and pairs account for.
+  /// If it does, it calls finish() at its end. Whether and where it gives up must depend on the boxes alone.
+  /// You can ignore it.
   Successor<D>* successor = nullptr;
 
-  /// Threads and checkpoint. An algorithm that has no tunable `threads` uses the calling thread alone.
+  /// The threads to use, and the checkpoint to call by a Checkpoint, so that a long search can be cancelled.
+  /// An algorithm without the tunable `threads` uses the calling thread alone.
   const Workers& workers = default_workers;
 };
 
-/// Finds every overlapping pair among boxes of floats that are all present, from nothing, at each call.
+/// The part of a Finder that you write for an algorithm of your own: it finds every overlapping pair of an
+/// array of boxes.
 ///
 /// Finder does the rest: it checks the boxes, drops absent ones, rounds doubles, applies filters and flushes
-/// the sink. A searcher may keep scratch memory between calls, and nothing else that can be observed. It is
-/// called by one thread at a time.
+/// the sink. A searcher may keep memory between calls, but must find the same pairs as without it. Only one
+/// thread at a time calls it.
 template <int D>
 class BROADSIDE_PUBLIC Searcher {
  public:
@@ -81,12 +83,12 @@ class BROADSIDE_PUBLIC Searcher {
   Searcher& operator=(const Searcher&) = delete;
   virtual ~Searcher() = default;
 
-  /// Writes each pair of overlapping boxes once, as places in `input.boxes`, in an order that depends on the
-  /// boxes alone. Returns what it did, or nothing if it does not count. Throws what the sink and the
-  /// checkpoint throw.
+  /// Writes each pair of overlapping boxes once, as places in `input.boxes`. The order of the pairs must
+  /// depend on the boxes alone. Returns what the search did, or nothing if it does not count. Lets the
+  /// exceptions of the sink and of the checkpoint pass.
   ///
-  /// A pair with an id that is not below boxes.size(), or of a box with itself, is refused by
-  /// std::logic_error. A pair that is missing, doubled or wrong makes a Finder, a Tracker or a World report
+  /// Finder refuses, by std::logic_error, a pair with an id that is not below boxes.size() and a pair of a
+  /// box with itself. A pair that is missing, repeated or wrong makes a Finder, a Tracker or a World report
   /// wrong pairs, and nothing worse: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) = 0;
 

@@ -281,12 +281,12 @@ Algorithm karras_lbvh() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "code",
                     .summary = "bits of a Morton code: 16 or 32 an axis in 2D, 10 or 21 in 3D",
-                    .standard = "32",
+                    .default_value = "32",
                     .type = Tunable::Type::choice,
                     .choices = {"32", "64"}}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
-      .most_boxes = (std::size_t{1} << 31) - 1,
+      .in_2d = {.searcher = make<2>},
+      .in_3d = {.searcher = make<3>},
+      .limits = {.max_boxes = (std::size_t{1} << 31) - 1},
   };
 }
 

@@ -66,7 +66,7 @@ template <int D>
 class PbsmStripes final : public Searcher<D> {
  public:
   /// `width` is a stripe's, in mean extents.
-  explicit PbsmStripes(double width) : width_(width) {}
+  explicit PbsmStripes(const Settings& settings) : width_(settings.number("width")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
@@ -242,11 +242,6 @@ class PbsmStripes final : public Searcher<D> {
   Partition right_;
 };
 
-template <int D>
-std::unique_ptr<Searcher<D>> make(const Settings& settings) {
-  return std::make_unique<PbsmStripes<D>>(settings.number("width"));
-}
-
 }  // namespace
 
 Algorithm pbsm_stripes() {
@@ -257,12 +252,12 @@ Algorithm pbsm_stripes() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "width",
                     .summary = "a stripe's width, in mean extents of the boxes",
-                    .standard = "10",
+                    .default_value = "10",
                     .type = Tunable::Type::number,
-                    .least = 0.5,
-                    .most = 1e9}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
+                    .min = 0.5,
+                    .max = 1e9}},
+      .in_2d = {.searcher = make_strategy<PbsmStripes<2>>},
+      .in_3d = {.searcher = make_strategy<PbsmStripes<3>>},
   };
 }
 

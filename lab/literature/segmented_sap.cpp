@@ -30,7 +30,7 @@ namespace {
 template <int D>
 class SegmentedSap final : public Searcher<D> {
  public:
-  explicit SegmentedSap(double boxes_a_region) : boxes_a_region_(boxes_a_region) {}
+  explicit SegmentedSap(const Settings& settings) : boxes_a_region_(settings.number("region")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const Regions<D> regions(input.boxes, static_cast<double>(input.boxes.size()) / boxes_a_region_);
@@ -96,8 +96,10 @@ class SegmentedSap final : public Searcher<D> {
 template <int D>
 class SegmentedSapFollower final : public Follower<D> {
  public:
-  SegmentedSapFollower(double boxes_a_region, std::size_t segment, double batch)
-      : boxes_a_region_(boxes_a_region), segment_(segment), batch_(batch) {}
+  explicit SegmentedSapFollower(const Settings& settings)
+      : boxes_a_region_(settings.number("region")),
+        segment_(static_cast<std::size_t>(settings.integer("segment"))),
+        batch_(settings.number("batch")) {}
 
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || needs_new_regions(change)) build(change);
@@ -366,18 +368,6 @@ class SegmentedSapFollower final : public Follower<D> {
   std::array<std::vector<std::uint32_t>, 2> open_;
 };
 
-template <int D>
-std::unique_ptr<Searcher<D>> make(const Settings& settings) {
-  return std::make_unique<SegmentedSap<D>>(settings.number("region"));
-}
-
-template <int D>
-std::unique_ptr<Follower<D>> make_follower(const Settings& settings) {
-  return std::make_unique<SegmentedSapFollower<D>>(settings.number("region"),
-                                                   static_cast<std::size_t>(settings.integer("segment")),
-                                                   settings.number("batch"));
-}
-
 }  // namespace
 
 Algorithm segmented_sap() {
@@ -388,27 +378,27 @@ Algorithm segmented_sap() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "region",
                     .summary = "boxes to a region of the grid",
-                    .standard = "50",
+                    .default_value = "50",
                     .type = Tunable::Type::number,
-                    .least = 1,
-                    .most = 1e12},
+                    .min = 1,
+                    .max = 1e12},
                    {.name = "segment",
                     .summary = "interval ends to a segment of a list",
-                    .standard = "64",
+                    .default_value = "64",
                     .type = Tunable::Type::integer,
-                    .least = 1,
-                    .most = 1e9},
+                    .min = 1,
+                    .max = 1e9},
                    {.name = "batch",
                     .summary = "share of a region's boxes, beyond which they come or go as a batch",
-                    .standard = "0.25",
+                    .default_value = "0.25",
                     .type = Tunable::Type::number,
-                    .least = 0,
-                    .most = 1e9}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
-      .followers_2d = {{.name = "interval lists", .make = make_follower<2>}},
-      .followers_3d = {{.name = "interval lists", .make = make_follower<3>}},
-      .most_boxes = IntervalEnd::most_ids,
+                    .min = 0,
+                    .max = 1e9}},
+      .in_2d = {.searcher = make_strategy<SegmentedSap<2>>,
+                .followers = {{.name = "interval lists", .make = make_strategy<SegmentedSapFollower<2>>}}},
+      .in_3d = {.searcher = make_strategy<SegmentedSap<3>>,
+                .followers = {{.name = "interval lists", .make = make_strategy<SegmentedSapFollower<3>>}}},
+      .limits = {.max_boxes = IntervalEnd::most_ids},
   };
 }
 

@@ -33,10 +33,14 @@ void add_present(KdTree<D>& tree, std::span<const Box<D>> boxes) {
   tree.refine(boxes);
 }
 
+std::size_t leaf_boxes(const Settings& settings) {
+  return static_cast<std::size_t>(settings.integer("leaf"));
+}
+
 template <int D>
 class SerpaKdTree final : public Searcher<D> {
  public:
-  explicit SerpaKdTree(std::size_t leaf_boxes) : tree_(leaf_boxes) {}
+  explicit SerpaKdTree(const Settings& settings) : tree_(leaf_boxes(settings)) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     add_present(tree_, input.boxes);
@@ -56,7 +60,7 @@ class SerpaKdTree final : public Searcher<D> {
 template <int D>
 class SerpaKdFollower final : public peers::PeerFollower<D> {
  public:
-  explicit SerpaKdFollower(std::size_t leaf_boxes) : tree_(leaf_boxes) {}
+  explicit SerpaKdFollower(const Settings& settings) : tree_(leaf_boxes(settings)) {}
 
  private:
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>>) override { add_present(tree_, boxes); }
@@ -85,20 +89,6 @@ class SerpaKdFollower final : public peers::PeerFollower<D> {
   KdTree<D> tree_;
 };
 
-std::size_t leaf_boxes(const Settings& settings) {
-  return static_cast<std::size_t>(settings.integer("leaf"));
-}
-
-template <int D>
-std::unique_ptr<Searcher<D>> make(const Settings& settings) {
-  return std::make_unique<SerpaKdTree<D>>(leaf_boxes(settings));
-}
-
-template <int D>
-std::unique_ptr<Follower<D>> make_follower(const Settings& settings) {
-  return std::make_unique<SerpaKdFollower<D>>(leaf_boxes(settings));
-}
-
 }  // namespace
 
 Algorithm serpa_kd_tree() {
@@ -109,14 +99,14 @@ Algorithm serpa_kd_tree() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "leaf",
                     .summary = "boxes, beyond which a leaf is split",
-                    .standard = "512",
+                    .default_value = "512",
                     .type = Tunable::Type::integer,
-                    .least = 1,
-                    .most = 1e9}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
-      .followers_2d = {{.name = "KD-tree", .make = make_follower<2>}},
-      .followers_3d = {{.name = "KD-tree", .make = make_follower<3>}},
+                    .min = 1,
+                    .max = 1e9}},
+      .in_2d = {.searcher = make_strategy<SerpaKdTree<2>>,
+                .followers = {{.name = "KD-tree", .make = make_strategy<SerpaKdFollower<2>>}}},
+      .in_3d = {.searcher = make_strategy<SerpaKdTree<3>>,
+                .followers = {{.name = "KD-tree", .make = make_strategy<SerpaKdFollower<3>>}}},
   };
 }
 

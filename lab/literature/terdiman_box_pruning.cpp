@@ -109,8 +109,10 @@ class Buckets {
 template <int D>
 class TerdimanBoxPruning final : public Searcher<D> {
  public:
-  /// `axis` is the sweep axis; -1: that on which centres vary most.
-  explicit TerdimanBoxPruning(int axis) : axis_(axis) {}
+  explicit TerdimanBoxPruning(const Settings& settings)
+      : axis_(settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x') {
+    if (axis_ >= D) throw InvalidSpec("axis 'z' in 2D; expected x or y");
+  }
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
@@ -141,18 +143,10 @@ class TerdimanBoxPruning final : public Searcher<D> {
     return centres.widest_axis();
   }
 
-  int axis_;
+  int axis_;         // the sweep axis; -1: that on which centres vary most
   Buckets<D> left_;  // all boxes, where there is one set
   Buckets<D> right_;
 };
-
-template <int D>
-std::unique_ptr<Searcher<D>> make(const Settings& settings) {
-  if (settings.is_auto("axis")) return std::make_unique<TerdimanBoxPruning<D>>(-1);
-  const int axis = settings.text("axis")[0] - 'x';
-  if (axis >= D) throw InvalidSpec("axis 'z' in 2D; expected x or y");
-  return std::make_unique<TerdimanBoxPruning<D>>(axis);
-}
 
 }  // namespace
 
@@ -164,11 +158,11 @@ Algorithm terdiman_box_pruning() {
       .kind = AlgorithmKind::literature,
       .tunables = {{.name = "axis",
                     .summary = "the axis along which it sweeps",
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"auto", "x", "y", "z"}}},
-      .searcher_2d = make<2>,
-      .searcher_3d = make<3>,
+      .in_2d = {.searcher = make_strategy<TerdimanBoxPruning<2>>},
+      .in_3d = {.searcher = make_strategy<TerdimanBoxPruning<3>>},
   };
 }
 

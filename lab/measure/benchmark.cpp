@@ -88,11 +88,11 @@ void count_memory(Measurement& measurement, const Algorithm& algorithm,
 std::string unfit(const Entry& entry, int dimension, const Extremes& extremes) {
   const Algorithm& algorithm = *entry.algorithm;
   if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
-  if (extremes.infinite && !algorithm.infinite_boxes) return "does not take infinite boxes";
-  if (extremes.largest > algorithm.largest_coordinate)
-    return fmt::format("does not take coordinates beyond {:.3g}", algorithm.largest_coordinate);
-  if (extremes.boxes > algorithm.most_boxes)
-    return fmt::format("does not take more than {} boxes", grouped(algorithm.most_boxes));
+  if (extremes.infinite && !algorithm.limits.infinite_boxes) return "does not take infinite boxes";
+  if (extremes.largest > algorithm.limits.max_coordinate)
+    return fmt::format("does not take coordinates beyond {:.3g}", algorithm.limits.max_coordinate);
+  if (extremes.boxes > algorithm.limits.max_boxes)
+    return fmt::format("does not take more than {} boxes", grouped(algorithm.limits.max_boxes));
   try {
     // A value may make sense in one dimension only, such as an axis.
     dimension == 2 ? void(Finder<2>(algorithm, entry.spec)) : void(Finder<3>(algorithm, entry.spec));

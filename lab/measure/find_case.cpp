@@ -50,7 +50,7 @@ struct TornDownFinder {
   static TornDownFinder of(const Entry& entry) {
     if (entry.algorithm->kind != AlgorithmKind::peer) return {Finder<D, Real>(*entry.algorithm, entry.spec)};
     const Settings settings(entry.spec, entry.algorithm->tunables);
-    std::unique_ptr<Searcher<D>> searcher = entry.algorithm->searcher<D>()(settings);
+    std::unique_ptr<Searcher<D>> searcher = entry.algorithm->in<D>().searcher(settings);
     auto* const structure = dynamic_cast<peers::TearDown*>(searcher.get());
     return {Finder<D, Real>(std::move(searcher)), structure};
   }

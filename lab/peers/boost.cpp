@@ -114,10 +114,10 @@ Algorithm boost_rtree() {
       .summary = "Boost.Geometry's R-tree, packed, and a query for each box",
       .source = "Boost.Geometry.Index, after Leutenegger et al. 1997 and Garcia et al. 1998",
       .version = "Boost " + std::to_string(version / 100'000) + "." + std::to_string(version / 100 % 1000),
-      .searcher_2d = [](const Settings&) { return std::make_unique<BoostRtree<2>>(); },
-      .searcher_3d = [](const Settings&) { return std::make_unique<BoostRtree<3>>(); },
-      .infinite_boxes = false,  // it compares their centres
-      .largest_coordinate = std::numeric_limits<float>::max(),
+      .in_2d = {.searcher = make_strategy<BoostRtree<2>>},
+      .in_3d = {.searcher = make_strategy<BoostRtree<3>>},
+      // It compares their centres.
+      .limits = {.infinite_boxes = false, .max_coordinate = std::numeric_limits<float>::max()},
   };
 }
 

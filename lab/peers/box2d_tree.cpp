@@ -188,10 +188,9 @@ Algorithm box2d_tree() {
       .source = "Box2D, b2BroadPhase and b2DynamicTree, after Presson's btDbvt",
       .kind = AlgorithmKind::peer,
       .version = "Box2D " BROADSIDE_BOX2D_VERSION,
-      .searcher_2d = [](const Settings&) { return std::make_unique<Box2dSearcher>(); },
-      .followers_2d = {{.name = "b2BroadPhase",
-                        .make = [](const Settings&) { return std::make_unique<Box2dFollower>(); }}},
-      .infinite_boxes = false,
+      .in_2d = {.searcher = make_strategy<Box2dSearcher>,
+                .followers = {{.name = "b2BroadPhase", .make = make_strategy<Box2dFollower>}}},
+      .limits = {.infinite_boxes = false},
       .own_allocator = true,
   };
 }

@@ -35,13 +35,11 @@ std::unique_ptr<Proxies<D>> proxies() {
 }
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_sweep_searcher(const Settings&) {
-  return std::make_unique<ProxySearcher<D>>(proxies<D>());
-}
-
-template <int D>
-std::unique_ptr<Follower<D>> make_sweep_follower(const Settings&) {
-  return std::make_unique<ProxyFollower<D>>(proxies<D>());
+Strategies<D> sweep_strategies() {
+  return {.searcher = [](const Settings&) { return std::make_unique<ProxySearcher<D>>(proxies<D>()); },
+          .followers = {{.name = "bt32BitAxisSweep3", .make = [](const Settings&) {
+                           return std::make_unique<ProxyFollower<D>>(proxies<D>());
+                         }}}};
 }
 
 }  // namespace
@@ -52,12 +50,10 @@ Algorithm bullet_axis_sweep() {
       .summary = "Bullet's incremental sweep and prune on three axes, in 32 bits",
       .source = "Bullet, bt32BitAxisSweep3",
       .version = bullet_version(),
-      .searcher_2d = make_sweep_searcher<2>,
-      .searcher_3d = make_sweep_searcher<3>,
-      .followers_2d = {{.name = "bt32BitAxisSweep3", .make = make_sweep_follower<2>}},
-      .followers_3d = {{.name = "bt32BitAxisSweep3", .make = make_sweep_follower<3>}},
-      .infinite_boxes = false,  // its world is bounded
-      .largest_coordinate = 1e30,
+      .in_2d = sweep_strategies<2>(),
+      .in_3d = sweep_strategies<3>(),
+      // Its world is bounded.
+      .limits = {.infinite_boxes = false, .max_coordinate = 1e30},
       .own_allocator = true,
   };
 }

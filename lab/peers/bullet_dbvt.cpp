@@ -127,15 +127,15 @@ Algorithm bullet_dbvt() {
       .tunables = {{.name = "collide",
                     .summary = "in motion: each box as it moves, as Bullet does unless told, or all at the "
                                "end of the frame; auto: by how many left their margins in the frame before",
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"at_once", "deferred"}}},
-      .searcher_2d = [](const Settings&) { return std::make_unique<BulletDbvt<2>>(); },
-      .searcher_3d = [](const Settings&) { return std::make_unique<BulletDbvt<3>>(); },
-      .followers_2d = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<2>}},
-      .followers_3d = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<3>}},
-      .infinite_boxes = false,  // moving boxes are made larger, and their centres compared
-      .largest_coordinate = 1e30,
+      .in_2d = {.searcher = make_strategy<BulletDbvt<2>>,
+                .followers = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<2>}}},
+      .in_3d = {.searcher = make_strategy<BulletDbvt<3>>,
+                .followers = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<3>}}},
+      // Moving boxes are made larger, and their centres compared.
+      .limits = {.infinite_boxes = false, .max_coordinate = 1e30},
       .own_allocator = true,
   };
 }

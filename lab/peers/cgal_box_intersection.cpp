@@ -27,7 +27,7 @@ template <int D>
 class CgalBoxIntersection final : public Searcher<D> {
  public:
   explicit CgalBoxIntersection(const Settings& settings)
-      : cutoff_(settings.is_auto("cutoff") ? 0 : settings.integer("cutoff")) {}
+      : cutoff_(static_cast<std::ptrdiff_t>(settings.optional_number("cutoff").value_or(0))) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
@@ -70,16 +70,14 @@ Algorithm cgal_box_intersection() {
       .version = "CGAL " CGAL_VERSION_STR,
       .tunables = {{.name = "cutoff",
                     .summary = "boxes, below which it sweeps instead of splitting",
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::integer,
-                    .least = 1,
-                    .most = 1e9}},
-      .searcher_2d =
-          [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<2>>(settings); },
-      .searcher_3d =
-          [](const Settings& settings) { return std::make_unique<CgalBoxIntersection<3>>(settings); },
-      .infinite_boxes = false,  // the least and the greatest float are its ends of the axes
-      .largest_coordinate = 3.4e38,
+                    .min = 1,
+                    .max = 1e9}},
+      .in_2d = {.searcher = make_strategy<CgalBoxIntersection<2>>},
+      .in_3d = {.searcher = make_strategy<CgalBoxIntersection<3>>},
+      // The least and the greatest float are its ends of the axes.
+      .limits = {.infinite_boxes = false, .max_coordinate = 3.4e38},
   };
 }
 

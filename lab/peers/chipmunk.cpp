@@ -224,11 +224,11 @@ Algorithm chipmunk_index(MakeIndex make) {
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "Chipmunk " + std::string(cpVersionString),
-      .searcher_2d = [make](const Settings&) { return std::make_unique<ChipmunkSearcher>(make); },
-      .followers_2d = {{.name = "cpSpace",
-                        .make =
-                            [make](const Settings&) { return std::make_unique<ChipmunkFollower>(make); }}},
-      .infinite_boxes = false,
+      .in_2d = {.searcher = [make](const Settings&) { return std::make_unique<ChipmunkSearcher>(make); },
+                .followers =
+                    {{.name = "cpSpace",
+                      .make = [make](const Settings&) { return std::make_unique<ChipmunkFollower>(make); }}}},
+      .limits = {.infinite_boxes = false},
       .own_allocator = true,
   };
 }

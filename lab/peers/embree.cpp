@@ -238,10 +238,10 @@ Algorithm embree_collide() {
       .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
       .source = "Embree, rtcCollide",
       .version = "Embree " RTC_VERSION_STRING,
-      .searcher_2d = [](const Settings&) { return std::make_unique<EmbreeCollide<2>>(); },
-      .searcher_3d = [](const Settings&) { return std::make_unique<EmbreeCollide<3>>(); },
-      .infinite_boxes = false,
-      .largest_coordinate = 1.8e18,  // beyond 1.844e18 it drops boxes as invalid
+      .in_2d = {.searcher = make_strategy<EmbreeCollide<2>>},
+      .in_3d = {.searcher = make_strategy<EmbreeCollide<3>>},
+      // Beyond 1.844e18 it drops boxes as invalid.
+      .limits = {.infinite_boxes = false, .max_coordinate = 1.8e18},
       .own_allocator = true,
   };
 }

@@ -139,11 +139,15 @@ Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widen
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "FCL " FCL_VERSION,
-      .searcher_2d =
-          [=](const Settings&) { return std::make_unique<FclSearcher<2>>(make_2d, widened, depth); },
-      .searcher_3d =
-          [=](const Settings&) { return std::make_unique<FclSearcher<3>>(make_3d, widened, depth); },
-      .infinite_boxes = false,
+      .in_2d = {.searcher =
+                    [=](const Settings&) {
+                      return std::make_unique<FclSearcher<2>>(make_2d, widened, depth);
+                    }},
+      .in_3d = {.searcher =
+                    [=](const Settings&) {
+                      return std::make_unique<FclSearcher<3>>(make_3d, widened, depth);
+                    }},
+      .limits = {.infinite_boxes = false},
   };
 }
 
@@ -272,10 +276,8 @@ Algorithm fcl_dynamic_aabb_tree() {
   algorithm.name = "fcl_dynamic_aabb_tree";
   algorithm.summary = "FCL's dynamic tree of boxes, built at once in the order of Morton codes";
   algorithm.source = "FCL, DynamicAABBTreeCollisionManager";
-  algorithm.followers_2d = {{.name = "DynamicAABBTreeCollisionManager",
-                             .make = [](const Settings&) { return std::make_unique<FclTreeFollower<2>>(); }}};
-  algorithm.followers_3d = {{.name = "DynamicAABBTreeCollisionManager",
-                             .make = [](const Settings&) { return std::make_unique<FclTreeFollower<3>>(); }}};
+  algorithm.in_2d.followers = {{"DynamicAABBTreeCollisionManager", make_strategy<FclTreeFollower<2>>}};
+  algorithm.in_3d.followers = {{"DynamicAABBTreeCollisionManager", make_strategy<FclTreeFollower<3>>}};
   return algorithm;
 }
 

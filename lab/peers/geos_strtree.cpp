@@ -51,9 +51,9 @@ Algorithm geos_strtree() {
       .summary = "GEOS's packed R-tree (sort, tile, recurse), and a query for each box",
       .source = "GEOS, TemplateSTRtree, after Leutenegger et al. 1997",
       .version = std::string("GEOS ") + GEOS_VERSION,
-      .searcher_2d = [](const Settings&) { return std::make_unique<GeosStrtree>(); },
-      .infinite_boxes = false,  // it compares their centres
-      .largest_coordinate = std::numeric_limits<float>::max(),
+      .in_2d = {.searcher = make_strategy<GeosStrtree>},
+      // It compares their centres.
+      .limits = {.infinite_boxes = false, .max_coordinate = std::numeric_limits<float>::max()},
   };
 }
 

@@ -113,9 +113,9 @@ class OdeSearcher final : public Searcher<3>, public TearDown {
 
   std::optional<Statistics> search(const SearchInput<3>& input, PairSink& pairs) override {
     const std::span<const Box3> boxes = input.boxes;
-    if (boxes.size() > kind_.most_boxes)
+    if (boxes.size() > kind_.max_boxes)
       throw std::length_error(std::to_string(boxes.size()) + " boxes in ODE's hash space; expected at most " +
-                              std::to_string(kind_.most_boxes) + ", as it counts pairs of boxes in an int");
+                              std::to_string(kind_.max_boxes) + ", as it counts pairs of boxes in an int");
     tear_down();
     const double shift = kind_.shift != nullptr ? kind_.shift(boxes) : 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.put(i, boxes[i], shift);
@@ -199,14 +199,14 @@ Algorithm ode_space(const OdeSpaceKind& kind) {
       .source = {},
       .kind = AlgorithmKind::peer,
       .version = "ODE " dODE_VERSION,
-      .searcher_3d = [kind](const Settings&) { return std::make_unique<OdeSearcher>(kind); },
-      .most_boxes = kind.most_boxes,
+      .in_3d = {.searcher = [kind](const Settings&) { return std::make_unique<OdeSearcher>(kind); }},
+      .limits = {.max_boxes = kind.max_boxes},
       .own_allocator = true,
   };
   if (kind.tracks) {
-    algorithm.followers_3d = {{.name = "dSpaceCollide", .make = [kind](const Settings&) {
-                                 return std::make_unique<OdeFollower>(kind);
-                               }}};
+    algorithm.in_3d.followers = {{.name = "dSpaceCollide", .make = [kind](const Settings&) {
+                                    return std::make_unique<OdeFollower>(kind);
+                                  }}};
   }
   return algorithm;
 }

@@ -31,7 +31,7 @@ struct OdeSpaceKind {
   bool tracks = true;
 
   /// Declared limit.
-  std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
+  std::size_t max_boxes = std::numeric_limits<std::size_t>::max();
 };
 
 /// The description of a space: a searcher that fills a new one in each call, and a follower that keeps one.

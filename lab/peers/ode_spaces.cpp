@@ -30,7 +30,7 @@ Algorithm ode_sap() {
 namespace {
 
 // The space keeps a bit for every pair of boxes and finds it by an int.
-constexpr std::size_t most_boxes = 1 << 17;
+constexpr std::size_t max_boxes = 1 << 17;
 
 struct Levels {
   int least;  ///< of cells of 2^least
@@ -76,7 +76,7 @@ OdeSpace make_hash_space(std::span<const Box3> boxes) {
 // Its table is new in each search, so that following motion is searching.
 Algorithm ode_hash() {
   Algorithm algorithm =
-      ode_space({.make = make_hash_space, .shift = shift_of, .tracks = false, .most_boxes = most_boxes});
+      ode_space({.make = make_hash_space, .shift = shift_of, .tracks = false, .max_boxes = max_boxes});
   algorithm.name = "ode_hash";
   algorithm.summary =
       "ODE's hash space: grids of several cell sizes in one table, and a bit for every two boxes";

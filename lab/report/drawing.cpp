@@ -168,7 +168,7 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
 }
 
 bool has_outline(const Entry& entry, int dimension) {
-  return dimension == 2 ? bool(entry.algorithm->outline_2d) : bool(entry.algorithm->outline_3d);
+  return dimension == 2 ? bool(entry.algorithm->in_2d.outline) : bool(entry.algorithm->in_3d.outline);
 }
 
 Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of, std::span<const Entry> entries,

@@ -32,7 +32,7 @@ Scene map_scene(Scene scene, const std::filesystem::path& path, const std::strin
   scene.missing = missing_data(path, readers::map().missing);
   scene.tunables = {{.name = "boxes",
                      .summary = "a box a " + feature + ", or a box a segment of the lines around them",
-                     .standard = "features",
+                     .default_value = "features",
                      .type = Tunable::Type::choice,
                      .choices = {"features", "segments"}}};
   scene.boxes_2d = [=](const Settings& settings, std::size_t, std::uint64_t) {

@@ -78,7 +78,7 @@ Scene join_table() {
       .source = "Jiang et al., SwiftSpatial, SIGMOD 2025: data_gen.py",
       .tunables = {{.name = "set",
                     .summary = "which of the two sets that are joined",
-                    .standard = "left",
+                    .default_value = "left",
                     .type = Tunable::Type::choice,
                     .choices = {"left", "right"}}},
       .boxes_2d = make_join_table,

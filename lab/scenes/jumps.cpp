@@ -54,10 +54,10 @@ Scene jumps() {
       .source = "Broadside",
       .tunables = {{.name = "every",
                     .summary = "frames from one jump of all boxes to the next",
-                    .standard = "10",
+                    .default_value = "10",
                     .type = Tunable::Type::integer,
-                    .least = 1,
-                    .most = 1e9}},
+                    .min = 1,
+                    .max = 1e9}},
       .history_2d = make_jumps<2>,
       .history_3d = make_jumps<3>,
   };

@@ -136,9 +136,9 @@ Scene pile() {
       .source = "Broadside, after Box2D v3's large pyramid",
       .tunables = {{.name = "speed",
                     .summary = "how far a box goes in a frame at most, in boxes, beside its trembling",
-                    .standard = "0.008",
-                    .least = 0,
-                    .most = 1}},
+                    .default_value = "0.008",
+                    .min = 0,
+                    .max = 1}},
       .history_2d = make_pile<2>,
       .history_3d = make_pile<3>,
   };

@@ -36,9 +36,9 @@ double mean_chance(std::span<const Size<D>> sizes, double side, int first_axis) 
 Tunable neighbours_tunable() {
   return {.name = "neighbours",
           .summary = "how many others a box touches on average",
-          .standard = "4",
-          .least = 1e-6,
-          .most = 1e6};
+          .default_value = "4",
+          .min = 1e-6,
+          .max = 1e6};
 }
 
 double power(double base, double exponent) {

@@ -78,9 +78,9 @@ inline DrawnTunable number(std::string name, std::string summary, std::string st
                            double most) {
   return {{.name = std::move(name),
            .summary = std::move(summary),
-           .standard = std::move(standard),
-           .least = least,
-           .most = most}};
+           .default_value = std::move(standard),
+           .min = least,
+           .max = most}};
 }
 
 /// A number of any order of magnitude from `least` to `most`.
@@ -102,7 +102,7 @@ inline DrawnTunable count(std::string name, std::string summary, std::string sta
 inline DrawnTunable choice(std::string name, std::string summary, std::vector<std::string> choices) {
   return {{.name = std::move(name),
            .summary = std::move(summary),
-           .standard = choices.front(),
+           .default_value = choices.front(),
            .type = Tunable::Type::choice,
            .choices = choices}};
 }

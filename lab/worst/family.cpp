@@ -18,12 +18,11 @@ namespace {
 std::string draw_value(const DrawnTunable& drawn, Random& random) {
   const Tunable& tunable = drawn.tunable;
   if (tunable.type == Tunable::Type::choice) return tunable.choices[random.below(tunable.choices.size())];
-  const double value = drawn.logarithmic
-                           ? tunable.least * power(tunable.most / tunable.least, random.fraction())
-                           : random.between(tunable.least, tunable.most);
+  const double value = drawn.logarithmic ? tunable.min * power(tunable.max / tunable.min, random.fraction())
+                                         : random.between(tunable.min, tunable.max);
   // Few digits, so that people can read and change it.
   const double rounded = tunable.type == Tunable::Type::integer ? std::round(value) : value;
-  return fmt::format("{:.3g}", std::clamp(rounded, tunable.least, tunable.most));
+  return fmt::format("{:.3g}", std::clamp(rounded, tunable.min, tunable.max));
 }
 
 template <int D>

@@ -23,16 +23,16 @@ const std::vector<Tunable>& common_tunables() {
     const std::string standard = choices.front();
     return Tunable{.name = std::move(name),
                    .summary = {},
-                   .standard = standard,
+                   .default_value = standard,
                    .type = Tunable::Type::choice,
                    .choices = std::move(choices)};
   };
   const auto number = [](std::string name, std::string standard, double least, double most) {
     return Tunable{.name = std::move(name),
                    .summary = {},
-                   .standard = std::move(standard),
-                   .least = least,
-                   .most = most};
+                   .default_value = std::move(standard),
+                   .min = least,
+                   .max = most};
   };
   static const std::vector<Tunable> list = {
       choice("dimension", {"2", "3"}),
@@ -45,7 +45,7 @@ const std::vector<Tunable>& common_tunables() {
       number("exponent", "0", -most_exponent, most_exponent),
       number("offset", "0", 0, 1e15),
       choice("order", {"made", "shuffled", "reversed"}),
-      {.name = "seed", .summary = {}, .standard = "1", .type = Tunable::Type::integer, .most = 0x1p53},
+      {.name = "seed", .summary = {}, .default_value = "1", .type = Tunable::Type::integer, .max = 0x1p53},
   };
   return list;
 }

@@ -61,7 +61,7 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
   const Spec parsed(spec);
   const Algorithm& algorithm = *find_algorithm(parsed.name);
   std::unique_ptr<Follower<D>> follower =
-      algorithm.followers<D>().front().make(Settings(parsed, algorithm.tunables));
+      algorithm.in<D>().followers.front().make(Settings(parsed, algorithm.tunables));
   const auto& coherent = dynamic_cast<const paper::CoherentFollower<D>&>(*follower);
   Tracker<D> tracker(std::move(follower));
   std::vector<Box<D>> boxes = history.boxes;

@@ -16,7 +16,7 @@ namespace {
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_called(const std::string& name) {
   const Algorithm& algorithm = *find_algorithm(name);
-  return algorithm.searcher<D>()(Settings(Spec(name), algorithm.tunables));
+  return algorithm.in<D>().searcher(Settings(Spec(name), algorithm.tunables));
 }
 
 template <int D>
@@ -45,22 +45,22 @@ Algorithm held_back() {
           .source = "for the experiment `ablation`",
           .tunables = {{.name = "search",
                         .summary = "which",
-                        .standard = "grid",
+                        .default_value = "grid",
                         .type = Tunable::Type::choice,
                         .choices = {"grid", "bvh"}},
                        {.name = "simd",
                         .summary = "the instruction set",
-                        .standard = instruction_set(),
+                        .default_value = instruction_set(),
                         .type = Tunable::Type::choice,
                         .choices = instruction_sets()}},
-          .searcher_2d = [](const Settings& settings) { return std::make_unique<HeldBack<2>>(settings); },
-          .searcher_3d = [](const Settings& settings) { return std::make_unique<HeldBack<3>>(settings); }};
+          .in_2d = {.searcher = make_strategy<HeldBack<2>>},
+          .in_3d = {.searcher = make_strategy<HeldBack<3>>}};
 }
 
 Tunable switch_tunable(std::string name, std::string summary) {
   return {.name = std::move(name),
           .summary = std::move(summary),
-          .standard = "yes",
+          .default_value = "yes",
           .type = Tunable::Type::choice,
           .choices = {"yes", "no"}};
 }

@@ -255,9 +255,9 @@ Algorithm plain_bvh() {
                    switch_tunable("join", "whether the tree is joined with itself, or asked for each box"),
                    switch_tunable("arrays", "whether a level of the tree is an array for each bound"),
                    switch_tunable("branch_free", "whether hits are written without a branch")},
-      .searcher_2d = make_plain_bvh<2>,
-      .searcher_3d = make_plain_bvh<3>,
-      .infinite_boxes = false};
+      .in_2d = {.searcher = make_plain_bvh<2>},
+      .in_3d = {.searcher = make_plain_bvh<3>},
+      .limits = {.infinite_boxes = false}};
 }
 
 }  // namespace broadside::lab

@@ -301,9 +301,9 @@ Algorithm plain_grid() {
                    switch_tunable("buckets", "whether a cell's boxes are ordered by a counting sort"),
                    switch_tunable("arrays", "whether a cell's boxes are an array for each bound"),
                    switch_tunable("branch_free", "whether pairs are written without a branch")},
-      .searcher_2d = [](const Settings& settings) { return std::make_unique<PlainGrid<2>>(settings); },
-      .searcher_3d = [](const Settings& settings) { return std::make_unique<PlainGrid<3>>(settings); },
-      .infinite_boxes = false};
+      .in_2d = {.searcher = make_strategy<PlainGrid<2>>},
+      .in_3d = {.searcher = make_strategy<PlainGrid<3>>},
+      .limits = {.infinite_boxes = false}};
 }
 
 }  // namespace broadside::lab

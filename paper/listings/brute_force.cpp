@@ -39,8 +39,8 @@ Algorithm brute_force() {
       .summary = "every box against every later one, as the paper lists it, mended",
       .source = "paper.md, section II, Algorithm 1",
       .kind = AlgorithmKind::paper,
-      .searcher_2d = [](const Settings&) { return std::make_unique<BruteForce<2>>(); },
-      .searcher_3d = [](const Settings&) { return std::make_unique<BruteForce<3>>(); },
+      .in_2d = {.searcher = make_strategy<BruteForce<2>>},
+      .in_3d = {.searcher = make_strategy<BruteForce<3>>},
   };
 }
 

@@ -35,7 +35,7 @@ Tunable detect_tunable() {
           .summary =
               "how a tracker knows what changed: a flag at each box, or a comparison of each box with its "
               "previous state",
-          .standard = "flag",
+          .default_value = "flag",
           .type = Tunable::Type::choice,
           .choices = {"flag", "compare"}};
 }

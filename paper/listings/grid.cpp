@@ -22,7 +22,7 @@ namespace broadside::paper {
 namespace {
 
 GridListing listing_of(const Settings& settings) {
-  return {WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")};
+  return {WorldSettings(settings), settings.optional_number("cell").value_or(0)};
 }
 
 class Grid final : public ListingSearcher<2> {
@@ -95,9 +95,9 @@ Algorithm grid() {
       .name = "cell",
       .summary = "side of a cell, in the coordinates' unit; doubled while the grid would be too large for "
                  "memory (errata 2c and 3i)",
-      .standard = "auto",
-      .least = std::numeric_limits<float>::min(),
-      .most = std::numeric_limits<float>::max(),
+      .default_value = "auto",
+      .min = std::numeric_limits<float>::min(),
+      .max = std::numeric_limits<float>::max(),
   }};
   for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
   tunables.push_back(
@@ -105,7 +105,7 @@ Algorithm grid() {
        .summary = "how a tracker mends its cells before it searches them: built anew; movers found by "
                   "looking through all cells, or by hashing their old place, and inserted; or "
                   "references translated to neighbouring cells",
-       .standard = "rebuild",
+       .default_value = "rebuild",
        .type = Tunable::Type::choice,
        .choices = {"rebuild", "search_delete_reinsert", "reinsert", "translate"}});
   tunables.push_back(detect_tunable());
@@ -115,9 +115,9 @@ Algorithm grid() {
       .source = "paper.md, sections III (Algorithms 2 to 4) and VI-B",
       .kind = AlgorithmKind::paper,
       .tunables = std::move(tunables),
-      .searcher_2d = [](const Settings& settings) { return std::make_unique<Grid>(settings); },
-      .followers_2d = {{.name = "paper_grid", .make = make_grid_follower}},
-      .outline_2d = grid_outline,
+      .in_2d = {.searcher = make_strategy<Grid>,
+                .followers = {{.name = "paper_grid", .make = make_grid_follower}},
+                .outline = grid_outline},
   };
 }
 

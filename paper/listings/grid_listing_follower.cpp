@@ -51,7 +51,7 @@ class GridListingFollower final : public CoherentFollower<2> {
   explicit GridListingFollower(const Settings& settings)
       : CoherentFollower(settings),
         reposition_(reposition_of(settings)),
-        grid_(WorldSettings(settings), settings.is_auto("cell") ? 0 : settings.number("cell")) {}
+        grid_(WorldSettings(settings), settings.optional_number("cell").value_or(0)) {}
 
  private:
   void build() override {

@@ -73,10 +73,10 @@ Algorithm quadtree() {
       .name = "capacity",
       .summary = "boxes that a leaf holds before it splits; more where all share a point, or where the "
                  "leaves would come to hold 16 references a box",
-      .standard = "8",
+      .default_value = "8",
       .type = Tunable::Type::integer,
-      .least = 1,
-      .most = 1'000'000,
+      .min = 1,
+      .max = 1'000'000,
   }};
   for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
   tunables.push_back({.name = "update",
@@ -84,7 +84,7 @@ Algorithm quadtree() {
                           "how a tracker mends its tree before it traverses it: built anew; movers inserted "
                           "from the root; from the least node above their leaf that holds them; or each "
                           "reference by itself carried to siblings, and also to cousins",
-                      .standard = "rebuild",
+                      .default_value = "rebuild",
                       .type = Tunable::Type::choice,
                       .choices = {"rebuild", "root", "relative", "siblings", "cousins"}});
   tunables.push_back(detect_tunable());
@@ -94,9 +94,9 @@ Algorithm quadtree() {
       .source = "paper.md, sections V (Algorithms 7 to 10) and VI-D",
       .kind = AlgorithmKind::paper,
       .tunables = std::move(tunables),
-      .searcher_2d = [](const Settings& settings) { return std::make_unique<Quadtree>(settings); },
-      .followers_2d = {{.name = "paper_quadtree", .make = make_quadtree_follower}},
-      .outline_2d = quadtree_outline,
+      .in_2d = {.searcher = make_strategy<Quadtree>,
+                .followers = {{.name = "paper_quadtree", .make = make_quadtree_follower}},
+                .outline = quadtree_outline},
   };
 }
 

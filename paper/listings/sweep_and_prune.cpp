@@ -36,6 +36,13 @@ Outline<D> sweep_outline(std::span<const Box<D>>, const Workers&, const Settings
   return {.kind = "sweep", .caption = "one sweep along x", .swept_axis = 0, .levels = {{all}}};
 }
 
+template <int D>
+Strategies<D> sweep_strategies() {
+  return {.searcher = make_strategy<SweepAndPrune<D>>,
+          .followers = {{.name = "paper_sweep_and_prune", .make = make_sweep_follower<D>}},
+          .outline = sweep_outline<D>};
+}
+
 }  // namespace
 
 Algorithm sweep_and_prune() {
@@ -49,16 +56,12 @@ Algorithm sweep_and_prune() {
                         "how a tracker mends its order before it sweeps: sorted anew; a heap, from which "
                         "minima are taken as the sweep goes; insertion sort; or a binary search for the "
                         "place of each mover",
-                    .standard = "rebuild",
+                    .default_value = "rebuild",
                     .type = Tunable::Type::choice,
                     .choices = {"rebuild", "heap", "insertion", "binary"}},
                    detect_tunable()},
-      .searcher_2d = [](const Settings&) { return std::make_unique<SweepAndPrune<2>>(); },
-      .searcher_3d = [](const Settings&) { return std::make_unique<SweepAndPrune<3>>(); },
-      .followers_2d = {{.name = "paper_sweep_and_prune", .make = make_sweep_follower<2>}},
-      .followers_3d = {{.name = "paper_sweep_and_prune", .make = make_sweep_follower<3>}},
-      .outline_2d = sweep_outline<2>,
-      .outline_3d = sweep_outline<3>,
+      .in_2d = sweep_strategies<2>(),
+      .in_3d = sweep_strategies<3>(),
   };
 }
 

@@ -9,11 +9,6 @@
 namespace broadside::paper {
 namespace {
 
-std::optional<double> given(const Settings& settings, std::string_view tunable) {
-  if (settings.is_auto(tunable)) return std::nullopt;
-  return settings.number(tunable);
-}
-
 /// Begin and length of the world on one axis.
 std::pair<double, double> extent(std::span<const Box2> boxes, int axis, std::optional<double> begin,
                                  std::optional<double> length) {
@@ -38,18 +33,18 @@ std::pair<double, double> extent(std::span<const Box2> boxes, int axis, std::opt
 std::vector<Tunable> world_tunables() {
   constexpr double most = std::numeric_limits<float>::max();
   return {
-      {.name = "left", .summary = "least x of the world", .standard = "auto", .least = -most, .most = most},
-      {.name = "top", .summary = "least y of the world", .standard = "auto", .least = -most, .most = most},
-      {.name = "width", .summary = "extent of the world in x", .standard = "auto", .most = most},
-      {.name = "height", .summary = "extent of the world in y", .standard = "auto", .most = most},
+      {.name = "left", .summary = "least x of the world", .default_value = "auto", .min = -most, .max = most},
+      {.name = "top", .summary = "least y of the world", .default_value = "auto", .min = -most, .max = most},
+      {.name = "width", .summary = "extent of the world in x", .default_value = "auto", .max = most},
+      {.name = "height", .summary = "extent of the world in y", .default_value = "auto", .max = most},
   };
 }
 
 WorldSettings::WorldSettings(const Settings& settings)
-    : left_(given(settings, "left")),
-      top_(given(settings, "top")),
-      width_(given(settings, "width")),
-      height_(given(settings, "height")) {}
+    : left_(settings.optional_number("left")),
+      top_(settings.optional_number("top")),
+      width_(settings.optional_number("width")),
+      height_(settings.optional_number("height")) {}
 
 World WorldSettings::around(std::span<const Box2> boxes) const {
   const auto [left, width] = extent(boxes, 0, left_, width_);

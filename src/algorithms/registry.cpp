@@ -82,7 +82,7 @@ std::size_t threads_of(const Algorithm& algorithm, const Settings& settings) {
 
 template <int D>
 std::unique_ptr<Searcher<D>> searcher(const Algorithm& algorithm, const Settings& settings) {
-  const MakeSearcher<D>& make = algorithm.searcher<D>();
+  const MakeSearcher<D>& make = algorithm.in<D>().searcher;
   if (!make)
     throw InvalidSpec(core::message({algorithm.name, " does not do ", D, "D; expected ", 5 - D, "D boxes"}));
   const core::DefaultEnvironment environment;

@@ -8,10 +8,10 @@ namespace broadside::core {
 namespace {
 
 /// From here on no piece is begun, so that those being searched have room to end.
-constexpr std::size_t nearly_full = PairBlocks::most / 2;
+constexpr std::size_t nearly_full = PairBlocks::max_blocks / 2;
 
 /// Below this, workers that found no room may come back.
-constexpr std::size_t nearly_empty = PairBlocks::most / 8;
+constexpr std::size_t nearly_empty = PairBlocks::max_blocks / 8;
 
 }  // namespace
 

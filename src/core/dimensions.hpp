@@ -15,11 +15,4 @@ template <>
 inline constexpr bool has_dimension<3> = false;
 #endif
 
-/// A function that makes an algorithm in D dimensions; null in a build without them, so that nothing
-/// of it is linked.
-template <int D, typename Maker>
-constexpr Maker* in_dimension(Maker* maker) noexcept {
-  return has_dimension<D> ? maker : nullptr;
-}
-
 }  // namespace broadside::core

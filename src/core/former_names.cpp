@@ -62,10 +62,11 @@ Spec canonical_spec(const Spec& spec) {
   for (const Tunable& tunable : algorithm->tunables) {
     const auto found =
         std::ranges::find(given.values, tunable.name, &decltype(given.values)::value_type::first);
-    if (found == given.values.end() || found->second.text() == tunable.standard) continue;
+    if (found == given.values.end() || found->second.text() == tunable.default_value) continue;
     if (tunable.type == Tunable::Type::choice) {
       canonical.values.push_back(*found);
-    } else if (const double number = number_in(found->second.text()); number != number_in(tunable.standard)) {
+    } else if (const double number = number_in(found->second.text());
+               number != number_in(tunable.default_value)) {
       canonical.values.emplace_back(tunable.name, number);
     }
   }

@@ -12,12 +12,12 @@ namespace broadside::core {
 
 void prefer_large_pages(void* begin, std::size_t bytes) noexcept {
   // Two of the usual size: one at least lies wholly within the memory, wherever that begins.
-  constexpr std::size_t least_bytes = std::size_t{4} << 20;
-  if (bytes < least_bytes) return;
+  constexpr std::size_t min_bytes = std::size_t{4} << 20;
+  if (bytes < min_bytes) return;
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   std::size_t left = bytes;
   void* aligned = begin;
-  if (std::align(page, least_bytes - page, aligned, left) != nullptr)
+  if (std::align(page, min_bytes - page, aligned, left) != nullptr)
     madvise(aligned, left / page * page, MADV_HUGEPAGE);
 }
 

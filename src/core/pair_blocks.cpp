@@ -7,7 +7,7 @@ namespace broadside::core {
 
 PairBlock* PairBlocks::take() {
   const std::lock_guard lock(mutex_);
-  if (used_ == most) return nullptr;
+  if (used_ == max_blocks) return nullptr;
   if (free_ == nullptr) {
     all_.push_back(std::make_unique_for_overwrite<PairBlock>());
     free_ = all_.back().get();

@@ -24,9 +24,9 @@ struct PairBlock {
 class PairBlocks {
  public:
   /// The most blocks in use at once: 64 MiB.
-  static constexpr std::size_t most = (std::size_t{64} << 20) / sizeof(PairBlock::pairs);
+  static constexpr std::size_t max_blocks = (std::size_t{64} << 20) / sizeof(PairBlock::pairs);
 
-  /// An empty block; null where `most` are in use. Throws std::bad_alloc.
+  /// An empty block; null where `max_blocks` are in use. Throws std::bad_alloc.
   PairBlock* take();
 
   /// Gives back a block and all that follow it.

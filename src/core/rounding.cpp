@@ -14,18 +14,18 @@ namespace {
 constexpr double largest_double = std::numeric_limits<double>::max();
 
 /// How many boxes are sampled to fit an origin and a scale.
-constexpr std::size_t most_fitted = 256;
+constexpr std::size_t max_fitted = 256;
 
 /// One box in sixteen gives its coordinates for knots, so that an interval holds about ten coordinates.
 constexpr std::size_t boxes_per_knot = 16;
-constexpr std::size_t most_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
+constexpr std::size_t max_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
 
 /// False pairs a box that cost about what another rounding does.
-constexpr double most_false_pairs = 8;
+constexpr double max_false_pairs = 8;
 
 /// Each false pair among the boxes that are compared stands for 4/3 a box.
 constexpr double compared_share = 0.75;
-constexpr std::size_t least_compared = 64;
+constexpr std::size_t min_compared = 64;
 
 /// Shifts a sample.
 std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
@@ -135,9 +135,9 @@ float QuantileRounding::operator()(double value) const {
 template <int D>
 std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) {
   std::array<std::vector<double>, D> minima;
-  const std::size_t tries = std::min(boxes.size(), 4 * most_fitted);
+  const std::size_t tries = std::min(boxes.size(), 4 * max_fitted);
   std::size_t taken = 0;
-  for (std::size_t i = 0; i < tries && taken < most_fitted; ++i) {
+  for (std::size_t i = 0; i < tries && taken < max_fitted; ++i) {
     // A copy, since another thread may change the caller's; a NaN has no median.
     const Box<D, double> box = boxes[tries == boxes.size() ? i : sampled_place(i, boxes.size())];
     if (!is_present(box)) continue;
@@ -190,7 +190,7 @@ std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_p
 template <int D>
 std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes, std::uint64_t hash) {
   const std::uint32_t shift = shift_by(hash);
-  const std::size_t count = std::min(boxes.size() / boxes_per_knot + 1, most_knots / 2);
+  const std::size_t count = std::min(boxes.size() / boxes_per_knot + 1, max_knots / 2);
   std::array<QuantileRounding, D> fit;
   for (int axis = 0; axis < D; ++axis) {
     std::vector<double> knots;
@@ -211,11 +211,12 @@ template <int D>
 bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count, std::uint64_t hash) {
   const auto size = static_cast<double>(boxes.size());
-  const auto most = std::max(least_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
+  const auto max_compared =
+      std::max(min_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
   const std::uint32_t shift = shift_by(hash);
   Columns<D> columns;
   const auto take = [&](std::span<const Box<D, double>> from) {
-    const std::size_t count = std::min(from.size(), most);
+    const std::size_t count = std::min(from.size(), max_compared);
     for (std::size_t i = 0; i < count; ++i) {
       const Box<D, double>& box = from[count == from.size() ? i : sampled_place(i + shift, from.size())];
       if (is_present(box))
@@ -240,7 +241,7 @@ bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const
     all = static_cast<double>(left_count) * static_cast<double>(boxes.size() - left_count);
     for (std::size_t i = left_columns; i < columns.size(); ++i) wrong += columns.false_pairs(i, left_columns);
   }
-  return compared > 0 && static_cast<double>(wrong) / compared * all > most_false_pairs * size;
+  return compared > 0 && static_cast<double>(wrong) / compared * all > max_false_pairs * size;
 }
 
 template std::array<LinearRounding, 2> fit_linear<2>(std::span<const DoubleBox2>);

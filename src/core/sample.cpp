@@ -14,8 +14,8 @@ namespace {
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// Few boxes are sampled densely, many so sparsely that sampling is a small part of the work.
-std::size_t sample_count(std::size_t boxes, std::size_t most) {
-  return std::min({boxes, 64 + boxes / 16, most});
+std::size_t sample_count(std::size_t boxes, std::size_t max_count) {
+  return std::min({boxes, 64 + boxes / 16, max_count});
 }
 
 /// The part of the pairs among `minima.size()` intervals that overlap; both ends sorted, each for itself.
@@ -65,8 +65,8 @@ void set_bounds(AxisSample& sample, std::span<const float> maxima) {
 }  // namespace
 
 template <int D>
-void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
-  const std::size_t count = sample_count(boxes.size(), most);
+void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
+  const std::size_t count = sample_count(boxes.size(), max_count);
   for (int axis = 0; axis < D; ++axis) {
     AxisSample& sample = axes_[axis];
     sample.minima.clear();

@@ -46,8 +46,8 @@ inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
 template <int D>
 class Sample {
  public:
-  /// Looks at `most` of the boxes, or fewer where there are few.
-  void take(std::span<const Box<D>> boxes, std::size_t most = 256);
+  /// Looks at `max_count` of the boxes, or fewer where there are few.
+  void take(std::span<const Box<D>> boxes, std::size_t max_count = 256);
 
   const AxisSample& operator[](int axis) const noexcept { return axes_[axis]; }
 

@@ -17,16 +17,16 @@ namespace core {
 namespace {
 
 /// The most bits that are sorted by at once.
-constexpr int most_bits = 11;
+constexpr int max_bits = 11;
 
-constexpr int most_steps = 3;  // for 32 bits
+constexpr int max_steps = 3;  // for 32 bits
 
 /// How the bits of an id are cut for sorting: in as few and as short digits as do for the greatest.
 class Digits {
  public:
   explicit Digits(std::uint32_t greatest) {
     const int bits = static_cast<int>(std::bit_width(greatest));
-    steps_ = (bits + most_bits - 1) / most_bits;
+    steps_ = (bits + max_bits - 1) / max_bits;
     width_ = steps_ == 0 ? 0 : (bits + steps_ - 1) / steps_;
   }
 
@@ -41,7 +41,7 @@ class Digits {
   int width_;
 };
 
-using Counts = std::array<std::uint32_t, std::size_t{1} << most_bits>;
+using Counts = std::array<std::uint32_t, std::size_t{1} << max_bits>;
 
 /// Sorts `pairs` into `scratch` by a digit, and swaps the two. `counts` has the number of pairs for each
 /// value of the digit. The sort is stable.
@@ -64,8 +64,8 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   const Digits first(greatest_first);
   const Digits second(greatest_second);
   // The counts of a digit's values do not depend on the order, so all digits are counted at once.
-  std::array<Counts, most_steps> of_first;
-  std::array<Counts, most_steps> of_second;
+  std::array<Counts, max_steps> of_first;
+  std::array<Counts, max_steps> of_second;
   for (int step = 0; step < first.steps(); ++step) std::fill_n(of_first[step].begin(), first.values(), 0);
   for (int step = 0; step < second.steps(); ++step) std::fill_n(of_second[step].begin(), second.values(), 0);
   for (const Pair pair : pairs) {
@@ -86,7 +86,7 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
 /// Partitions the pairs until each part is small enough to be sorted without a checkpoint.
 void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
   constexpr std::size_t sorted_at_once = std::size_t{1} << 16;
-  constexpr std::uint64_t comparisons_a_pair = 16;  // in such a part
+  constexpr std::uint64_t comparisons_per_pair = 16;  // in such a part
   while (pairs.size() > sorted_at_once) {
     std::array<std::uint64_t, 15> sampled;
     for (std::size_t i = 0; i < sampled.size(); ++i)
@@ -106,7 +106,7 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
     pairs = pairs.subspan(lower);
   }
   std::ranges::sort(pairs, {}, key);
-  checkpoint.count(comparisons_a_pair * pairs.size());
+  checkpoint.count(comparisons_per_pair * pairs.size());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Specs read and written, and their values checked against tunables.
+// Specs read, written and made of typed options, and their values checked against tunables.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "broadside/algorithm.hpp"
@@ -18,30 +19,30 @@ using core::listed;
 using core::message;
 
 /// The largest value of a tunable; an integer is never beyond what a double holds exactly.
-double most(const Tunable& tunable) {
-  return tunable.type == Tunable::Type::integer ? std::min(tunable.most, 0x1p53) : tunable.most;
+double max_of(const Tunable& tunable) {
+  return tunable.type == Tunable::Type::integer ? std::min(tunable.max, 0x1p53) : tunable.max;
 }
 
 /// The values that a tunable takes, for a message about `found`.
 std::string range(const Tunable& tunable, double found) {
   const char* const kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
-  const bool is_unbounded = most(tunable) >= std::numeric_limits<float>::max();
+  const bool is_unbounded = max_of(tunable) >= std::numeric_limits<float>::max();
   // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
-  if (is_unbounded && tunable.least == std::numeric_limits<float>::min() && !(found > 0))
+  if (is_unbounded && tunable.min == std::numeric_limits<float>::min() && !(found > 0))
     return message({kind, " above 0"});
-  if (most(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
-    return message({kind, " of at least ", core::text_of(tunable.least)});
-  return message({kind, " from ", core::text_of(tunable.least), " to ", core::text_of(most(tunable))});
+  if (max_of(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
+    return message({kind, " of at least ", core::text_of(tunable.min)});
+  return message({kind, " from ", core::text_of(tunable.min), " to ", core::text_of(max_of(tunable))});
 }
 
 /// The value as the tunable has it: a text, or a number. Throws InvalidSpec if it is not one of the
 /// tunable's.
 SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecValue& given) {
   const std::string value(core::current_value(owner, tunable.name, given.text()));
-  if (value == tunable.standard) return value;
+  if (value == tunable.default_value) return value;
   const auto refuse = [&](const std::string& expected) {
     throw InvalidSpec(message({owner, ": ", tunable.name, " is '", value, "'; expected ", expected,
-                               tunable.standard == "auto" ? ", or auto" : "",
+                               tunable.default_value == "auto" ? ", or auto" : "",
                                core::former_value(owner, tunable.name, value)}));
   };
   if (tunable.type == Tunable::Type::choice) {
@@ -51,9 +52,24 @@ SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecVa
   }
   const double number = given.number() ? *given.number() : core::number_in(value);
   const bool whole = tunable.type != Tunable::Type::integer || number == std::floor(number);
-  if (!(number >= tunable.least && number <= most(tunable) && std::isfinite(number) && whole))
+  if (!(number >= tunable.min && number <= max_of(tunable) && std::isfinite(number) && whole))
     refuse(range(tunable, number));
   return number;
+}
+
+/// The name of an enumerator, or its number if it has none: Settings then refuses it.
+SpecValue name_of(std::size_t value, std::initializer_list<const char*> names) {
+  if (value < names.size()) return names.begin()[value];
+  return static_cast<double>(value);
+}
+
+/// The spec of an algorithm with the values that all have; default values are not listed.
+Spec spec_of(const char* algorithm, std::size_t threads, Update update) {
+  Spec spec{algorithm, {}};
+  if (threads != 1) spec.values.emplace_back("threads", static_cast<double>(threads));
+  if (update != Update::automatic)
+    spec.values.emplace_back("update", name_of(static_cast<std::size_t>(update), {"", "follow", "rebuild"}));
+  return spec;
 }
 
 }  // namespace
@@ -89,8 +105,33 @@ std::string Spec::text() const {
   return text;
 }
 
+AutoOptions::operator Spec() const { return spec_of("auto", threads, update); }
+
+BruteForceOptions::operator Spec() const { return spec_of("brute_force", threads, update); }
+
+GridOptions::operator Spec() const {
+  Spec spec = spec_of("grid", threads, update);
+  if (cell) spec.values.emplace_back("cell", *cell);
+  return spec;
+}
+
+SweepAndPruneOptions::operator Spec() const {
+  Spec spec = spec_of("sweep_and_prune", threads, update);
+  if (axis) spec.values.emplace_back("axis", name_of(static_cast<std::size_t>(*axis), {"x", "y", "z"}));
+  if (is_striped) spec.values.emplace_back("axes", *is_striped ? "2" : "1");
+  return spec;
+}
+
+QuadtreeOptions::operator Spec() const {
+  Spec spec = spec_of("quadtree", threads, update);
+  if (capacity) spec.values.emplace_back("capacity", static_cast<double>(*capacity));
+  return spec;
+}
+
+BvhOptions::operator Spec() const { return spec_of("bvh", threads, update); }
+
 Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
-  for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.standard);
+  for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.default_value);
   std::vector<bool> is_given(tunables.size());
   for (const auto& [name, given] : spec.values) {
     const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
@@ -118,6 +159,11 @@ const SpecValue& Settings::value(std::string_view tunable) const {
 double Settings::number(std::string_view tunable) const {
   const SpecValue& found = value(tunable);
   return found.number() ? *found.number() : core::number_in(found.text());
+}
+
+std::optional<double> Settings::optional_number(std::string_view tunable) const {
+  if (is_auto(tunable)) return std::nullopt;
+  return number(tunable);
 }
 
 std::int64_t Settings::integer(std::string_view tunable) const { return std::llround(number(tunable)); }

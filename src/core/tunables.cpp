@@ -5,18 +5,18 @@ namespace broadside::core {
 
 Tunable threads_tunable() {
   return {.name = "threads",
-          .summary = unless_lean("most threads of a search; 0: as many as there are"),
-          .standard = "1",
+          .summary = unless_lean("maximum number of threads of a search; 0: as many as there are"),
+          .default_value = "1",
           .type = Tunable::Type::integer,
-          .least = 0,
-          .most = 1024};
+          .min = 0,
+          .max = 1024};
 }
 
 Tunable update_tunable() {
   return {.name = "update",
           .summary = unless_lean(
               "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
-          .standard = "auto",
+          .default_value = "auto",
           .type = Tunable::Type::choice,
           .choices = {"follow", "rebuild"}};
 }

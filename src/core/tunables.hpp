@@ -15,19 +15,24 @@ Tunable threads_tunable();
 Tunable update_tunable();
 Update update_of(const Settings& settings);
 
-/// The followers that `make` lists; none in a build without D dimensions, so that nothing of them is linked.
+/// What `make` returns; nothing in a build without D dimensions, so that nothing of it is linked.
 template <int D>
-detail::Vector<FollowerChoice<D>> followers_in_dimension(detail::Vector<FollowerChoice<D>> (*make)()) {
+Strategies<D> in_dimension(Strategies<D> (*make)()) {
   if constexpr (has_dimension<D>)
     return make();
   else
     return {};
 }
 
-/// Likewise a function that lays an algorithm's outline out; lean builds have none.
-template <int D, typename Maker>
-constexpr Maker* outline_in_dimension(Maker* make) noexcept {
-  return is_lean ? nullptr : in_dimension<D>(make);
+/// Makes an outline by `lay_out` of a searcher of class S; lean builds have none.
+template <typename S, int D>
+MakeOutline<D> outline_by(Outline<D, float> (S::*lay_out)(std::span<const Box<D>>, const Workers&)) {
+  if constexpr (is_lean)
+    return {};
+  else
+    return [lay_out](std::span<const Box<D>> boxes, const Workers& workers, const Settings& settings) {
+      return (*make_strategy<S>(settings).*lay_out)(boxes, workers);
+    };
 }
 
 }  // namespace broadside::core

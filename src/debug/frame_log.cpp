@@ -18,7 +18,7 @@ void FrameLog<D, Real>::prepare(const Frame<D, Real>& frame, const std::vector<P
     first_.next(step);
     return;
   }
-  while (!steps_.empty() && (steps_.size() >= most_frames_ || bytes_ + bytes_of(step) > most_bytes_)) {
+  while (!steps_.empty() && (steps_.size() >= max_frames_ || bytes_ + bytes_of(step) > max_bytes_)) {
     Replay<D, Real> second = first_;  // a step that is taken by halves could not be taken again
     second.next(steps_.front());
     first_ = std::move(second);

@@ -14,8 +14,7 @@ namespace broadside::core {
 template <int D, typename Real>
 class FrameLog {
  public:
-  FrameLog(std::size_t most_frames, std::size_t most_bytes)
-      : most_frames_(most_frames), most_bytes_(most_bytes) {}
+  FrameLog(std::size_t max_frames, std::size_t max_bytes) : max_frames_(max_frames), max_bytes_(max_bytes) {}
 
   /// Makes room for a frame, in which `frame.changed` says what changed, and `toggled` which pairs became
   /// ignored or no longer are. It counts when add() has taken it.
@@ -35,8 +34,8 @@ class FrameLog {
  private:
   static std::size_t bytes_of(const Step<D, Real>& step) noexcept;
 
-  std::size_t most_frames_;
-  std::size_t most_bytes_;
+  std::size_t max_frames_;
+  std::size_t max_bytes_;
   Replay<D, Real> first_;
   std::list<Step<D, Real>> steps_;
   std::list<Step<D, Real>> prepared_;  // one at most

@@ -8,11 +8,11 @@
 namespace broadside {
 namespace {
 
-/// `lines`, one a line, without those beyond `most`, which are counted.
+/// `lines`, one a line, without those beyond `max_items`, which are counted.
 template <typename Line>
-void add_lines(std::string& text, std::size_t count, std::size_t most, const char* indent, Line line) {
-  for (std::size_t i = 0; i < std::min(count, most); ++i) text += indent + line(i);
-  if (count > most) text += indent + ("... " + std::to_string(count) + " in all");
+void add_lines(std::string& text, std::size_t count, std::size_t max_items, const char* indent, Line line) {
+  for (std::size_t i = 0; i < std::min(count, max_items); ++i) text += indent + line(i);
+  if (count > max_items) text += indent + ("... " + std::to_string(count) + " in all");
 }
 
 std::string text_of(const Filter& filter) {
@@ -50,25 +50,25 @@ Frame<D, Real> Replay<D, Real>::next(const Step<D, Real>& step) {
 }
 
 template <int D, typename Real>
-std::string text_of(const History<D, Real>& history, std::size_t most) {
+std::string text_of(const History<D, Real>& history, std::size_t max_items) {
   std::string text = "frame 0: " + std::to_string(history.boxes.size()) + " boxes";
-  add_lines(text, history.boxes.size(), most, "\n  ",
+  add_lines(text, history.boxes.size(), max_items, "\n  ",
             [&](std::size_t i) { return line_of(i, history.boxes[i], history.filters, i); });
   const auto add_pairs = [&](const char* what, std::span<const Pair> pairs) {
     if (pairs.empty()) return;
     text += what;
-    add_lines(text, pairs.size(), most, " ", [&](std::size_t i) { return text_of(pairs[i]); });
+    add_lines(text, pairs.size(), max_items, " ", [&](std::size_t i) { return text_of(pairs[i]); });
   };
   add_pairs("\n  ignored:", history.ignored);
-  for (std::size_t frame = 1; frame <= std::min(history.steps.size(), most); ++frame) {
+  for (std::size_t frame = 1; frame <= std::min(history.steps.size(), max_items); ++frame) {
     const Step<D, Real>& step = history.steps[frame - 1];
     text += "\nframe " + std::to_string(frame) + ": " + std::to_string(step.size) + " boxes, changed";
-    add_lines(text, step.changed.size(), most, "\n  ",
+    add_lines(text, step.changed.size(), max_items, "\n  ",
               [&](std::size_t i) { return line_of(index(step.changed[i]), step.boxes[i], step.filters, i); });
     if (step.changed.empty()) text += " none";
     add_pairs("\n  ignored, or no longer:", step.toggled);
   }
-  if (history.steps.size() > most)
+  if (history.steps.size() > max_items)
     text += "\n... " + std::to_string(history.steps.size() + 1) + " frames in all";
   return text;
 }

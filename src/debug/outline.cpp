@@ -78,7 +78,7 @@ Outline<D, Real> outline(const Algorithm& algorithm, const Spec& spec, std::span
   // Copied first, since another thread may change the caller's boxes.
   std::vector<Box<D, Real>> present(boxes.begin(), boxes.end());
   std::erase_if(present, [](const Box<D, Real>& box) { return !is_present(box); });
-  const MakeOutline<D>& make = algorithm.outline<D>();
+  const MakeOutline<D>& make = algorithm.in<D>().outline;
   if (!make || present.empty()) return {};
   Outline<D, Real> outline;
   if constexpr (std::is_same_v<Real, float>)

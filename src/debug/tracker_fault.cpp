@@ -80,7 +80,7 @@ std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
                                                const std::function<Tracker<D, Real>()>& make,
-                                               std::uint64_t most_tests) {
+                                               std::uint64_t max_tests) {
   std::uint64_t tests = 0;
   const auto fails = [&](const History<D, Real>& some) {
     std::uint64_t changes = some.boxes.size();
@@ -98,7 +98,7 @@ std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
     history = std::move(alone);
   else if (!fails(history))
     return std::nullopt;
-  minimise(history, fails, [&] { return tests > most_tests; });
+  minimise(history, fails, [&] { return tests > max_tests; });
   return history;
 }
 

@@ -45,6 +45,6 @@ std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
                                                const std::function<Tracker<D, Real>()>& make,
-                                               std::uint64_t most_tests);
+                                               std::uint64_t max_tests);
 
 }  // namespace broadside::core

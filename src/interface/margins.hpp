@@ -42,7 +42,7 @@ struct Margins {
   /// box that has shrunk or slowed down. Without a branch. No absent box stays another's.
   bool keeps(const Box<D, Real>& kept, const Box<D, Real>& box,
              const Point<D, Real>* velocity) const noexcept {
-    const Real slack = most_margins * margin_of(box);
+    const Real slack = max_margins * margin_of(box);
     unsigned keeps = 1;
     for (int axis = 0; axis < D; ++axis) {
       const Real way = velocity == nullptr ? 0 : std::abs(frames * (*velocity)[axis]);
@@ -56,7 +56,7 @@ struct Margins {
 
  private:
   /// A new enlarged box is longer than its box by two margins.
-  static constexpr Real most_margins = 6;
+  static constexpr Real max_margins = 6;
 
   /// A side that is not finite counts for nothing.
   Real margin_of(const Box<D, Real>& box) const noexcept {

@@ -134,7 +134,7 @@ class Join {
         queried += count_true(Numbers(), hits);
       }
       if (HWY_UNLIKELY(list[i] >= tree_.first_with_gap)) unused_ += (queried - before) * gap_of(list[i]);
-      if (HWY_UNLIKELY(queried > most_queries)) {
+      if (HWY_UNLIKELY(queried > max_queries)) {
         across(begin, queried);
         queried = 0;
       }
@@ -207,7 +207,7 @@ class Join {
                   hn::RebindMask(Numbers(), touch(query, LoadedBoxes<D>(tree_.levels[0], at))));
   }
 
-  static constexpr std::size_t most_queries = 1024;
+  static constexpr std::size_t max_queries = 1024;
 
   const PackedBvh<D>& tree_;
   NodeRange leaves_;
@@ -219,7 +219,7 @@ class Join {
   std::uint64_t told_ = 0;    // the work that was reported to the checkpoint
   std::size_t next_leaf_;
   std::uint32_t
-      queries_[most_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
+      queries_[max_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
 };
 
 template <int D>

@@ -14,7 +14,7 @@
 namespace broadside::kernels {
 
 /// A tree over 2^32 boxes has no more levels.
-inline constexpr std::size_t most_levels = 9;
+inline constexpr std::size_t max_levels = 9;
 
 /// One level: the boxes (level 0), or bounds of sixteen elements each of the level below.
 /// Arrays hold a multiple of `fan_out` elements, those beyond `size` being NaN; so are places of level 0 that
@@ -30,7 +30,7 @@ struct TreeLevel {
 /// topmost level has at most `fan_out` elements.
 template <int D>
 struct PackedBvh {
-  std::array<TreeLevel<D>, most_levels> levels;
+  std::array<TreeLevel<D>, max_levels> levels;
   std::size_t level_count;
   const BoxId* id;  ///< of the boxes on level 0
 

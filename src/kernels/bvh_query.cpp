@@ -42,7 +42,7 @@ void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::arra
       const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
       sum = hn::Add(sum, hn::Mul(weighted, weighted));
     }
-    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.most)), all(query.share)), all(query.allowance));
+    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.max)), all(query.share)), all(query.allowance));
     hn::StoreU(sum, Floats(), result.data() + at);
   }
 }

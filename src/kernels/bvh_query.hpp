@@ -15,7 +15,7 @@ namespace broadside::kernels {
 /// in take().
 class FoundBoxes {
  public:
-  static constexpr std::size_t most = 256;
+  static constexpr std::size_t max_found = 256;
 
   /// Handles the first `count` of `ids` (and `t_enter`), sets `count` to 0 and says whether to go on. May
   /// lower `t_max`.
@@ -24,8 +24,8 @@ class FoundBoxes {
   std::size_t count = 0;
   std::size_t full = fan_out;  ///< take() is called once this many are found
   float t_max = 0;             ///< of a cast: the greatest parameter at which a box counts
-  alignas(64) std::array<std::uint32_t, most + 2 * fan_out> ids;
-  alignas(64) std::array<float, most + 2 * fan_out> t_enter;  ///< of an exact cast
+  alignas(64) std::array<std::uint32_t, max_found + 2 * fan_out> ids;
+  alignas(64) std::array<float, max_found + 2 * fan_out> t_enter;  ///< of an exact cast
 
  protected:
   FoundBoxes() = default;
@@ -51,14 +51,14 @@ struct CastQuery {
 };
 
 /// A point, as a box that holds it, whose distances are asked for: each axis weighted, their squares' sum
-/// multiplied by `share`, less `allowance`, at most `most`.
+/// multiplied by `share`, less `allowance`, at most `max`.
 template <int D>
 struct DistanceQuery {
   Box<D> point;
   std::array<float, D> weight;
   float share = 1;
   float allowance = 0;
-  float most = 0;
+  float max = 0;
 };
 
 /// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; fewer

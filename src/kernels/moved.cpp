@@ -57,7 +57,7 @@ class Search {
 
  private:
   HWY_INLINE void list(std::uint32_t moved, std::uint32_t block) {
-    if (HWY_UNLIKELY(listed_ == most_listed)) compare();
+    if (HWY_UNLIKELY(listed_ == max_listed)) compare();
     listed_tasks_[listed_++] = {moved, block};
     prefetch(block);
   }
@@ -87,7 +87,7 @@ class Search {
   /// Two cells or one on each axis: which of them count is decided without a branch.
   HWY_INLINE void list_small(const CellsView<D>& cells, std::uint32_t moved, const CellLevel<D>& level,
                              std::uint32_t first, const std::array<std::uint32_t, D>& count) {
-    if (HWY_UNLIKELY(listed_ + (std::size_t{1} << D) > most_listed)) compare();
+    if (HWY_UNLIKELY(listed_ + (std::size_t{1} << D) > max_listed)) compare();
     for (std::uint32_t corner = 0; corner < 1U << D; ++corner) {
       std::uint32_t cell = first;
       bool counts = true;
@@ -152,7 +152,7 @@ class Search {
         found_[found] = {listed_tasks_[i].moved, block, static_cast<std::uint16_t>(begun),
                          static_cast<std::uint16_t>(ended), static_cast<std::uint16_t>(candidates)};
         found += static_cast<std::size_t>((begun | ended | candidates) != 0);
-        if (HWY_UNLIKELY(found == most_listed)) write(std::exchange(found, 0));
+        if (HWY_UNLIKELY(found == max_listed)) write(std::exchange(found, 0));
         block = next;
       } while (HWY_UNLIKELY(block != no_slot));
       if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
@@ -184,15 +184,15 @@ class Search {
     }
   }
 
-  static constexpr std::size_t most_listed = 128;
+  static constexpr std::size_t max_listed = 128;
 
   BlocksView<D> blocks_;
   std::span<const MovedBox<D>> moved_;
   core::ChangeSinks sinks_;
   core::ChangeWork work_;
   std::size_t listed_ = 0;
-  std::array<BlockTask, most_listed> listed_tasks_;
-  std::array<Found, most_listed> found_;
+  std::array<BlockTask, max_listed> listed_tasks_;
+  std::array<Found, max_listed> found_;
 };
 
 template <int D>

@@ -17,7 +17,7 @@
 
 namespace broadside::kernels {
 
-inline constexpr std::size_t most_cell_levels = 8;
+inline constexpr std::size_t max_cell_levels = 8;
 
 /// Cells of equal size for boxes of about one size. Each box is in the cell that its minimum lies in; what
 /// lies outside of all cells is in the outermost ones.

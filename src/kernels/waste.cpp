@@ -26,7 +26,7 @@ std::size_t place_of(std::size_t i, std::size_t size) {
 /// An upper bound of the tests that a sweep makes, by the greatest maximum of each few boxes. Stops beyond
 /// `limit`.
 template <int D>
-std::uint64_t most_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
+std::uint64_t max_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
   std::uint64_t tests = 0;
   for (std::size_t i = 0; i < run.size && tests <= limit; i += together) {
     const std::size_t end = std::min(i + together, run.size);
@@ -41,21 +41,21 @@ std::uint64_t most_tests(const Run<D>& run, std::uint64_t limit, std::size_t tog
 template <int D>
 bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
   if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
-  if (most_tests(run, limit, 16) <= limit || most_tests(run, limit, 1) <= limit) return false;
+  if (max_tests(run, limit, 16) <= limit || max_tests(run, limit, 1) <= limit) return false;
   constexpr std::size_t looked_at = 32;
-  constexpr std::size_t most_tests_of_one = 4096;
+  constexpr std::size_t max_tests_of_one = 4096;
   std::uint64_t tests = 0;
   std::uint64_t hits = 0;
   // One box that overlaps all others, such as a floor, says nothing of these. It begins first, so the first
   // place is not looked at, and the box with the most hits does not count.
   std::uint64_t tests_of_greatest = 0;
-  std::uint64_t most_hits = 0;
+  std::uint64_t max_hits = 0;
   for (std::size_t i = 1; i <= looked_at; ++i) {
     const std::size_t at = place_of(i, run.size);
     std::uint64_t own_tests = 0;
     std::uint64_t own_hits = 0;
     const std::size_t end = end_of(run.min[0], run.size, at, run.max[0][at]);
-    const std::size_t stride = (end - at) / most_tests_of_one + 1;
+    const std::size_t stride = (end - at) / max_tests_of_one + 1;
     for (std::size_t other = at + 1; other < end; other += stride) {
       bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
       for (int axis = 0; axis < D; ++axis)
@@ -65,11 +65,11 @@ bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
     }
     tests += own_tests;
     hits += own_hits;
-    if (own_hits <= most_hits) continue;
-    most_hits = own_hits;
+    if (own_hits <= max_hits) continue;
+    max_hits = own_hits;
     tests_of_greatest = own_tests;
   }
-  return tests - tests_of_greatest > tests_per_pair * (hits - most_hits);
+  return tests - tests_of_greatest > tests_per_pair * (hits - max_hits);
 }
 
 template bool is_wasteful(const Run<2>&, std::uint64_t);

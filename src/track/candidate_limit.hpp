@@ -68,25 +68,26 @@ class CandidateCollector final : public PairSink {
   std::size_t holding_ = 0;
 };
 
-/// Passes pairs on, and throws when all threads together have passed more than `most`.
+/// Passes pairs on, and throws when all threads together have passed more than `max_pairs`.
 class LimitSink final : public core::FilterSink {
  public:
-  LimitSink(std::size_t most, PairSink& target) : FilterSink(target), most_(most), passed_(&count_) {}
+  LimitSink(std::size_t max_pairs, PairSink& target)
+      : FilterSink(target), max_pairs_(max_pairs), passed_(&count_) {}
 
   std::unique_ptr<core::FilterSink> onto(PairSink& target) const override {
-    auto sink = std::make_unique<LimitSink>(most_, target);
+    auto sink = std::make_unique<LimitSink>(max_pairs_, target);
     sink->passed_ = passed_;
     return sink;
   }
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    if (passed_->fetch_add(pairs.size(), std::memory_order_relaxed) + pairs.size() > most_)
+    if (passed_->fetch_add(pairs.size(), std::memory_order_relaxed) + pairs.size() > max_pairs_)
       throw LimitPassed();
     target().put(pairs);
   }
 
-  std::size_t most_;
+  std::size_t max_pairs_;
   std::atomic<std::size_t> count_ = 0;
   std::atomic<std::size_t>* passed_;  // count_ of the original sink
 };

@@ -10,7 +10,7 @@ namespace broadside::track {
 namespace {
 
 /// False candidates a box that cost about what rounding all boxes anew does.
-constexpr std::uint64_t most_false_candidates = 32;
+constexpr std::uint64_t max_false_candidates = 32;
 
 struct TooManyFalse {};
 
@@ -19,8 +19,8 @@ struct TooManyFalse {};
 template <int D>
 class Candidates final : public PairSink {
  public:
-  Candidates(const Change<D, double>& change, std::uint64_t most, PairSink& begun, PairSink& ended)
-      : change_(change), most_(most), begun_(begun), ended_(ended) {}
+  Candidates(const Change<D, double>& change, std::uint64_t max_false, PairSink& begun, PairSink& ended)
+      : change_(change), max_false_(max_false), begun_(begun), ended_(ended) {}
 
   std::uint64_t count() const noexcept { return count_; }
   std::uint64_t false_count() const noexcept { return false_count_; }
@@ -34,11 +34,11 @@ class Candidates final : public PairSink {
       const bool is_near = overlap(change_.now[index(pair.first)], change_.now[index(pair.second)]);
       false_count_ += static_cast<std::uint64_t>(!was_near && !is_near);
     }
-    if (false_count_ > most_) throw TooManyFalse();
+    if (false_count_ > max_false_) throw TooManyFalse();
   }
 
   const Change<D, double>& change_;
-  std::uint64_t most_;
+  std::uint64_t max_false_;
   PairSink& begun_;
   PairSink& ended_;
   std::uint64_t count_ = 0;
@@ -53,10 +53,10 @@ class Candidates final : public PairSink {
 template <int D>
 std::optional<Statistics> DoubleFollower<D>::follow(const Change<D, double>& change, PairSink& begun,
                                                     PairSink& ended) {
-  const std::uint64_t most = most_false_candidates * change.now.size();
-  if (!change.rebuild && false_candidates_ <= most) {
+  const std::uint64_t max_false = max_false_candidates * change.now.size();
+  if (!change.rebuild && false_candidates_ <= max_false) {
     try {
-      return follow(change, false, most - false_candidates_, begun, ended);
+      return follow(change, false, max_false - false_candidates_, begun, ended);
     } catch (const TooManyFalse&) {
     }
   }

@@ -39,9 +39,9 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
   const bool chooses = chooses_update(algorithm);
   track::TrackerPlan<D> plan;
   plan.tests_doubles = algorithm.tests_doubles;
-  plan.find_costs = algorithm.find_costs<D>();
+  plan.find_costs = algorithm.in<D>().find_costs;
   if (is_float || algorithm.gives_candidates) {
-    for (const FollowerChoice<D>& choice : algorithm.followers<D>()) {
+    for (const FollowerChoice<D>& choice : algorithm.in<D>().followers) {
       plan.structures.push_back({choice.name,
                                  [make = choice.make, settings] { return make(settings); },
                                  {choice.costs, choice.max_boxes}});

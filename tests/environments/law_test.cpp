@@ -208,8 +208,8 @@ TEST_P(EnvironmentLaw, DrawsTheSameOutline) {
 TEST(SpecInEnvironments, NamesTheSameNumber) {
   double seen = 0;
   Algorithm algorithm;
-  algorithm.tunables = {{.name = "size", .summary = "", .standard = "1"}};
-  algorithm.searcher_2d = [&seen](const Settings& settings) {
+  algorithm.tunables = {{.name = "size", .summary = "", .default_value = "1"}};
+  algorithm.in_2d.searcher = [&seen](const Settings& settings) {
     seen = settings.number("size");
     return searcher_of<2>("grid");
   };

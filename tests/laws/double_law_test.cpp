@@ -278,13 +278,14 @@ void track_restless_boxes(const Algorithm& algorithm, const Spec& spec, double w
       const double kind = rng.unit();
       const double step = unit * (kind < 0.6 ? 1e-4 : 1e-2) * (rng.unit() - 0.5);
       if (!is_present(boxes[i])) boxes[i] = first[i];
-      const double farther = kind > 0.9 && kind < 0.92 && algorithm.infinite_boxes ? 1e30 : 1;
+      const double farther = kind > 0.9 && kind < 0.92 && algorithm.limits.infinite_boxes ? 1e30 : 1;
       for (int axis = 0; axis < D; ++axis) {
         boxes[i].min[axis] = farther * (boxes[i].min[axis] + step);
         boxes[i].max[axis] = farther * (boxes[i].max[axis] + step);
       }
       if (kind > 0.95) boxes[i] = absent_box<D, double>();
-      if (kind < 0.02 && algorithm.infinite_boxes) boxes[i].max.fill(std::numeric_limits<double>::infinity());
+      if (kind < 0.02 && algorithm.limits.infinite_boxes)
+        boxes[i].max.fill(std::numeric_limits<double>::infinity());
     }
     take_frame<D>(tracker, boxes, changed, current);
     ASSERT_EQ(current, reference<D>(boxes))

@@ -229,13 +229,14 @@ template <int D, typename Real>
 bool is_beyond(const Algorithm& algorithm, const Box<D, Real>& box) {
   if (is_absent(box)) return false;
   const auto beyond = [&](Real value) {
-    return std::isinf(value) ? !algorithm.infinite_boxes : std::abs(value) > algorithm.largest_coordinate;
+    return std::isinf(value) ? !algorithm.limits.infinite_boxes
+                             : std::abs(value) > algorithm.limits.max_coordinate;
   };
   return std::ranges::any_of(box.min, beyond) || std::ranges::any_of(box.max, beyond);
 }
 
 bool takes_any_floats(const Algorithm& algorithm) {
-  return algorithm.infinite_boxes && algorithm.largest_coordinate >= largest_float;
+  return algorithm.limits.infinite_boxes && algorithm.limits.max_coordinate >= largest_float;
 }
 
 template <int D>

@@ -15,10 +15,10 @@ namespace {
 std::vector<std::string> straining_values(const Tunable& tunable) {
   if (tunable.type == Tunable::Type::choice) return tunable.choices;
   std::vector<std::string> values;
-  for (const double value : {tunable.least, tunable.most, tunable.least + 1, 1e-30, 1e-3, 0.3, 1.0, 2.0, 3.0,
-                             7.0, 64.0, 1e4, 1e9, 1e30}) {
+  for (const double value : {tunable.min, tunable.max, tunable.min + 1, 1e-30, 1e-3, 0.3, 1.0, 2.0, 3.0, 7.0,
+                             64.0, 1e4, 1e9, 1e30}) {
     const bool whole = tunable.type != Tunable::Type::integer || value == std::floor(value);
-    if (!whole || value < tunable.least || value > tunable.most) continue;
+    if (!whole || value < tunable.min || value > tunable.max) continue;
     std::ostringstream text;
     text.precision(std::numeric_limits<double>::max_digits10);
     text << value;

@@ -172,10 +172,10 @@ class FailingSearcher final : public Searcher<2> {
 };
 
 TEST(DistributedWorld, TellsAllThatChangedOnceAnUpdateHasFailedOnARank) {
-  register_algorithm(
-      {.name = "failing", .summary = "fails", .source = "this test", .searcher_2d = [](const Settings&) {
-         return std::make_unique<FailingSearcher>();
-       }});
+  register_algorithm({.name = "failing",
+                      .summary = "fails",
+                      .source = "this test",
+                      .in_2d = {.searcher = make_strategy<FailingSearcher>}});
   History<2, float> history(4, {.algorithm = "failing"});
   for (int frame = 0; frame < 12; ++frame) {
     for (int i = 0; i < 20; ++i) history.add(drawn<2, float>(history.rng()));
@@ -403,8 +403,8 @@ TEST(DistributedWorld, RefusesWhatItsOwnerDoesWrong) {
 
 TEST(DistributedWorld, RefusesOptionsThatDifferOrAreWrong) {
   EXPECT_THAT(
-      thrown<std::invalid_argument>([] { DistributedWorld<2> world(MPI_COMM_WORLD, {.most_imbalance = 1}); }),
-      HasSubstr("most_imbalance"));
+      thrown<std::invalid_argument>([] { DistributedWorld<2> world(MPI_COMM_WORLD, {.max_imbalance = 1}); }),
+      HasSubstr("max_imbalance"));
   EXPECT_THAT(thrown<InvalidSpec>([] { DistributedWorld<2> world(MPI_COMM_WORLD, {.algorithm = "none"}); }),
               HasSubstr("none"));
   if (ranks() == 1) return;

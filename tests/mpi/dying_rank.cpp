@@ -36,7 +36,7 @@ void join() {
   register_algorithm({.name = "dying",
                       .summary = "kills the last rank",
                       .source = "this test",
-                      .searcher_2d = [](const Settings&) { return std::make_unique<DyingSearcher>(); }});
+                      .in_2d = {.searcher = make_strategy<DyingSearcher>}});
   const std::vector<Box2> boxes(3);
   mpi::find_pairs(
       MPI_COMM_WORLD, boxes, [](std::span<const LargePair>) { std::puts("was given pairs"); },

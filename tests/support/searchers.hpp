@@ -31,7 +31,7 @@ class StubSearcher final : public Searcher<2> {
 /// The algorithm's searcher, with nothing set.
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm) {
-  return algorithm.searcher<D>()(Settings({algorithm.name, {}}, algorithm.tunables));
+  return algorithm.in<D>().searcher(Settings({algorithm.name, {}}, algorithm.tunables));
 }
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_of(std::string_view name) {
@@ -42,7 +42,7 @@ std::unique_ptr<Searcher<D>> searcher_of(std::string_view name) {
 template <int D>
 std::unique_ptr<Follower<D>> follower_of(std::string_view name) {
   const Algorithm& algorithm = *find_algorithm(name);
-  return algorithm.followers<D>()[0].make(Settings({algorithm.name, {}}, algorithm.tunables));
+  return algorithm.in<D>().followers[0].make(Settings({algorithm.name, {}}, algorithm.tunables));
 }
 
 }  // namespace broadside

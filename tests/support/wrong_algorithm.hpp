@@ -42,8 +42,8 @@ class SpoiltSearcher final : public Searcher<D> {
 inline Algorithm spoilt(std::string name, const Spoil& spoil) {
   Algorithm algorithm;
   algorithm.name = std::move(name);
-  algorithm.searcher_2d = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<2>>(spoil); };
-  algorithm.searcher_3d = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<3>>(spoil); };
+  algorithm.in_2d.searcher = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<2>>(spoil); };
+  algorithm.in_3d.searcher = [spoil](const Settings&) { return std::make_unique<SpoiltSearcher<3>>(spoil); };
   return algorithm;
 }
 

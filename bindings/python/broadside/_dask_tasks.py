@@ -27,7 +27,7 @@ class LookOptions:
     number: int
     columns: str | list[str] | None
     has_index: bool
-    most_sampled: int
+    max_sampled: int
 
 
 class Look(NamedTuple):
@@ -54,7 +54,7 @@ def look(chunk: Any, options: LookOptions) -> Look:
     else:
         bounds = present
     rng = np.random.default_rng(options.number)
-    sample = present[rng.choice(len(present), min(options.most_sampled, len(present)), replace=False)]
+    sample = present[rng.choice(len(present), min(options.max_sampled, len(present)), replace=False)]
     index = _index_of(chunk, where).dtype if options.has_index else None
     return Look(len(rows), rows.shape[1], rows.dtype, len(present), bounds, sample, index, _fault_of(rows))
 

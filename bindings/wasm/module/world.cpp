@@ -28,8 +28,8 @@ void KeptWorld::take_handles(const double* handles, std::size_t count) {
 /// Throws if `more` boxes would take slots that no handle can name.
 void KeptWorld::check_slots(std::size_t more) const {
   const std::size_t slots = world_.slots() + more;
-  if (slots > most_slots)
-    throw InvalidFrame(core::message({slots, " boxes in a world; expected at most ", most_slots}));
+  if (slots > max_slots)
+    throw InvalidFrame(core::message({slots, " boxes in a world; expected at most ", max_slots}));
 }
 
 void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {

@@ -6,7 +6,7 @@
 import type { Dimension } from "../types/types.d.ts";
 
 /** Up to how many boxes this is the faster way; measured by bench/web/compare.mjs. */
-export function mostFew(simd: boolean, dimension: Dimension): number {
+export function maxFew(simd: boolean, dimension: Dimension): number {
   return simd ? (dimension === 2 ? 44 : 42) : 300;
 }
 

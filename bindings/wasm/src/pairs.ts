@@ -5,7 +5,7 @@ import type {
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { asksForView, checkOptions, refuse } from "./error.ts";
-import { fewPairs2, fewPairs3, mostFew } from "./few.ts";
+import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
 const enum Mode { counts = 1, sorts = 2, joins = 4 }
@@ -22,7 +22,7 @@ const maxKept = 256;
 const maxLoop = 16;
 
 /** Finders of so many kinds are kept; those of a program that makes up more go. */
-const mostFinders = 16;
+const maxFinders = 16;
 
 export class Pairs {
   readonly #core: Core;
@@ -33,7 +33,7 @@ export class Pairs {
   #lastView: Uint32Array = new Uint32Array(0);
 
   readonly #isFlat: boolean;
-  readonly #mostOfFew: number;  // numbers in an array of few boxes
+  readonly #maxOfFew: number;  // numbers in an array of few boxes
   readonly #maxFewIds: number;
   #fewPairs: Uint32Array;  // room for all pairs of few boxes
   readonly #views: Uint32Array[] = [];  // of its first ids, by their number
@@ -42,9 +42,9 @@ export class Pairs {
   constructor(core: Core) {
     this.#core = core;
     this.#isFlat = core.dimension === 2;
-    const most = mostFew(core.simd, core.dimension);
-    this.#mostOfFew = 2 * core.dimension * most;
-    this.#maxFewIds = most * (most - 1);
+    const max = maxFew(core.simd, core.dimension);
+    this.#maxOfFew = 2 * core.dimension * max;
+    this.#maxFewIds = max * (max - 1);
     this.#fewPairs = new Uint32Array(this.#maxFewIds);
     this.#forFew = core.algorithmFor(0);
   }
@@ -52,7 +52,7 @@ export class Pairs {
   pairs(boxes: Given, options?: PairsOptions): Uint32Array {
     // Short, so that engines compile it and the loops that it calls as one function. What #meansFew() says of usual
     // options is looked at here, for calling it would take as long as comparing two boxes.
-    if (boxes instanceof Float32Array && boxes.length <= this.#mostOfFew && (options === undefined ||
+    if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
         options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined ||
         this.#meansFew(options))) {
       if (this.#fewPairs.length === 0) this.#renewFew();
@@ -163,7 +163,7 @@ export class Pairs {
     let finder = this.#finders.get(algorithm);
     if (finder === undefined) {
       finder = this.#core.make(algorithm, (spec, size) => exports.finder_make(spec, size));
-      if (this.#finders.size >= mostFinders) {
+      if (this.#finders.size >= maxFinders) {
         this.#finders.forEach((old) => exports.finder_free(old));
         this.#finders.clear();
       }

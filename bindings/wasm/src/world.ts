@@ -13,7 +13,7 @@ import { specOf } from "./tracker.ts";
 const worldOptions = ["margin", "relativeMargin", "predictedFrames", "events"];
 
 /** A handle's lowest bits are its slot: module/handles.hpp. */
-const mostSlots = 2 ** 24;
+const maxSlots = 2 ** 24;
 
 /** The handles, or other doubles, in the `number`-th array of the module's reply: a copy, or a view of its memory. */
 export function handlesOf(core: Core, number: number, each: number, view: boolean): Float64Array {
@@ -125,7 +125,7 @@ export class KeptWorld extends Kept implements World {
   }
 
   slot(handle: Handle): number {
-    return checked(handle) % mostSlots;
+    return checked(handle) % maxSlots;
   }
 
   setFilter(handle: Handle, filter: Filter): void {

@@ -27,7 +27,7 @@ struct DistributedWorldOptions {
   /// greater than 1. Cuts that did not achieve it are tried again once the imbalance has grown by a tenth,
   /// the boxes have doubled or the work has halved. Worlds of fewer than 256 boxes a rank are left as they
   /// are.
-  double most_imbalance = 1.25;
+  double max_imbalance = 1.25;
 
   std::size_t sample = 0;  ///< as Options::sample
 };

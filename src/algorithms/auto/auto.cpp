@@ -60,7 +60,7 @@ class AutoSearcher final : public Searcher<D> {
     auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
     if (!chosen) {
       const Algorithm& algorithm = algorithm_of(choice_);
-      chosen = algorithm.searcher<D>()(settings_of(algorithm));
+      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
     }
     SegmentSuccessor<D> successor(input, pairs, segments_);
     const SearchInput<D> its_input{input.boxes, input.left_count, input.doubles, &successor, input.workers};
@@ -87,7 +87,7 @@ class AutoSearcher final : public Searcher<D> {
     choose(boxes);
     const Algorithm& algorithm = algorithm_of(choice_);
     Outline<D> outline;
-    if (const MakeOutline<D>& make = algorithm.outline<D>())
+    if (const MakeOutline<D>& make = algorithm.in<D>().outline)
       outline = make(boxes, workers, settings_of(algorithm));
     outline.caption.insert(0, algorithm.name + (outline.caption.empty() ? "" : ": "));
     return outline;
@@ -131,7 +131,7 @@ class AutoSearcher final : public Searcher<D> {
   Choice choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return Choice::few;
     if (boxes.size() <= Limits::boxes_for_cells) return choose_by_estimate(boxes);
-    sample_.take(boxes, Limits::most_compared);
+    sample_.take(boxes, Limits::sampled_boxes);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
     tests_ = count * sample_[best].overlap / 2;
@@ -144,7 +144,7 @@ class AutoSearcher final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *
                                        (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-    estimate_.take(boxes, Limits::most_compared);
+    estimate_.take(boxes, Limits::sampled_boxes);
     clustering_ = estimate_.clustering(reach);
     return clustering_ >= Limits::clustered ? Choice::clusters : Choice::cells;
   }
@@ -173,13 +173,13 @@ class AutoSearcher final : public Searcher<D> {
     return clustering_ >= Limits::clustered ? Choice::clusters : Choice::shapes;
   }
 
-  bool shapes_suit_cells(std::span<const Box<D>> boxes, double most_on_an_axis) const {
+  bool shapes_suit_cells(std::span<const Box<D>> boxes, double max_overlap_on_axis) const {
     const std::size_t size = boxes.size();
-    if (overlaps_ >= Limits::most_overlaps_for_their_shape) return false;
-    if (D == 3 && size >= Limits::flat_boxes_for_cells && most_on_an_axis >= Limits::flat) return true;
-    if (size < Limits::most_uneven_boxes_for_cells) return false;
+    if (overlaps_ >= Limits::max_overlaps_for_shapes) return false;
+    if (D == 3 && size >= Limits::flat_boxes_for_cells && max_overlap_on_axis >= Limits::flat) return true;
+    if (size < Limits::very_uneven_boxes_for_cells) return false;
     const core::ExtentStats sides = core::extent_stats<D>(boxes);
-    if (sides.unevenness >= Limits::most_uneven_boxes || (D == 3 && sides.unevenness <= Limits::of_one_size))
+    if (sides.unevenness >= Limits::very_uneven_boxes || (D == 3 && sides.unevenness <= Limits::of_one_size))
       return true;
     return (size >= Limits::long_boxes_for_cells && sides.longest_over_shortest >= Limits::long_boxes) ||
            (size >= Limits::uneven_boxes_for_cells && sides.unevenness >= Limits::uneven_boxes);
@@ -197,17 +197,12 @@ class AutoSearcher final : public Searcher<D> {
   double clustering_ = 0;
 };
 
-template <int D>
-std::unique_ptr<Searcher<D>> make_automatic_searcher(const Settings&) {
-  return std::make_unique<AutoSearcher<D>>();
-}
-
 /// The follower of an algorithm with its default settings, at costs of its own.
 template <int D>
 FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, std::size_t max_boxes = 0) {
   const auto make = [name](const Settings&) -> std::unique_ptr<Follower<D>> {
     const Algorithm& algorithm = *find_algorithm(name);
-    return algorithm.followers<D>()[0].make(settings_of(algorithm));
+    return algorithm.in<D>().followers[0].make(settings_of(algorithm));
   };
   return {std::string(name), make, costs, max_boxes};
 }
@@ -225,8 +220,11 @@ detail::Vector<FollowerChoice<D>> automatic_followers() {
 }
 
 template <int D>
-Outline<D> make_automatic_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
-  return AutoSearcher<D>().lay_out(boxes, workers);
+Strategies<D> automatic_strategies() {
+  return {.searcher = make_strategy<AutoSearcher<D>>,
+          .followers = automatic_followers<D>(),
+          .find_costs = core::grid_finding<D>,
+          .outline = core::outline_by(&AutoSearcher<D>::lay_out)};
 }
 
 }  // namespace
@@ -238,14 +236,8 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame"),
       .source = core::unless_lean("Broadside's measurements"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_automatic_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_automatic_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(automatic_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(automatic_followers<3>),
-      .find_costs_2d = core::grid_finding<2>,
-      .find_costs_3d = core::grid_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_automatic_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_automatic_outline<3>),
+      .in_2d = core::in_dimension(automatic_strategies<2>),
+      .in_3d = core::in_dimension(automatic_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -17,8 +17,8 @@ std::size_t place(std::size_t i, std::size_t count, std::size_t boxes) {
 }  // namespace
 
 template <int D>
-void OverlapEstimate<D>::take(std::span<const Box<D>> boxes, std::size_t most) {
-  count_ = std::min({boxes.size(), most, most_boxes});
+void OverlapEstimate<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
+  count_ = std::min({boxes.size(), max_count, max_boxes});
   for (std::size_t i = 0; i < count_; ++i) {
     const Box<D>& box = boxes[sampled_place(i, boxes.size())];
     for (int axis = 0; axis < D; ++axis) {

@@ -16,10 +16,10 @@ namespace broadside::core {
 template <int D>
 class OverlapEstimate {
  public:
-  static constexpr std::size_t most_boxes = 96;
+  static constexpr std::size_t max_boxes = 96;
 
-  /// Samples `most` of the boxes, or fewer if there are fewer or `most` is above most_boxes.
-  void take(std::span<const Box<D>> boxes, std::size_t most);
+  /// Samples `max_count` of the boxes, or fewer if there are fewer or `max_count` is above max_boxes.
+  void take(std::span<const Box<D>> boxes, std::size_t max_count);
 
   /// Compares the sample all against all. Then the part of the pairs that overlaps on each axis, and on all
   /// axes.
@@ -36,8 +36,8 @@ class OverlapEstimate {
 
  private:
   std::size_t count_ = 0;
-  std::array<std::array<float, most_boxes>, D> min_;
-  std::array<std::array<float, most_boxes>, D> max_;
+  std::array<std::array<float, max_boxes>, D> min_;
+  std::array<std::array<float, max_boxes>, D> max_;
   std::array<double, D> overlap_{};
   double overlap_on_all_ = 0;
 };

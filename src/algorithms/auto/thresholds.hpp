@@ -27,12 +27,12 @@ struct AutoThresholds {
   static constexpr std::size_t long_boxes_for_cells = D == 2 ? 4000 : 1000;
   static constexpr double uneven_boxes = 1.6;  ///< mean of the sides' squares over the square of their mean
   static constexpr std::size_t uneven_boxes_for_cells = D == 2 ? 3500 : 3000;
-  static constexpr double most_uneven_boxes = 40;
-  static constexpr std::size_t most_uneven_boxes_for_cells = 1000;
+  static constexpr double very_uneven_boxes = 40;
+  static constexpr std::size_t very_uneven_boxes_for_cells = 1000;
   static constexpr double of_one_size = 1.0001;  ///< the same ratio
   static constexpr double flat = 0.9;            ///< part of all pairs that overlaps on some axis
   static constexpr std::size_t flat_boxes_for_cells = 1100;
-  static constexpr double most_overlaps_for_their_shape = 50;  ///< overlaps a box
+  static constexpr double max_overlaps_for_shapes = 50;  ///< overlaps a box
 
   /// From this many boxes on a tree suits those that would overlap many_overlaps others if axes were
   /// independent, and do not: of the generated stacks of plates cells make five times the tests.
@@ -59,7 +59,7 @@ struct AutoThresholds {
   static constexpr float near = 1.0F / 16;
 
   /// Boxes in a sample.
-  static constexpr std::size_t most_compared = 96;
+  static constexpr std::size_t sampled_boxes = 96;
 };
 
 }  // namespace broadside::algorithm

@@ -61,14 +61,10 @@ class BruteForceSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_brute_force_searcher(const Settings&) {
-  return std::make_unique<BruteForceSearcher<D>>();
-}
-
-template <int D>
-detail::Vector<FollowerChoice<D>> brute_force_followers() {
-  return {{"brute_force", [](const Settings&) { return make_brute_force_follower<D>(); },
-           core::brute_force_following, 1}};
+Strategies<D> brute_force_strategies() {
+  return {.searcher = make_strategy<BruteForceSearcher<D>>,
+          .followers = {{"brute_force", make_brute_force_follower<D>, core::brute_force_following, 1}},
+          .find_costs = core::brute_force_finding};
 }
 
 }  // namespace
@@ -79,12 +75,8 @@ Algorithm brute_force() {
       .summary = core::unless_lean("every box against every other, over a structure of arrays"),
       .source = core::unless_lean("paper.md, sections II and VI-A"),
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_brute_force_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_brute_force_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(brute_force_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(brute_force_followers<3>),
-      .find_costs_2d = core::brute_force_finding,
-      .find_costs_3d = core::brute_force_finding,
+      .in_2d = core::in_dimension(brute_force_strategies<2>),
+      .in_3d = core::in_dimension(brute_force_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

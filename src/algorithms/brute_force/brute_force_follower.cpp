@@ -89,11 +89,11 @@ class BruteForceFollower final : public Follower<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Follower<D>> make_brute_force_follower() {
+std::unique_ptr<Follower<D>> make_brute_force_follower(const Settings&) {
   return std::make_unique<BruteForceFollower<D>>();
 }
 
-template std::unique_ptr<Follower<2>> make_brute_force_follower();
-template std::unique_ptr<Follower<3>> make_brute_force_follower();
+template std::unique_ptr<Follower<2>> make_brute_force_follower(const Settings&);
+template std::unique_ptr<Follower<3>> make_brute_force_follower(const Settings&);
 
 }  // namespace broadside::algorithm

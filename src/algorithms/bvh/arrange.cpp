@@ -39,9 +39,9 @@ void arrange(std::span<NumberedBox<D>> leaves) {
   for (const NumberedBox<D>& leaf : leaves) sizes.push_back(size_of(leaf));
   const auto median = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::ranges::nth_element(sizes, median);
-  const float most = 4 * *median;
-  const auto large = std::stable_partition(leaves.begin(), leaves.end(),
-                                           [&](const NumberedBox<D>& leaf) { return size_of(leaf) <= most; });
+  const float max_size = 4 * *median;
+  const auto large = std::stable_partition(
+      leaves.begin(), leaves.end(), [&](const NumberedBox<D>& leaf) { return size_of(leaf) <= max_size; });
   const auto common = static_cast<std::size_t>(large - leaves.begin());
   halve(leaves.first(common));
   halve(leaves.subspan(common));

@@ -9,7 +9,7 @@
 
 namespace broadside::algorithm {
 
-inline constexpr std::size_t most_bvh_buckets = 2048;
+inline constexpr std::size_t max_bvh_buckets = 2048;
 
 /// The root of `value` >= 0 of that degree, 1 to 3, in operations that are rounded alike everywhere: which
 /// leaf a box is in must not depend on the machine.
@@ -23,11 +23,11 @@ inline double root(double value, int degree) {
 
 /// Buckets of equal width for the coordinates on one axis.
 struct Buckets {
-  Buckets(float least, float greatest, std::size_t most) : low(least) {
+  Buckets(float least, float greatest, std::size_t max_buckets) : low(least) {
     const float width = greatest - least;
-    if (!(width > 0) || most < 2) return;
-    scale = static_cast<float>(most) / width;
-    count = static_cast<std::uint32_t>(most);
+    if (!(width > 0) || max_buckets < 2) return;
+    scale = static_cast<float>(max_buckets) / width;
+    count = static_cast<std::uint32_t>(max_buckets);
     if (!std::isfinite(scale)) scale = std::numeric_limits<float>::max();
   }
 

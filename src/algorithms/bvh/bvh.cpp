@@ -28,11 +28,11 @@ namespace {
 
 /// The least leaves that one of several threads joins at a time: enough that the way to them from the root
 /// costs nothing.
-constexpr std::size_t fewest_leaves = 64;
+constexpr std::size_t min_leaves_per_part = 64;
 
 /// A search that may give up does so in each part by itself, behind a leaf. It is in no more parts than this,
 /// since a leaf may meet all others.
-constexpr std::size_t most_parts = 64;
+constexpr std::size_t max_parts = 64;
 
 template <int D>
 class BvhSearcher final : public Searcher<D> {
@@ -46,12 +46,12 @@ class BvhSearcher final : public Searcher<D> {
     tree_.doubles = input.doubles;
     scratch_.resize(std::max(scratch_.size(), parallel_.workers()));
     for (std::vector<std::uint32_t>& scratch : scratch_) scratch.resize(kernels::join_scratch(tree_));
-    leaves_a_part_ = fewest_leaves;
+    leaves_per_part_ = min_leaves_per_part;
     Statistics statistics;
     if (input.successor == nullptr) {
       statistics = join_all(pairs);
     } else {
-      leaves_a_part_ = std::max(fewest_leaves, leaf_count() / most_parts + 1);
+      leaves_per_part_ = std::max(min_leaves_per_part, leaf_count() / max_parts + 1);
       bool gave_up = false;
       statistics = join_or_give_up(pairs, gave_up);
       if (gave_up) hand_over(size, *input.successor);
@@ -95,15 +95,15 @@ class BvhSearcher final : public Searcher<D> {
     }
     successor.finish([this](const Box<D>&, BoxId a, const Box<D>&, BoxId b) {
       const std::uint32_t leaf = std::min(leaf_of_[index(a)], leaf_of_[index(b)]);
-      return leaf >= parts_[leaf / leaves_a_part_].next_leaf;
+      return leaf >= parts_[leaf / leaves_per_part_].next_leaf;
     });
   }
 
   std::size_t leaf_count() const { return tree_.levels[1].size; }
-  std::size_t part_count() const { return (leaf_count() + leaves_a_part_ - 1) / leaves_a_part_; }
+  std::size_t part_count() const { return (leaf_count() + leaves_per_part_ - 1) / leaves_per_part_; }
 
   kernels::NodeRange leaves_of(core::Range parts) const {
-    return {parts.begin * leaves_a_part_, std::min(parts.end * leaves_a_part_, leaf_count())};
+    return {parts.begin * leaves_per_part_, std::min(parts.end * leaves_per_part_, leaf_count())};
   }
 
   Statistics join_all(PairSink& pairs) {
@@ -119,9 +119,9 @@ class BvhSearcher final : public Searcher<D> {
   /// in order, with what the others have left.
   Statistics join_or_give_up(PairSink& pairs, bool& gave_up) {
     parts_.resize(part_count());
-    const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t most_tests,
+    const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t max_tests,
                              std::size_t worker, PairSink& sink) {
-      const kernels::JoinLimit limit = {most_tests, kernels::tests_per_pair, parallel_.checkpoint(worker)};
+      const kernels::JoinLimit limit = {max_tests, kernels::tests_per_pair, parallel_.checkpoint(worker)};
       parts_[part] = kernels::join(tree_, leaves, limit, scratch_[worker].data(), sink);
       return parts_[part].tests;
     };
@@ -152,24 +152,17 @@ class BvhSearcher final : public Searcher<D> {
   BvhPacker<D> packer_;
   kernels::PackedBvh<D> tree_;                       // the packer's
   std::vector<std::vector<std::uint32_t>> scratch_;  // by worker
-  std::size_t leaves_a_part_ = fewest_leaves;
+  std::size_t leaves_per_part_ = min_leaves_per_part;
   std::vector<kernels::JoinWork> parts_;  // of a search that may give up
   std::vector<std::uint32_t> leaf_of_;    // by id, after one that did
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_bvh_searcher(const Settings&) {
-  return std::make_unique<BvhSearcher<D>>();
-}
-
-template <int D>
-detail::Vector<FollowerChoice<D>> bvh_followers() {
-  return {{"bvh", [](const Settings&) { return make_bvh_follower<D>(); }, core::bvh_following<D>}};
-}
-
-template <int D>
-Outline<D> make_bvh_outline(std::span<const Box<D>> boxes, const Workers& workers, const Settings&) {
-  return BvhSearcher<D>().lay_out(boxes, workers);
+Strategies<D> bvh_strategies() {
+  return {.searcher = make_strategy<BvhSearcher<D>>,
+          .followers = {{"bvh", make_bvh_follower<D>, core::bvh_following<D>}},
+          .find_costs = core::tree_finding<D>,
+          .outline = core::outline_by(&BvhSearcher<D>::lay_out)};
 }
 
 }  // namespace
@@ -182,14 +175,8 @@ Algorithm bvh() {
       .source = core::unless_lean(
           "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing"),
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_bvh_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_bvh_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(bvh_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(bvh_followers<3>),
-      .find_costs_2d = core::tree_finding<2>,
-      .find_costs_3d = core::tree_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_bvh_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_bvh_outline<3>),
+      .in_2d = core::in_dimension(bvh_strategies<2>),
+      .in_3d = core::in_dimension(bvh_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

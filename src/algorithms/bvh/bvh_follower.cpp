@@ -179,11 +179,11 @@ class BvhFollower final : public Follower<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Follower<D>> make_bvh_follower() {
+std::unique_ptr<Follower<D>> make_bvh_follower(const Settings&) {
   return std::make_unique<BvhFollower<D>>();
 }
 
-template std::unique_ptr<Follower<2>> make_bvh_follower();
-template std::unique_ptr<Follower<3>> make_bvh_follower();
+template std::unique_ptr<Follower<2>> make_bvh_follower(const Settings&);
+template std::unique_ptr<Follower<3>> make_bvh_follower(const Settings&);
 
 }  // namespace broadside::algorithm

@@ -3,11 +3,11 @@
 
 #include <memory>
 
-#include "broadside/follower.hpp"
+#include "broadside/algorithm.hpp"
 
 namespace broadside::algorithm {
 
 template <int D>
-std::unique_ptr<Follower<D>> make_bvh_follower();
+std::unique_ptr<Follower<D>> make_bvh_follower(const Settings& settings);
 
 }  // namespace broadside::algorithm

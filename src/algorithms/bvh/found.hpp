@@ -40,7 +40,7 @@ class Overlapping final : public kernels::FoundBoxes {
       size += static_cast<std::size_t>(counts);
     }
     count = 0;
-    full = std::min(2 * full, most);
+    full = std::min(2 * full, max_found);
     return size == 0 || visitor_.visit({result_.data(), size});
   }
 
@@ -49,7 +49,7 @@ class Overlapping final : public kernels::FoundBoxes {
   const Box<D, Real>& box_;
   Visitor<BoxId>& visitor_;
   const QueryOptions<BoxId>& options_;
-  std::array<BoxId, most + 2 * kernels::fan_out> result_;
+  std::array<BoxId, max_found + 2 * kernels::fan_out> result_;
 };
 
 /// Boxes that a cast may meet.
@@ -68,7 +68,7 @@ class Met final : public kernels::FoundBoxes {
         result_[size++] = {BoxId{ids[i]}, *enter};
     }
     count = 0;
-    full = std::min(2 * full, most);
+    full = std::min(2 * full, max_found);
     return size == 0 || visitor_.visit({result_.data(), size});
   }
 
@@ -77,7 +77,7 @@ class Met final : public kernels::FoundBoxes {
   const BoxCast<D, Real>& cast_;
   Visitor<Hit<Real>>& visitor_;
   const QueryOptions<BoxId>& options_;
-  std::array<Hit<Real>, most + 2 * kernels::fan_out> result_;
+  std::array<Hit<Real>, max_found + 2 * kernels::fan_out> result_;
 };
 
 /// The first box that a cast meets; of several, the one with the least id.

@@ -128,7 +128,7 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
   // Beyond these, a parameter computed by the definition, or an inverse, may overflow or lose its last
   // places, and the tree's bounds would decide what the definition does not.
   constexpr Real least = is_float<Real> ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
-  constexpr int most_exponent = 800;
+  constexpr int max_exponent = 800;
   for (int axis = 0; axis < D; ++axis) {
     const Real direction = cast.direction[axis];
     const Real scaled =
@@ -141,7 +141,7 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
     if (direction == 0) {
       query.course[axis] = kernels::Course::still;
     } else if (is_usual(direction, least) && is_usual(scaled, Real{0x1p-125f}) &&
-               std::abs(exponent) <= most_exponent) {
+               std::abs(exponent) <= max_exponent) {
       query.course[axis] = direction > 0 ? kernels::Course::forward : kernels::Course::backward;
       query.inverse[axis] = static_cast<float>(1 / scaled);
     } else {
@@ -189,18 +189,18 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
   kernels::DistanceQuery<D> query;
   query.weight.fill(1);
   query.point = in_tree(Box<D, Real>{point, point});
-  query.most = std::numeric_limits<float>::infinity();
+  query.max = std::numeric_limits<float>::infinity();
   Real unit = 1;                    // the caller's squared distance 1 as one in the tree
   if constexpr (!is_float<Real>) {  // distances in the tree must not exceed the true ones
     // Beyond these, the definition's squares may overflow or lose their last places.
-    constexpr int most_exponent = 400;
-    int exponent = most_exponent;
+    constexpr int max_exponent = 400;
+    int exponent = max_exponent;
     for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
-    exponent = std::max(exponent, -most_exponent);
+    exponent = std::max(exponent, -max_exponent);
     for (int axis = 0; axis < D; ++axis)
       query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
     unit = std::ldexp(Real{1}, 2 * exponent);
-    query.most = std::numeric_limits<float>::max();
+    query.max = std::numeric_limits<float>::max();
     query.share = 1 - 0x1p-18f;
     query.allowance = std::numeric_limits<float>::min();
   }

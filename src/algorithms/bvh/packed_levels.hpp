@@ -71,7 +71,7 @@ class PackedLevels {
   void resize(std::size_t level, std::size_t size);
 
   std::vector<Gap> gaps_;
-  std::array<LevelMemory, kernels::most_levels> memory_;
+  std::array<LevelMemory, kernels::max_levels> memory_;
   core::LargeArray<BoxId> ids_;
   kernels::PackedBvh<D> tree_{};
 };

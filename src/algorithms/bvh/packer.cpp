@@ -44,7 +44,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
     typical_[axis] = std::max(sample_[axis].extent, spacing(boxes.size(), axis) / 2);
     inverse[axis] = typical_[axis] > 0 ? 1 / typical_[axis] : std::numeric_limits<float>::max();
   }
-  const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, most_bvh_buckets);
+  const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, max_bvh_buckets);
   choose_axes(boxes.size());
   const int first = axes_[0];
   const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
@@ -95,7 +95,7 @@ void BvhPacker<D>::choose_axes(std::size_t boxes) {
 /// in order.
 template <int D>
 void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core::Parallel& parallel) {
-  const std::size_t most = std::max<std::size_t>(1024, entries_.size() / 64);
+  const std::size_t max_unsorted = std::max<std::size_t>(1024, entries_.size() / 64);
   // Compares keys, which also order NaNs: another thread may have written a NaN since the check.
   const auto is_before = [first = axes_[0]](const Entry& a, const Entry& b) {
     const std::uint32_t first_key = core::sort_key(a.box.min[first]);
@@ -105,7 +105,7 @@ void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core:
   parallel.for_ranges(ends.size(), [&](core::Range range, std::size_t) {
     for (std::size_t bucket = range.begin; bucket < range.end; ++bucket) {
       const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
-      if (ends[bucket] - begin > most)
+      if (ends[bucket] - begin > max_unsorted)
         std::ranges::sort(std::span(entries_).subspan(begin, ends[bucket] - begin), is_before);
     }
   });
@@ -234,8 +234,8 @@ void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf 
     high = std::max(high, entry(i).box.min[axis]);
   }
   const Buckets buckets(std::max(low, sample_[axis].low), std::min(high, sample_[axis].high),
-                        std::min(count / 2, most_bvh_buckets));
-  std::array<std::uint32_t, most_bvh_buckets> places;
+                        std::min(count / 2, max_bvh_buckets));
+  std::array<std::uint32_t, max_bvh_buckets> places;
   std::fill_n(places.begin(), buckets.count, 0);
   scratch.buckets.resize(std::max(scratch.buckets.size(), count));
   for (std::size_t i = 0; i < count; ++i) {

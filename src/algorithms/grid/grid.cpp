@@ -40,7 +40,7 @@ namespace {
 template <int D>
 class GridSearcher final : public Searcher<D> {
  public:
-  explicit GridSearcher(std::optional<double> cell) : cell_(cell) {}
+  explicit GridSearcher(const Settings& settings) : cell_(settings.optional_number("cell")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::size_t boxes = input.boxes.size();
@@ -76,7 +76,7 @@ class GridSearcher final : public Searcher<D> {
     return statistics;
   }
 
-  Outline<D> lay_out(std::span<const Box<D>> boxes) {
+  Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers&) {
     choose_cells(boxes);
     const std::array<int, D>& axes = layout_.axes();
     Outline<D> outline;
@@ -232,25 +232,12 @@ class GridSearcher final : public Searcher<D> {
   std::vector<std::size_t> swept_to_;  // by slab: the first cell that was not swept
 };
 
-std::optional<double> cell_edge(const Settings& settings) {
-  if (settings.is_auto("cell")) return std::nullopt;
-  return settings.number("cell");
-}
-
 template <int D>
-std::unique_ptr<Searcher<D>> make_grid_searcher(const Settings& settings) {
-  return std::make_unique<GridSearcher<D>>(cell_edge(settings));
-}
-
-template <int D>
-detail::Vector<FollowerChoice<D>> grid_followers() {
-  return {{"grid", [](const Settings& settings) { return make_grid_follower<D>(cell_edge(settings)); },
-           core::grid_following<D>}};
-}
-
-template <int D>
-Outline<D> make_grid_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
-  return GridSearcher<D>(cell_edge(settings)).lay_out(boxes);
+Strategies<D> grid_strategies() {
+  return {.searcher = make_strategy<GridSearcher<D>>,
+          .followers = {{"grid", make_strategy<GridFollower<D>>, core::grid_following<D>}},
+          .find_costs = core::grid_finding<D>,
+          .outline = core::outline_by(&GridSearcher<D>::lay_out)};
 }
 
 }  // namespace
@@ -269,18 +256,12 @@ Algorithm grid() {
                     .summary = core::unless_lean(
                         "size of a cell, in the boxes' unit; made larger where there would be over 4 "
                         "cells a box; in tracking, the size of the smallest cells"),
-                    .standard = "auto",
-                    .least = std::numeric_limits<float>::min()},
+                    .default_value = "auto",
+                    .min = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_grid_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_grid_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(grid_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(grid_followers<3>),
-      .find_costs_2d = core::grid_finding<2>,
-      .find_costs_3d = core::grid_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_grid_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_grid_outline<3>),
+      .in_2d = core::in_dimension(grid_strategies<2>),
+      .in_3d = core::in_dimension(grid_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t batch = 8192;
 
 /// How many boxes of a search take as long as one that moves.
-constexpr std::size_t boxes_a_mover = 2;
+constexpr std::size_t boxes_per_mover = 2;
 
 /// Queries to average over before the cells are judged too slow.
 constexpr std::uint64_t telling_queries = 1024;
@@ -50,7 +50,7 @@ template <int D>
 std::optional<Statistics> GridFollower<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended) {
   if (change.rebuild || needs_rebuild(change)) build(change);
   cells_.reserve(change.now.size());
-  parallel_.start(change.workers, change.changed.size() * boxes_a_mover);
+  parallel_.start(change.workers, change.changed.size() * boxes_per_mover);
   if (parts_.size() < parallel_.range_count()) parts_.resize(parallel_.range_count());
   settle(change);
   core::ChangeWork work;
@@ -188,14 +188,7 @@ std::size_t GridFollower<D>::bytes() const noexcept {
   return bytes;
 }
 
-template <int D>
-std::unique_ptr<Follower<D>> make_grid_follower(std::optional<double> cell) {
-  return std::make_unique<GridFollower<D>>(cell);
-}
-
 template class GridFollower<2>;
 template class GridFollower<3>;
-template std::unique_ptr<Follower<2>> make_grid_follower(std::optional<double>);
-template std::unique_ptr<Follower<3>> make_grid_follower(std::optional<double>);
 
 }  // namespace broadside::algorithm

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "broadside/follower.hpp"
+#include "broadside/algorithm.hpp"
 
 #include "algorithms/grid/cells.hpp"
 #include "core/moved_box.hpp"
@@ -21,7 +21,7 @@ namespace broadside::algorithm {
 template <int D>
 class GridFollower final : public Follower<D> {
  public:
-  explicit GridFollower(std::optional<double> cell) : cells_(cell) {}
+  explicit GridFollower(const Settings& settings) : cells_(settings.optional_number("cell")) {}
 
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override;
   std::size_t bytes() const noexcept override;
@@ -56,9 +56,5 @@ class GridFollower final : public Follower<D> {
   std::uint64_t first_queries_ = 0;
   double excess_ = 0;  // blocks looked at beyond what is usual
 };
-
-/// With cells of this size, or of sizes that suit the boxes.
-template <int D>
-std::unique_ptr<Follower<D>> make_grid_follower(std::optional<double> cell);
 
 }  // namespace broadside::algorithm

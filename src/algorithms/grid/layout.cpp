@@ -12,13 +12,13 @@ namespace broadside::algorithm {
 namespace {
 
 /// Up to here every cell's number is a float exactly.
-constexpr double most_cells = 1 << GridLayout<2>::cell_bits;
+constexpr double max_cells = 1 << GridLayout<2>::cell_bits;
 
 /// Fewer boxes than this a cell, and looking at cells costs more than they save.
-constexpr double least_boxes_per_cell = 16;
+constexpr double min_boxes_per_cell = 16;
 
 /// Where cells are asked for by their size, there may be this many for each box.
-constexpr double most_cells_per_box = 4;
+constexpr double max_cells_per_box = 4;
 
 /// Likewise, the maximum number of cells that a box may be in on average.
 constexpr double max_references_per_box = 64;
@@ -28,8 +28,8 @@ constexpr double grid_reference_cost = 20;
 
 /// Slabs are for threads: enough to share out, each of some rows, since boxes that reach into another are
 /// inserted there again.
-constexpr std::size_t most_slabs = 16;
-constexpr std::size_t least_rows_per_slab = 4;
+constexpr std::size_t max_slabs = 16;
+constexpr std::size_t min_rows_per_slab = 4;
 
 /// The chance that two boxes of the sample begin within `distance` of each other.
 double chance_within(const core::AxisSample& sample, double distance) {
@@ -58,22 +58,22 @@ template <int D>
 void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell) {
   axes_ = sample.axes_by_overlap();
   const auto boxes = static_cast<double>(count);
-  const double most_for_boxes =
-      std::clamp(cell ? most_cells_per_box * boxes : boxes / least_boxes_per_cell, 1.0, most_cells);
+  const double max_for_boxes =
+      std::clamp(cell ? max_cells_per_box * boxes : boxes / min_boxes_per_cell, 1.0, max_cells);
   const auto cells_of_size = [&](const auto& size_on) {
     std::array<double, gridded> cells;
     for (int axis = 0; axis < gridded; ++axis) {
       const core::AxisSample& on_axis = sample[axes_[axis + 1]];
       const double range = range_of(on_axis);
       const double size = size_on(on_axis);
-      cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, most_for_boxes)) : 1;
+      cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, max_for_boxes)) : 1;
     }
     // Too many cells in all: the longer side gives way first.
     for (;;) {
       double product = 1;
       for (const double cells_on_axis : cells) product *= cells_on_axis;
       double& longest = *std::ranges::max_element(cells);
-      if (product <= most_for_boxes || longest <= 1) break;
+      if (product <= max_for_boxes || longest <= 1) break;
       longest = std::max(1.0, std::floor(longest / 2));
     }
     return cells;
@@ -176,7 +176,7 @@ void GridLayout<D>::set_borders(int axis) {
 
 template <int D>
 void GridLayout<D>::set_slabs() {
-  const std::size_t slabs = std::clamp<std::size_t>(rows() / least_rows_per_slab, 1, most_slabs);
+  const std::size_t slabs = std::clamp<std::size_t>(rows() / min_rows_per_slab, 1, max_slabs);
   slab_begin_.resize(slabs + 1);
   slab_of_.resize(rows());
   slab_border_.resize(rows());

@@ -8,15 +8,15 @@ namespace broadside::algorithm {
 namespace {
 
 /// Boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
-constexpr double boxes_a_cell = 10;
+constexpr double boxes_per_cell = 10;
 
 /// Where cells are asked for by their size, there may be this many for each box.
-constexpr double most_cells_a_box = 4;
+constexpr double max_cells_per_box = 4;
 
 /// With more others in a typical box's cell, smaller cells pay.
 constexpr double max_load_factor = 40;
 
-constexpr std::size_t most_sampled = 1024;
+constexpr std::size_t max_sampled = 1024;
 
 /// The least whole number whose power of D is at least `count`.
 template <int D>
@@ -31,12 +31,12 @@ std::size_t whole_root(std::size_t count) {
 template <int D>
 void CellLevels<D>::choose(std::span<const Box<D>> like) {
   sampled_.clear();
-  const std::size_t tries = std::min(like.size(), 4 * most_sampled);
-  for (std::size_t i = 0; i < tries && sampled_.size() < most_sampled; ++i) {
+  const std::size_t tries = std::min(like.size(), 4 * max_sampled);
+  for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled; ++i) {
     const Box<D>& box = like[tries == like.size() ? i : core::sampled_place(i, like.size())];
     if (is_present(box)) sampled_.push_back(box);
   }
-  sample_.take(sampled_, most_sampled);
+  sample_.take(sampled_, max_sampled);
   const auto spread = static_cast<float>(whole_root<D>(like.size()));
   for (int axis = 0; axis < D; ++axis) {
     const float range = std::min(sample_[axis].high - sample_[axis].low, std::numeric_limits<float>::max());
@@ -51,7 +51,7 @@ void CellLevels<D>::choose(std::span<const Box<D>> like) {
   const auto is_short = [&](int axis) {
     return border * typical_[axis] < (sample_[axis].high - sample_[axis].low) / 4;
   };
-  while (count_ < kernels::most_cell_levels - 1) {
+  while (count_ < kernels::max_cell_levels - 1) {
     bool any = false;
     for (int axis = 0; axis < D; ++axis) any |= is_short(axis);
     if (!any) break;
@@ -127,10 +127,10 @@ void CellLevels<D>::lay_out_level(std::size_t index) {
     for (std::size_t i = 0; i < index; ++i) asked *= level_ratio;
     for (double& side : length) side = asked;
   }
-  const double most = std::max(1.0, expected_[index] * (cell_ ? most_cells_a_box : 1 / boxes_a_cell));
+  const double max_cells = std::max(1.0, expected_[index] * (cell_ ? max_cells_per_box : 1 / boxes_per_cell));
   if (factor_[index] == 0 || cell_) {
     double factor = 1;
-    while (product(cells(factor)) > most) factor *= 1.125;
+    while (product(cells(factor)) > max_cells) factor *= 1.125;
     factor_[index] = factor;
   }
   const std::array<double, D> counts = cells(factor_[index]);

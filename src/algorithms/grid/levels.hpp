@@ -99,9 +99,9 @@ class CellLevels {
   std::array<float, D> typical_{};  // lengths of boxes, or more where boxes are sparse
   std::array<float, D> inverse_typical_{};
   std::array<float, D> smallest_{};
-  std::array<Level, kernels::most_cell_levels> levels_{};
-  std::array<double, kernels::most_cell_levels> factor_{};  // a cell's length in units of the longest box
-  std::array<std::uint32_t, kernels::most_cell_levels> expected_{};  // how many boxes the cells are for
+  std::array<Level, kernels::max_cell_levels> levels_{};
+  std::array<double, kernels::max_cell_levels> factor_{};  // a cell's length in units of the longest box
+  std::array<std::uint32_t, kernels::max_cell_levels> expected_{};  // how many boxes the cells are for
   std::size_t count_ = 1;
 };
 

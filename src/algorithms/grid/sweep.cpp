@@ -18,14 +18,14 @@
 namespace broadside::algorithm {
 namespace {
 
-constexpr std::size_t least_buckets = 16;
-constexpr std::size_t most_buckets = 1 << 13;
+constexpr std::size_t min_buckets = 16;
+constexpr std::size_t max_buckets = 1 << 13;
 
 /// Boxes beyond the range are in the buckets at the ends. Up to this many there are sorted one by one.
-constexpr std::size_t most_beyond = 32;
+constexpr std::size_t max_beyond = 32;
 
 /// The mean number of other boxes in a box's bucket from which it pays to sort them all.
-constexpr std::size_t most_in_bucket = 48;
+constexpr std::size_t max_in_bucket = 48;
 
 /// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
 /// all.
@@ -59,7 +59,7 @@ class CountingSink final : public PairSink {
 
 template <int D>
 Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& range,
-                               const BoxesByCell<D>& cells, std::size_t slab, std::uint64_t most_tests,
+                               const BoxesByCell<D>& cells, std::size_t slab, std::uint64_t max_tests,
                                PairSink& pairs) {
   axes_ = layout.axes();
   range_ = range;
@@ -84,10 +84,10 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
       if constexpr (D == 3) lists[2] = along_.list();
       // Pairs are counted once tests are many.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
-      const bool is_counting = work > most_tests;
-      if (is_counting && work > most_tests + most_tests / 4 + kernels::tests_per_pair * counted.count())
+      const bool is_counting = work > max_tests;
+      if (is_counting && work > max_tests + max_tests / 4 + kernels::tests_per_pair * counted.count())
         return statistics_;
-      if (!sweep_cell(lists, layout.column_border(column), row_border, most_tests,
+      if (!sweep_cell(lists, layout.column_border(column), row_border, max_tests,
                       is_counting ? static_cast<PairSink&>(counted) : pairs))
         return statistics_;
       if (is_counting) counted.flush();
@@ -100,7 +100,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
 
 template <int D>
 bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row_border,
-                              std::uint64_t most_tests, PairSink& pairs) {
+                              std::uint64_t max_tests, PairSink& pairs) {
   std::size_t count = 0;
   for (const auto& list : lists) count += list.size();
   statistics_.references += count;
@@ -109,8 +109,8 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   if (count == 0) return true;
   if (checkpoint_ != nullptr) checkpoint_->count(count);  // with many cells, a box has many references
   // Room for one more than there may be: where none goes on, one is written all the same.
-  next_up_.reserve(most_reaching(lists, count, axes_[D - 1], row_border) + 1);
-  if constexpr (D == 3) next_along_.reserve(most_reaching(lists, count, axes_[1], column_border) + 1);
+  next_up_.reserve(max_reaching(lists, count, axes_[D - 1], row_border) + 1);
+  if constexpr (D == 3) next_along_.reserve(max_reaching(lists, count, axes_[1], column_border) + 1);
   bucket_of_.resize(std::max(bucket_of_.size(), count));
   const Buckets buckets = cut(range_, count);
   starts_.assign(buckets.count(), 0);
@@ -129,13 +129,13 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   run_.set_size(count);
   kernels::Run<D> run = run_.view(doubles_, slack);
   run.checkpoint = checkpoint_;
-  if (kernels::is_wasteful(run, most_tests)) return false;
+  if (kernels::is_wasteful(run, max_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;
 }
 
 template <int D>
-std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, int axis, float border) {
+std::size_t GridSweep<D>::max_reaching(const Lists& lists, std::size_t count, int axis, float border) {
   if (count <= many_boxes) return count;
   std::size_t reaching = 0;
   for (const auto& list : lists)
@@ -146,8 +146,7 @@ std::size_t GridSweep<D>::most_reaching(const Lists& lists, std::size_t count, i
 
 template <int D>
 typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::size_t count) {
-  const auto count_in_range =
-      static_cast<float>(std::bit_ceil(std::clamp(count, least_buckets, most_buckets)));
+  const auto count_in_range = static_cast<float>(std::bit_ceil(std::clamp(count, min_buckets, max_buckets)));
   const float length = range.high - range.low;
   // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
   const float per_unit = std::clamp(length > 0 ? count_in_range / length : 1,
@@ -192,7 +191,7 @@ template <int D>
 float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& buckets) {
   const std::size_t before = starts_.front();
   const std::size_t after = starts_.back();
-  if (std::max(before, after) <= most_beyond && are_even(count)) {
+  if (std::max(before, after) <= max_beyond && are_even(count)) {
     scatter(lists);
     run_.sort(0, before);
     run_.sort(count - after, count);
@@ -231,7 +230,7 @@ template <int D>
 bool GridSweep<D>::are_even(std::size_t count) const {
   std::uint64_t squares = 0;
   for (const std::uint32_t in_bucket : starts_) squares += std::uint64_t{in_bucket} * in_bucket;
-  return squares <= std::uint64_t{most_in_bucket} * count;
+  return squares <= std::uint64_t{max_in_bucket} * count;
 }
 
 template <int D>

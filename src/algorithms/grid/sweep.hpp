@@ -49,10 +49,10 @@ template <int D>
 class GridSweep {
  public:
   /// Reports the pairs of a slab's cells, each in the cell that holds the greater of the two minima on every
-  /// gridded axis. Stops before the cell at which tests become more than `most_tests` and than pairs account
+  /// gridded axis. Stops before the cell at which tests become more than `max_tests` and than pairs account
   /// for.
   Statistics sweep(const GridLayout<D>& layout, const SweptRange& range, const BoxesByCell<D>& cells,
-                   std::size_t slab, std::uint64_t most_tests, PairSink& pairs);
+                   std::size_t slab, std::uint64_t max_tests, PairSink& pairs);
 
   /// The cell behind the last one that was swept.
   std::size_t swept_to() const noexcept { return swept_to_; }
@@ -81,12 +81,12 @@ class GridSweep {
   using Lists = std::array<std::span<const CellEntry<D>>, D>;
 
   /// Reports the pairs of a cell and sends its boxes on to the cells whose borders they reach. False if the
-  /// cell alone would take more than `most_tests`, few of which find a pair: then it reports none.
-  bool sweep_cell(const Lists& lists, float column_border, float row_border, std::uint64_t most_tests,
+  /// cell alone would take more than `max_tests`, few of which find a pair: then it reports none.
+  bool sweep_cell(const Lists& lists, float column_border, float row_border, std::uint64_t max_tests,
                   PairSink& pairs);
 
   /// How many boxes of a cell's `count` reach a border; of a few, perhaps more.
-  static std::size_t most_reaching(const Lists& lists, std::size_t count, int axis, float border);
+  static std::size_t max_reaching(const Lists& lists, std::size_t count, int axis, float border);
 
   static Buckets cut(const SweptRange& range, std::size_t count);
 

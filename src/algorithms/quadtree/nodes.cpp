@@ -137,7 +137,7 @@ bool QuadtreeNodes<D>::choose_split(QuadtreeNode<D>& node, std::span<const std::
     node.large[axis] = minima[samples - 1 - samples / 4] - minima[samples / 4];
     splits = true;
   }
-  return splits && node.depth < most_depth;
+  return splits && node.depth < max_depth;
 }
 
 /// Sets masks_ to the children that each box of ids_ from `begin` on touches, 0 for one that stays, and how
@@ -165,7 +165,7 @@ bool QuadtreeNodes<D>::partition(const QuadtreeNode<D>& node, std::size_t begin,
   }
   // Boxes still to be inserted elsewhere count too, by their references so far.
   return kept <= count / 2 && largest <= count / 8 * 7 && sum <= 3 * count &&
-         references_ + sum <= most_references * homes_.size();
+         references_ + sum <= max_references * homes_.size();
 }
 
 /// Inserts a box into a node, which becomes its home if it has none yet.
@@ -206,7 +206,7 @@ std::uint32_t QuadtreeNodes<D>::add_children(std::uint32_t parent) {
       ((child >> axis & 1U) != 0 ? node.low : node.high)[axis] = above.split[axis];
     }
   }
-  is_too_deep_ |= above.depth + 1 >= most_depth;
+  is_too_deep_ |= above.depth + 1 >= max_depth;
   return first;
 }
 

@@ -109,18 +109,16 @@ class QuadtreeNodes {
 
   /// Whether the tree has become too deep, or its boxes are in too many nodes. Splitting keeps that limit,
   /// but boxes that grow may exceed it.
-  bool needs_rebuild() const noexcept {
-    return is_too_deep_ || references_ > most_references * homes_.size();
-  }
+  bool needs_rebuild() const noexcept { return is_too_deep_ || references_ > max_references * homes_.size(); }
 
   std::size_t bytes() const noexcept;
 
  private:
   static constexpr std::size_t samples = 31;
-  static constexpr std::uint32_t most_depth = 64;
+  static constexpr std::uint32_t max_depth = 64;
   /// The maximum number of references per box that splitting may cause. Among the generated scenes, thin
   /// boxes in 3D have the most, 5. Long lines reach the maximum; a tree of bounds follows them faster.
-  static constexpr std::size_t most_references = 6;
+  static constexpr std::size_t max_references = 6;
 
   using Sizes = std::array<std::size_t, child_count>;
 

@@ -41,16 +41,18 @@ namespace {
 constexpr std::size_t parts_per_worker = 3;
 
 /// With a checkpoint a part has no more boxes than this, and little is split by one thread.
-constexpr std::size_t most_between_checkpoints = 16'384;
+constexpr std::size_t max_between_checkpoints = 16'384;
 
 /// Boxes in a leaf: up to about this many, a sweep costs what a further split would.
 template <int D>
-constexpr std::size_t standard_capacity = D == 2 ? 128 : 256;
+constexpr std::size_t default_capacity = D == 2 ? 128 : 256;
 
 template <int D>
 class QuadtreeSearcher final : public Searcher<D> {
  public:
-  explicit QuadtreeSearcher(std::size_t capacity) : capacity_(capacity) {}
+  explicit QuadtreeSearcher(const Settings& settings)
+      : capacity_(
+            static_cast<std::size_t>(settings.optional_number("capacity").value_or(default_capacity<D>))) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
@@ -72,9 +74,9 @@ class QuadtreeSearcher final : public Searcher<D> {
     }
     parts_.clear();
     part_references_.clear();
-    std::size_t most_in_part = boxes.size() / (parts_per_worker * parallel_.workers());
-    if (input.workers.checkpoint) most_in_part = std::min(most_in_part, most_between_checkpoints);
-    expand(first, 0, first.stack.references.size(), most_in_part);
+    std::size_t max_in_part = boxes.size() / (parts_per_worker * parallel_.workers());
+    if (input.workers.checkpoint) max_in_part = std::min(max_in_part, max_between_checkpoints);
+    expand(first, 0, first.stack.references.size(), max_in_part);
     const auto search_parts = [&](core::Range parts, std::size_t worker, PairSink& sink) {
       workers_[worker].statistics = {};
       for (std::size_t part = parts.begin; part < parts.end; ++part)
@@ -85,7 +87,7 @@ class QuadtreeSearcher final : public Searcher<D> {
   }
 
   /// Splits the nodes as search_node() does, and keeps their regions.
-  Outline<D> lay_out(std::span<const Box<D>> boxes) {
+  Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers&) {
     sample_.take(boxes);
     const std::array<int, D> axes = sample_.axes_by_overlap();
     sorted_boxes_ = sorted_.sort(boxes, axes);
@@ -271,29 +273,11 @@ class QuadtreeSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::size_t capacity_of(const Settings& settings) {
-  return settings.is_auto("capacity") ? standard_capacity<D>
-                                      : static_cast<std::size_t>(settings.integer("capacity"));
-}
-
-template <int D>
-std::unique_ptr<Searcher<D>> make_quadtree_searcher(const Settings& settings) {
-  return std::make_unique<QuadtreeSearcher<D>>(capacity_of<D>(settings));
-}
-
-template <int D>
-detail::Vector<FollowerChoice<D>> quadtree_followers() {
-  const auto make = [](const Settings& settings) {
-    return make_quadtree_follower<D>(settings.is_auto("capacity")
-                                         ? following_capacity
-                                         : static_cast<std::uint32_t>(settings.integer("capacity")));
-  };
-  return {{"quadtree", make, core::quadtree_following<D>}};
-}
-
-template <int D>
-Outline<D> make_quadtree_outline(std::span<const Box<D>> boxes, const Workers&, const Settings& settings) {
-  return QuadtreeSearcher<D>(capacity_of<D>(settings)).lay_out(boxes);
+Strategies<D> quadtree_strategies() {
+  return {.searcher = make_strategy<QuadtreeSearcher<D>>,
+          .followers = {{"quadtree", make_quadtree_follower<D>, core::quadtree_following<D>}},
+          .find_costs = core::tree_finding<D>,
+          .outline = core::outline_by(&QuadtreeSearcher<D>::lay_out)};
 }
 
 }  // namespace
@@ -306,20 +290,14 @@ Algorithm quadtree() {
       .source = core::unless_lean("paper.md, section V"),
       .tunables = {{.name = "capacity",
                     .summary = core::unless_lean("most boxes in a leaf that could be split"),
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::integer,
-                    .least = 1,
-                    .most = 1 << 30},
+                    .min = 1,
+                    .max = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_quadtree_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_quadtree_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(quadtree_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(quadtree_followers<3>),
-      .find_costs_2d = core::tree_finding<2>,
-      .find_costs_3d = core::tree_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_quadtree_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_quadtree_outline<3>),
+      .in_2d = core::in_dimension(quadtree_strategies<2>),
+      .in_3d = core::in_dimension(quadtree_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

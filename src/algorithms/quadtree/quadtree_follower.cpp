@@ -23,12 +23,17 @@
 namespace broadside::algorithm {
 namespace {
 
+/// Smaller than the searcher's, which sweeps a leaf once for all of its boxes.
+constexpr std::uint32_t default_following_capacity = 32;
+
 template <int D>
 class QuadtreeFollower final : public Follower<D> {
   using Nodes = QuadtreeNodes<D>;
 
  public:
-  explicit QuadtreeFollower(std::uint32_t capacity) : tree_(capacity) {}
+  explicit QuadtreeFollower(const Settings& settings)
+      : tree_(static_cast<std::uint32_t>(
+            settings.optional_number("capacity").value_or(default_following_capacity))) {}
 
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     movers_.clear();
@@ -215,11 +220,11 @@ class QuadtreeFollower final : public Follower<D> {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Follower<D>> make_quadtree_follower(std::uint32_t capacity) {
-  return std::make_unique<QuadtreeFollower<D>>(capacity);
+std::unique_ptr<Follower<D>> make_quadtree_follower(const Settings& settings) {
+  return std::make_unique<QuadtreeFollower<D>>(settings);
 }
 
-template std::unique_ptr<Follower<2>> make_quadtree_follower(std::uint32_t);
-template std::unique_ptr<Follower<3>> make_quadtree_follower(std::uint32_t);
+template std::unique_ptr<Follower<2>> make_quadtree_follower(const Settings&);
+template std::unique_ptr<Follower<3>> make_quadtree_follower(const Settings&);
 
 }  // namespace broadside::algorithm

@@ -27,14 +27,14 @@ struct QuadtreeReference {
 /// Where a node is split; axes not in the list are not.
 template <int D>
 struct QuadtreeSplit {
-  static constexpr std::uint32_t most_children = 1U << D;
+  static constexpr std::uint32_t max_children = 1U << D;
 
   std::array<float, D> at;
   std::array<float, D> low;   ///< a box that spans from low to high
   std::array<float, D> high;  ///< covers the middle half of the node
   std::array<int, D> axes;
   int axis_count;
-  std::array<std::size_t, most_children> sizes;  ///< how many boxes each child gets
+  std::array<std::size_t, max_children> sizes;  ///< how many boxes each child gets
 
   bool covers_middle(const Box<D>& b) const {
     bool covers = true;
@@ -66,9 +66,9 @@ class QuadtreeStack {
   /// Pushes the references of all children, one child after the other.
   [[gnu::always_inline]] void push_children(const Boxes& boxes, std::size_t begin, std::size_t end,
                                             const Split& split) {
-    std::array<std::size_t, Split::most_children> next;
+    std::array<std::size_t, Split::max_children> next;
     std::size_t top = references.size();
-    for (std::uint32_t child = 0; child < Split::most_children; ++child) {
+    for (std::uint32_t child = 0; child < Split::max_children; ++child) {
       next[child] = top;
       top += split.sizes[child];
     }

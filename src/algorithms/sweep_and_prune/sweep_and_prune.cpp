@@ -37,15 +37,10 @@ namespace {
 /// The cost of inserting a box into one more stripe, in tests of two boxes.
 constexpr double stripe_reference_cost = 64;
 
-constexpr std::size_t most_stripes = 256;
+constexpr std::size_t max_stripes = 256;
 
 /// Boxes that one thread sweeps at a time, where there are no stripes.
 constexpr std::size_t swept_at_once = 64;
-
-/// The axis to sweep along; -1: to be chosen.
-int axis_of(const Settings& settings) {
-  return settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
-}
 
 template <int D>
 class SweepAndPruneSearcher final : public Searcher<D> {
@@ -63,7 +58,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
     return borders_.empty() ? sweep_all(input, sorted, pairs) : sweep_stripes(input, sorted, pairs);
   }
 
-  Outline<D> lay_out(std::span<const Box<D>> boxes) {
+  Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers&) {
     const std::array<int, D> axes = choose_axes(boxes);
     Outline<D> outline;
     outline.swept_axis = axes[0];
@@ -108,7 +103,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
              references * references * swept.overlap / 2 / static_cast<double>(stripes);
     };
     std::size_t best = axes_ == 2 ? 2 : 1;
-    for (std::size_t stripes = 2 * best; axes_ != 1 && stripes <= most_stripes && 16 * stripes <= boxes;
+    for (std::size_t stripes = 2 * best; axes_ != 1 && stripes <= max_stripes && 16 * stripes <= boxes;
          stripes *= 2) {
       if (cost(stripes) < cost(best)) best = stripes;
     }
@@ -205,21 +200,11 @@ class SweepAndPruneSearcher final : public Searcher<D> {
 };
 
 template <int D>
-std::unique_ptr<Searcher<D>> make_sweep_and_prune_searcher(const Settings& settings) {
-  return std::make_unique<SweepAndPruneSearcher<D>>(settings);
-}
-
-template <int D>
-detail::Vector<FollowerChoice<D>> sweep_and_prune_followers() {
-  return {{"sweep_and_prune",
-           [](const Settings& settings) { return make_sweep_and_prune_follower<D>(axis_of(settings)); },
-           core::sweep_following<D>}};
-}
-
-template <int D>
-Outline<D> make_sweep_and_prune_outline(std::span<const Box<D>> boxes, const Workers&,
-                                        const Settings& settings) {
-  return SweepAndPruneSearcher<D>(settings).lay_out(boxes);
+Strategies<D> sweep_and_prune_strategies() {
+  return {.searcher = make_strategy<SweepAndPruneSearcher<D>>,
+          .followers = {{"sweep_and_prune", make_sweep_and_prune_follower<D>, core::sweep_following<D>}},
+          .find_costs = core::sweep_finding<D>,
+          .outline = core::outline_by(&SweepAndPruneSearcher<D>::lay_out)};
 }
 
 }  // namespace
@@ -233,24 +218,18 @@ Algorithm sweep_and_prune() {
       .source = core::unless_lean("paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited"),
       .tunables = {{.name = "axis",
                     .summary = core::unless_lean("the axis to sweep along"),
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"x", "y", "z"}},
                    {.name = "axes",
                     .summary = core::unless_lean("how many axes are used: 1, or 2 for stripes"),
-                    .standard = "auto",
+                    .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .searcher_2d = core::in_dimension<2>(make_sweep_and_prune_searcher<2>),
-      .searcher_3d = core::in_dimension<3>(make_sweep_and_prune_searcher<3>),
-      .followers_2d = core::followers_in_dimension<2>(sweep_and_prune_followers<2>),
-      .followers_3d = core::followers_in_dimension<3>(sweep_and_prune_followers<3>),
-      .find_costs_2d = core::sweep_finding<2>,
-      .find_costs_3d = core::sweep_finding<3>,
-      .outline_2d = core::outline_in_dimension<2>(make_sweep_and_prune_outline<2>),
-      .outline_3d = core::outline_in_dimension<3>(make_sweep_and_prune_outline<3>),
+      .in_2d = core::in_dimension(sweep_and_prune_strategies<2>),
+      .in_3d = core::in_dimension(sweep_and_prune_strategies<3>),
       .tests_doubles = true,
       .gives_candidates = true,
   };

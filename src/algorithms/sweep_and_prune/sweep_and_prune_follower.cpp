@@ -25,7 +25,7 @@ constexpr std::uint64_t tests_of_a_box_between_looks = 64;
 template <int D>
 class SweepAndPruneFollower final : public Follower<D> {
  public:
-  explicit SweepAndPruneFollower(int axis) : axis_(axis) {}
+  explicit SweepAndPruneFollower(const Settings& settings) : axis_(axis_of(settings)) {}
 
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || has_better_axis_) start(change);
@@ -116,10 +116,10 @@ class SweepAndPruneFollower final : public Follower<D> {
 
   /// Of those of a few boxes that are present.
   void sample(const Change<D>& change) {
-    constexpr std::size_t most = 256;
-    const std::size_t tries = std::min(change.now.size(), 4 * most);
+    constexpr std::size_t max_sampled = 256;
+    const std::size_t tries = std::min(change.now.size(), 4 * max_sampled);
     sampled_.clear();
-    for (std::size_t i = 0; i < tries && sampled_.size() < most; ++i) {
+    for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled; ++i) {
       const std::size_t place = tries == change.now.size() ? i : core::sampled_place(i, change.now.size());
       if (is_present(change.now[place])) sampled_.push_back(change.now[place]);
     }
@@ -159,12 +159,16 @@ class SweepAndPruneFollower final : public Follower<D> {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(int axis) {
-  return std::make_unique<SweepAndPruneFollower<D>>(axis);
+int axis_of(const Settings& settings) {
+  return settings.is_auto("axis") ? -1 : settings.text("axis")[0] - 'x';
 }
 
-template std::unique_ptr<Follower<2>> make_sweep_and_prune_follower(int);
-template std::unique_ptr<Follower<3>> make_sweep_and_prune_follower(int);
+template <int D>
+std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(const Settings& settings) {
+  return std::make_unique<SweepAndPruneFollower<D>>(settings);
+}
+
+template std::unique_ptr<Follower<2>> make_sweep_and_prune_follower(const Settings&);
+template std::unique_ptr<Follower<3>> make_sweep_and_prune_follower(const Settings&);
 
 }  // namespace broadside::algorithm

@@ -3,12 +3,14 @@
 
 #include <memory>
 
-#include "broadside/follower.hpp"
+#include "broadside/algorithm.hpp"
 
 namespace broadside::algorithm {
 
-/// Along this axis, or -1: the best one for the boxes.
+/// The axis to sweep along; -1: the best one for the boxes.
+int axis_of(const Settings& settings);
+
 template <int D>
-std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(int axis);
+std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(const Settings& settings);
 
 }  // namespace broadside::algorithm

@@ -113,12 +113,12 @@ void list_algorithms() {
   std::vector<Tunable> tunables;
   tunables.push_back({.name = "stride",
                       .summary = "boxes",
-                      .standard = "1",
+                      .default_value = "1",
                       .type = Tunable::Type::choice,
                       .choices = {"1", "2"}});
   Algorithm algorithm{.name = "every_pair", .summary = "the caller's", .source = "here"};
   algorithm.tunables = tunables;
-  algorithm.searcher_2d = [](const Settings& settings) {
+  algorithm.in_2d.searcher = [](const Settings& settings) {
     return std::make_unique<EveryPair>(settings.text("stride") == "1" ? 1 : 2);
   };
   register_algorithm(algorithm);

@@ -99,8 +99,8 @@ void with_each_follower(const Body& body) {
   for (const Algorithm& algorithm : algorithms()) {
     if (algorithm.kind != AlgorithmKind::own) continue;
     EXPECT_TRUE(algorithm.gives_candidates) << algorithm.name;
-    EXPECT_THAT(algorithm.followers<D>(), testing::Not(IsEmpty())) << algorithm.name;
-    for (const FollowerChoice<D>& choice : algorithm.followers<D>()) {
+    EXPECT_THAT(algorithm.in<D>().followers, testing::Not(IsEmpty())) << algorithm.name;
+    for (const FollowerChoice<D>& choice : algorithm.in<D>().followers) {
       SCOPED_TRACE(algorithm.name + ", " + choice.name + ", " + std::to_string(D) + "D");
       const std::unique_ptr<Follower<D>> follower =
           choice.make(Settings({algorithm.name, {}}, algorithm.tunables));

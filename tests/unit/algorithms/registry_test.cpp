@@ -26,8 +26,8 @@ Algorithm planar() {
       .name = "planar",
       .summary = "does the plane only",
       .source = "this test",
-      .tunables = {{.name = "cell", .summary = "edge", .standard = "1"}},
-      .searcher_2d = [](const Settings&) { return searcher_of<2>("brute_force"); },
+      .tunables = {{.name = "cell", .summary = "edge", .default_value = "1"}},
+      .in_2d = {.searcher = [](const Settings&) { return searcher_of<2>("brute_force"); }},
   };
 }
 
@@ -51,16 +51,16 @@ TEST(Registry, NamesThePaperAlgorithmsAfterThePaper) {
     EXPECT_EQ(algorithm.kind == AlgorithmKind::paper, algorithm.name.starts_with("paper_")) << algorithm.name;
 }
 
-TEST(Registry, HasTunablesWhoseStandardValuesAreAllowed) {
+TEST(Registry, HasTunablesWithAllowedDefaultValues) {
   for (const Algorithm& algorithm : algorithms()) {
     std::set<std::string> names;
     for (const Tunable& tunable : algorithm.tunables) {
       EXPECT_TRUE(names.insert(tunable.name).second) << algorithm.name << " has " << tunable.name << " twice";
       EXPECT_FALSE(tunable.summary.empty()) << algorithm.name << ": " << tunable.name;
-      Tunable without_standard = tunable;
-      without_standard.standard = "auto";
-      const Spec spec{algorithm.name, {{tunable.name, tunable.standard}}};
-      EXPECT_NO_THROW(Settings(spec, std::span(&without_standard, 1))) << spec.text();
+      Tunable without_default = tunable;
+      without_default.default_value = "auto";
+      const Spec spec{algorithm.name, {{tunable.name, tunable.default_value}}};
+      EXPECT_NO_THROW(Settings(spec, std::span(&without_default, 1))) << spec.text();
     }
   }
 }
@@ -73,7 +73,7 @@ TEST(Registry, FindsAnAlgorithmByItsName) {
   EXPECT_EQ(find_algorithm(""), nullptr);
 }
 
-TEST(Registry, HasTheStandardAlgorithm) { EXPECT_NE(find_algorithm(default_algorithm), nullptr); }
+TEST(Registry, HasTheDefaultAlgorithm) { EXPECT_NE(find_algorithm(default_algorithm), nullptr); }
 
 TEST(Registry, MakesARegisteredAlgorithmByItsNameEverywhere) {
   const std::span<const Algorithm> before = algorithms();
@@ -134,6 +134,19 @@ TEST(Registry, TakesNamesOfEarlierVersions) {
   EXPECT_EQ(find_algorithm("hierarchical_grid")->name, "grid");
   EXPECT_NO_THROW(Tracker<2>("bvh:update=reinsert"));
   EXPECT_THROW(Tracker<2>("grid:update=reinsert"), InvalidSpec);
+}
+
+TEST(MakeStrategy, GivesTheSettingsToAConstructorThatTakesThem) {
+  struct OfSettings {
+    explicit OfSettings(const Settings& settings) : cell(settings.number("cell")) {}
+    double cell;
+  };
+  struct WithoutSettings {
+    int made = 7;
+  };
+  const Settings settings("planar:cell=3", planar().tunables);
+  EXPECT_EQ(make_strategy<OfSettings>(settings)->cell, 3);
+  EXPECT_EQ(make_strategy<WithoutSettings>(settings)->made, 7);
 }
 
 TEST(AlgorithmKind, HasANameForEachKind) {

@@ -18,18 +18,18 @@ namespace {
 using Values = decltype(Spec::values);
 
 const std::vector<Tunable> tunables = {
-    {.name = "cell", .summary = "edge of a cell", .standard = "auto", .least = 0.5, .most = 2147483648.0},
+    {.name = "cell", .summary = "edge of a cell", .default_value = "auto", .min = 0.5, .max = 2147483648.0},
     {.name = "capacity",
      .summary = "boxes a leaf",
-     .standard = "16",
+     .default_value = "16",
      .type = Tunable::Type::integer,
-     .least = 1},
+     .min = 1},
     {.name = "axis",
      .summary = "swept axis",
-     .standard = "auto",
+     .default_value = "auto",
      .type = Tunable::Type::choice,
      .choices = {"x", "y"}},
-    {.name = "margin", .summary = "slack", .standard = "0"},
+    {.name = "margin", .summary = "slack", .default_value = "0"},
 };
 
 std::string refusal_of(std::string_view text) {
@@ -83,12 +83,14 @@ TEST(Spec, HasOneCanonicalText) {
   EXPECT_EQ(canonical_spec("bvh:update=reinsert"), canonical_spec("bvh:update=follow"));
 }
 
-TEST(Settings, HaveStandardValuesWhereNoneIsGiven) {
+TEST(Settings, HaveDefaultValuesWhereNoneIsGiven) {
   const Settings settings(Spec("grid"), tunables);
   EXPECT_TRUE(settings.is_auto("cell"));
   EXPECT_TRUE(settings.is_auto("axis"));
   EXPECT_EQ(settings.integer("capacity"), 16);
   EXPECT_EQ(settings.number("margin"), 0);
+  EXPECT_EQ(settings.optional_number("cell"), std::nullopt);
+  EXPECT_EQ(settings.optional_number("margin"), 0);
 }
 
 TEST(Settings, TakeTheValuesGiven) {
@@ -106,7 +108,7 @@ TEST(Settings, TakeBothEndsOfARange) {
   EXPECT_EQ(Settings(Spec("grid:capacity=9007199254740992"), tunables).integer("capacity"), 9007199254740992);
 }
 
-TEST(Settings, TakeAutoOnlyWhereItIsTheStandard) {
+TEST(Settings, TakeAutoOnlyWhereItIsTheDefault) {
   EXPECT_TRUE(Settings(Spec("grid:cell=auto"), tunables).is_auto("cell"));
   EXPECT_EQ(refusal_of("grid:capacity=auto"),
             "grid: capacity is 'auto'; expected a whole number from 1 to 9007199254740992");
@@ -132,9 +134,9 @@ TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
 TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
   const Tunable above_0{.name = "cell",
                         .summary = "edge of a cell",
-                        .standard = "auto",
-                        .least = std::numeric_limits<float>::min(),
-                        .most = std::numeric_limits<float>::max()};
+                        .default_value = "auto",
+                        .min = std::numeric_limits<float>::min(),
+                        .max = std::numeric_limits<float>::max()};
   const auto refusal = [&](const std::string& value) {
     return message_of<InvalidSpec>([&] { Settings(Spec("grid:cell=" + value), std::span(&above_0, 1)); });
   };

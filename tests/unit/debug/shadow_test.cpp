@@ -80,7 +80,7 @@ TEST(ShadowTracker, GivesTheEventsOfTheTrackerThatItRuns) {
 
 TEST(ShadowTracker, FindsNoFaultInTheLibrarysTrackers) {
   for (const Algorithm& algorithm : algorithms()) {
-    const lab::Churn churn{.boxes = 60, .frames = 30, .infinite_boxes = algorithm.infinite_boxes};
+    const lab::Churn churn{.boxes = 60, .frames = 30, .infinite_boxes = algorithm.limits.infinite_boxes};
     ShadowTracker<2> shadow(algorithm.name);
     EXPECT_NO_THROW(play(shadow, lab::random_history<2>(churn))) << algorithm.name;
   }

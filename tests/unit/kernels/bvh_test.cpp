@@ -85,7 +85,7 @@ TEST(BvhNode, TakesABoxIntoTheChildThatGrowsLeastAndOfThoseTheSmallest) {
 TEST(BvhNode, TellsHowFarItsChildrenAre) {
   on_nodes([]<int D>(Rng& rng, const std::vector<Box<D>>& children) {
     const Box<D> point = random_box<D>(rng, {.places = 20, .most_extent = 0, .infinite_one_in = 0});
-    DistanceQuery<D> query{.point = point, .weight = {}, .most = infinity};
+    DistanceQuery<D> query{.point = point, .weight = {}, .max = infinity};
     query.weight.fill(1);
     std::array<float, fan_out> found;
     distances(node_of(children), query, found);

@@ -121,7 +121,7 @@ TEST(Advise, MeasuresFramesInWhichAsMuchMovesAsInAll) {
 TEST(Advise, OffersNothingWhereNothingIsVerified) {
   Catalogue catalogue;
   Algorithm blind{.name = "blind", .summary = {}, .source = {}};
-  blind.searcher_2d = [](const Settings&) { return std::make_unique<Blind>(); };
+  blind.in_2d.searcher = make_strategy<Blind>;
   catalogue.add(blind);
   const History<2> two = {{{{0, 0}, {1, 1}}, {{1, 1}, {2, 2}}}, {}};
   const Advice advice = advise(catalogue, "two", two, quickly("blind"));

@@ -227,7 +227,7 @@ TEST(Compare, SkipsAnAlgorithmThatRunsOutOfMemory) {
 TEST(Compare, LeavesOutBoxesThatAreBeyondDeclaredLimits) {
   Algorithm limited = *find_algorithm("grid");
   limited.name = "limited";
-  limited.largest_coordinate = 1;
+  limited.limits.max_coordinate = 1;
   for (const CaseRequest& request : {small_still, small_moving}) {
     Catalogue catalogue;
     catalogue.add(limited);
@@ -270,7 +270,7 @@ TEST(Compare, SkipsWhatIsTooSlowForTheBudgetAndEstimatesIt) {
 
 TEST(Compare, SaysWhichDimensionAndWhichBoxesAnAlgorithmDoesNotDo) {
   Algorithm flat = spoilt("flat", [](std::vector<Pair>&, std::size_t) {});
-  flat.searcher_3d = nullptr;
+  flat.in_3d.searcher = nullptr;
   Catalogue catalogue;
   catalogue.add(flat);
   const Comparison comparison = compare(catalogue, options_for("flat", {small_still, small_moving}));
@@ -282,7 +282,7 @@ TEST(Compare, SaysWhichDimensionAndWhichBoxesAnAlgorithmDoesNotDo) {
 TEST(Compare, SkipsWhatIsGivenMoreBoxesThanItTakes) {
   Algorithm small = spoilt("small", [](std::vector<Pair>&, std::size_t) {});
   for (const std::size_t most : {299, 300}) {
-    small.most_boxes = most;
+    small.limits.max_boxes = most;
     Catalogue catalogue;
     catalogue.add(small);
     for (const CaseRequest& request : {small_still, small_moving}) {
@@ -305,7 +305,7 @@ TEST(Compare, CountsTheMemoryThatAnAlgorithmKeeps) {
   };
   Algorithm algorithm;
   algorithm.name = "keeper";
-  algorithm.searcher_2d = [](const Settings&) { return std::make_unique<Keeper>(); };
+  algorithm.in_2d.searcher = make_strategy<Keeper>;
   Catalogue catalogue;
   catalogue.add(algorithm);
   // Boxes so small that none touch: a keeper that finds nothing is right.
@@ -328,8 +328,7 @@ TEST(Compare, CountsTheMemoryThatATrackerComesToKeep) {
     std::vector<std::vector<char>> kept;
   };
   Algorithm algorithm = spoilt("keeper", [](std::vector<Pair>&, std::size_t) {});
-  algorithm.followers_2d.push_back(
-      {.name = "keeper", .make = [](const Settings&) { return std::make_unique<Keeper>(); }});
+  algorithm.in_2d.followers = {{.name = "keeper", .make = make_strategy<Keeper>}};
   Catalogue catalogue;
   catalogue.add(algorithm);
   const Measurement measurement =

@@ -37,7 +37,7 @@ std::optional<Divergence> divergence_of(const Pairs& found) {
       .summary = "",
       .source = "",
       .kind = AlgorithmKind::peer,
-      .searcher_2d = [found](const Settings&) { return std::make_unique<FixedSearcher>(found); }};
+      .in_2d = {.searcher = [found](const Settings&) { return std::make_unique<FixedSearcher>(found); }}};
   Finder<2> finder(fixed, Spec("fixed"));
   return check_finder<2>(finder, chain, "fixed");
 }

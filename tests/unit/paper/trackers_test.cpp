@@ -60,7 +60,8 @@ TEST(PaperTrackers, GiveTheEventsOfEveryHistory) {
 
 std::unique_ptr<CoherentFollower<2>> coherent_follower(const Spec& spec) {
   const Algorithm& algorithm = *find_algorithm(spec.name);
-  std::unique_ptr<Follower<2>> follower = algorithm.followers_2d[0].make(Settings(spec, algorithm.tunables));
+  std::unique_ptr<Follower<2>> follower =
+      algorithm.in_2d.followers[0].make(Settings(spec, algorithm.tunables));
   return std::unique_ptr<CoherentFollower<2>>(&dynamic_cast<CoherentFollower<2>&>(*follower.release()));
 }
 

@@ -190,7 +190,7 @@ std::vector<std::string> odd_specs() {
     Spec spec{algorithm.name, {}};
     specs.push_back(spec.text());
     for (const Tunable& tunable : algorithm.tunables) {
-      const double number = std::clamp(2.0, tunable.least, tunable.most);
+      const double number = std::clamp(2.0, tunable.min, tunable.max);
       const bool is_choice = tunable.type == Tunable::Type::choice;
       spec.values.emplace(spec.values.begin(), tunable.name,
                           is_choice ? tunable.choices.front() : fmt::format("{:.3f}", number));
@@ -198,7 +198,7 @@ std::vector<std::string> odd_specs() {
     specs.push_back(spec.text());
     for (auto& given : spec.values) {
       const auto is_it = [&given](const Tunable& one) { return one.name == given.first; };
-      given.second = std::ranges::find_if(algorithm.tunables, is_it)->standard;
+      given.second = std::ranges::find_if(algorithm.tunables, is_it)->default_value;
     }
     specs.push_back(spec.text());
   }

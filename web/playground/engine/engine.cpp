@@ -109,10 +109,10 @@ std::string to_json(const Tunable& tunable) {
   constexpr std::array<const char*, 3> types = {"number", "integer", "choice"};
   return object({{"name", quoted(tunable.name)},
                  {"summary", quoted(tunable.summary)},
-                 {"standard", quoted(tunable.standard)},
+                 {"default", quoted(tunable.default_value)},
                  {"type", quoted(types[static_cast<std::size_t>(tunable.type)])},
-                 {"least", is_choice ? "" : core::text_of(tunable.least)},
-                 {"most", is_choice ? "" : core::text_of(tunable.most)},
+                 {"min", is_choice ? "" : core::text_of(tunable.min)},
+                 {"max", is_choice ? "" : core::text_of(tunable.max)},
                  {"choices", is_choice ? array_of(tunable.choices, quoted) : ""}});
 }
 
@@ -132,7 +132,7 @@ std::string to_json(const Algorithm& algorithm) {
        {"source", quoted(algorithm.source)},
        {"kind", quoted(name(algorithm.kind))},
        {"dimensions", dimensions_of(algorithm)},
-       {"tracks", algorithm.followers_2d.empty() && algorithm.followers_3d.empty() ? "false" : "true"},
+       {"tracks", algorithm.in_2d.followers.empty() && algorithm.in_3d.followers.empty() ? "false" : "true"},
        {"tunables", array_of(algorithm.tunables, [](const Tunable& each) { return to_json(each); })}});
 }
 

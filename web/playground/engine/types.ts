@@ -22,10 +22,10 @@ export interface Outline {
 export interface Tunable {
   name: string;
   summary: string;
-  standard: string;  // "auto" where the algorithm chooses by itself
+  default: string;  // "auto" where the algorithm chooses by itself
   type: "number" | "integer" | "choice";
-  least?: number;  // of a number or an integer
-  most?: number;
+  min?: number;  // of a number or an integer
+  max?: number;
   choices?: string[];
 }
 

@@ -29,7 +29,7 @@ function naive(boxes: Float32Array, dimension: number): Observation {
 
 const algorithms = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"].map((name): Algorithm => ({
   name, summary: `A stand-in for ${name}`, source: "", kind: "own", dimensions: [2, 3], tracks: true,
-  tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", standard: "auto", type: "number", least: 0 }] : [],
+  tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", default: "auto", type: "number", min: 0 }] : [],
 }));
 
 export async function loadEngine(): Promise<Engine> {

@@ -7,9 +7,9 @@ import { Card, Choice, Slider, Switch } from "./field.tsx";
 
 /** How far a slider goes where the tunable has no end of its own. */
 function rangeOf(tunable: Tunable, worldWidth: number): [least: number, most: number] {
-  if (tunable.name === "capacity") return [Math.max(1, tunable.least ?? 1), 256];
+  if (tunable.name === "capacity") return [Math.max(1, tunable.min ?? 1), 256];
   if (tunable.name === "cell") return [worldWidth / 400, worldWidth];
-  return [Math.max(tunable.least ?? 0, -1e6), Math.min(tunable.most ?? 100, 1e6)];
+  return [Math.max(tunable.min ?? 0, -1e6), Math.min(tunable.max ?? 100, 1e6)];
 }
 
 function short(value: number): string {
@@ -21,9 +21,9 @@ function TunableField({ tunable, spec, worldWidth, onChange }:
   const value = settingsOf(spec).get(tunable.name);
   const set = (text: string | undefined): void => onChange(withSetting(spec, tunable.name, text));
   if (tunable.type === "choice") {
-    return <Choice label={tunable.name} value={value ?? tunable.standard}
-      options={[...new Set([tunable.standard, ...(tunable.choices ?? [])])].map((one) => ({ value: one, label: one }))}
-      onChange={(one) => set(one === tunable.standard ? undefined : one)} />;
+    return <Choice label={tunable.name} value={value ?? tunable.default}
+      options={[...new Set([tunable.default, ...(tunable.choices ?? [])])].map((one) => ({ value: one, label: one }))}
+      onChange={(one) => set(one === tunable.default ? undefined : one)} />;
   }
   const [least, most] = rangeOf(tunable, worldWidth);
   const logarithmic = least > 0;
@@ -36,7 +36,7 @@ function TunableField({ tunable, spec, worldWidth, onChange }:
       <Switch label={`set ${tunable.name}`} value={on} onChange={(yes) => set(yes ? written(middle) : undefined)} />
       {on ? <Slider label={tunable.name} value={number} least={least} most={most} logarithmic={logarithmic}
         text={written} onChange={(one) => set(written(one))} hint={tunable.summary} />
-        : <span class="note">{tunable.standard}</span>}
+        : <span class="note">{tunable.default}</span>}
     </div>
   );
 }
