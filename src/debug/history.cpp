@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "interface/box_text.hpp"
+#include "core/input_check.hpp"
 
 namespace broadside {
 namespace {

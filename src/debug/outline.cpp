@@ -9,8 +9,8 @@
 
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/rounding.hpp"
-#include "interface/input_check.hpp"
 
 namespace broadside {
 namespace {

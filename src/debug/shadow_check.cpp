@@ -10,9 +10,8 @@
 #include "broadside/debug/minimise.hpp"
 #include "broadside/error.hpp"
 
+#include "core/input_check.hpp"
 #include "debug/definition.hpp"
-#include "interface/box_text.hpp"
-#include "interface/input_check.hpp"
 
 namespace broadside::core {
 namespace {

@@ -13,13 +13,13 @@
 
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "find/callers_sink.hpp"
 #include "find/checked_searcher.hpp"
 #include "find/search.hpp"
-#include "interface/input_check.hpp"
 
 namespace broadside {
 namespace {

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "broadside/follower.hpp"
 
+#include "core/margins.hpp"
 #include "core/parallel.hpp"
-#include "interface/margins.hpp"
 #include "track/follow_or_find.hpp"
 #include "track/update_policy.hpp"
 
@@ -25,6 +26,10 @@ namespace broadside::track {
 template <int D, typename Real>
 class CandidateList {
  public:
+  /// The margins for boxes, from a sample of the changed ones, if many boxes moved and hardly any moved far.
+  /// Otherwise nothing.
+  static std::optional<core::Margins<D, Real>> margins_for(const Change<D, Real>& change);
+
   /// Enlarges all boxes of a frame, whose events are already reported, and finds the candidates. Returns the
   /// number of tests. Throws LimitPassed, and whatever else ends a search. `changes_pairs` is set as soon as
   /// `pairs` no longer knows the boxes themselves.

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/grow.hpp"
-#include "interface/input_check.hpp"
+#include "core/input_check.hpp"
 
 namespace broadside::track {
 

@@ -12,11 +12,11 @@
 
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/lean.hpp"
 #include "core/sort_pairs.hpp"
 #include "core/tunables.hpp"
 #include "find/checked_searcher.hpp"
-#include "interface/input_check.hpp"
 #include "track/tracker_state.hpp"
 
 namespace broadside {

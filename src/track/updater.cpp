@@ -56,7 +56,7 @@ void Updater<D, Real>::update_exactly(const Change<D, Real>& change, PairSink& b
 /// Enlarges the boxes after a frame that was handled otherwise, if they moved little enough.
 template <int D, typename Real>
 void Updater<D, Real>::enlarge(const Change<D, Real>& change) {
-  const std::optional<core::Margins<D, Real>> margins = core::margins_for(change);
+  const auto margins = CandidateList<D, Real>::margins_for(change);
   if (!margins) return;
   Statistics statistics = statistics_.value_or(Statistics{});
   bool changes_pairs = false;

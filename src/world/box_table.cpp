@@ -10,10 +10,10 @@
 #include "broadside/error.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
-#include "interface/input_check.hpp"
 
 namespace broadside::world {
 namespace {

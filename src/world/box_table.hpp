@@ -13,7 +13,7 @@
 #include "broadside/world.hpp"
 
 #include "core/grow.hpp"
-#include "interface/margins.hpp"
+#include "core/margins.hpp"
 #include "world/slot_column.hpp"
 
 namespace broadside::world {

@@ -8,8 +8,8 @@
 #include "broadside/error.hpp"
 
 #include "core/grow.hpp"
+#include "core/input_check.hpp"
 #include "core/message.hpp"
-#include "interface/input_check.hpp"
 
 namespace broadside::world {
 namespace {

@@ -78,7 +78,7 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
               IsEmpty());
   EXPECT_THAT(breaches("src/find/finder.cpp",
                        "#include \"find/search.hpp\"\n#include \"algorithms/registry.hpp\"\n"
-                       "#include \"kernels/last_test.hpp\"\n#include \"interface/input_check.hpp\"\n"),
+                       "#include \"kernels/last_test.hpp\"\n#include \"core/input_check.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(
       breaches("src/track/tracker.cpp", "#include \"find/search.hpp\"\n#include \"track/updater.hpp\"\n"),
@@ -115,7 +115,7 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/algorithms/grid/grid.cpp", "\"layout.hpp\""},
       {"src/algorithms/registry.cpp", "\"paper/listings/descriptions.hpp\""},
       {"paper/listings/grid.cpp", "\"algorithms/grid/layout.hpp\""},
-      {"paper/listings/grid.cpp", "\"interface/outline_text.hpp\""},
+      {"paper/listings/grid.cpp", "\"algorithms/outline_text.hpp\""},
       {"paper/listings/grid.cpp", "\"lab/verify/verify.hpp\""},
       {"src/algorithms/registry.cpp", "\"algorithms/quadtree/nodes.hpp\""},
       {"distributed/plan/partition.cpp", "\"core/sort_pairs.hpp\""},
@@ -132,9 +132,9 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/algorithms/grid/grid.cpp", "\"find/search.hpp\""},
       {"src/algorithms/auto/auto.cpp", "\"track/update_policy.hpp\""},
       {"src/algorithms/registry.cpp", "\"find/search.hpp\""},
-      {"src/interface/input_check.cpp", "\"find/search.hpp\""},
-      {"lab/verify/verify.cpp", "\"interface/input_check.hpp\""},
-      {"lab/verify/verify.cpp", "\"../src/interface/input_check.hpp\""},
+      {"src/core/input_check.cpp", "\"find/search.hpp\""},
+      {"lab/verify/verify.cpp", "\"core/input_check.hpp\""},
+      {"lab/verify/verify.cpp", "\"../src/core/input_check.hpp\""},
       {"lab/verify/verify.cpp", "\"cli/compare.hpp\""},
       {"lab/verify/verify.cpp", "<box2d/box2d.h>"},
       {"lab/scenes/scene.cpp", "<bullet/btBulletDynamicsCommon.h>"},
@@ -143,7 +143,7 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"lab/peers/geos_strtree.cpp", "<assimp/scene.h>"},
       {"lab/recordings/box2d.cpp", "<assimp/scene.h>"},
       {"lab/formats/mesh/mesh.cpp", "<box2d/box2d.h>"},
-      {"cli/main.cpp", "\"interface/input_check.hpp\""},
+      {"cli/main.cpp", "\"core/input_check.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"lab/catalogue.hpp\""},
       {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},

@@ -20,11 +20,9 @@ const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
-  const std::string interface =
-      core + R"(|"interface/[a-z_]+\.hpp"|"kernels/(overlap_flags|observed_tests)\.hpp")";
-  const std::string algorithm = interface + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/registry\.hpp")";
-  const std::string find =
-      interface + R"(|"find/[a-z_]+\.hpp"|"kernels/last_test\.hpp"|"algorithms/registry\.hpp")";
+  const std::string algorithm = core + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/[a-z_]+\.hpp")";
+  const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
+                           R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
   // A name that a user may have meant is an inline function of the library's.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/descriptions\.hpp")" +
@@ -43,17 +41,16 @@ const std::vector<Rule>& rules() {
       {"src/core/large_array", core + R"(|<sys/mman\.h>|<unistd\.h>)"},
       {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
       {"src/core/", core},
-      {"src/interface/", interface},
       {"src/kernels/",
        standard +
            R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/((moved|nan)_box|cell_axis|large_array|lean)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"src/algorithms/registry", interface + R"(|"algorithms/registry\.hpp")"},
+      {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
       {"src/find/", find},
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
-      {"src/debug/", interface + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
+      {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},

@@ -18,12 +18,12 @@
 #include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_successor.hpp"
 #include "algorithms/auto/thresholds.hpp"
+#include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/number_text.hpp"
 #include "core/sample.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -178,14 +178,14 @@ class AutoSearcher final : public Searcher<D> {
     if (overlaps_ >= Limits::max_overlaps_for_shapes) return false;
     if (D == 3 && size >= Limits::flat_boxes_for_cells && max_overlap_on_axis >= Limits::flat) return true;
     if (size < Limits::very_uneven_boxes_for_cells) return false;
-    const core::ExtentStats sides = core::extent_stats<D>(boxes);
+    const ExtentStats sides = extent_stats<D>(boxes);
     if (sides.unevenness >= Limits::very_uneven_boxes || (D == 3 && sides.unevenness <= Limits::of_one_size))
       return true;
     return (size >= Limits::long_boxes_for_cells && sides.longest_over_shortest >= Limits::long_boxes) ||
            (size >= Limits::uneven_boxes_for_cells && sides.unevenness >= Limits::uneven_boxes);
   }
 
-  core::OverlapEstimate<D> estimate_;
+  OverlapEstimate<D> estimate_;
   core::Sample<D> sample_;
   std::array<std::unique_ptr<Searcher<D>>, chosen_algorithm.size()> searchers_;  // null until chosen
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
@@ -211,10 +211,9 @@ FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, s
 template <int D>
 detail::Vector<FollowerChoice<D>> automatic_followers() {
   detail::Vector<FollowerChoice<D>> followers = {
-      follower_of<D>("brute_force", core::brute_force_following, core::boxes_for_brute_force),
-      follower_of<D>("grid", core::grid_following<D>),
-      follower_of<D>("quadtree", core::quadtree_following_for_auto),
-      follower_of<D>("bvh", core::bvh_following_for_auto)};
+      follower_of<D>("brute_force", brute_force_following, boxes_for_brute_force),
+      follower_of<D>("grid", grid_following<D>), follower_of<D>("quadtree", quadtree_following_for_auto),
+      follower_of<D>("bvh", bvh_following_for_auto)};
   std::erase_if(followers, [](const auto& follower) { return !is_linked(follower.name); });
   return followers;
 }
@@ -223,7 +222,7 @@ template <int D>
 Strategies<D> automatic_strategies() {
   return {.searcher = make_strategy<AutoSearcher<D>>,
           .followers = automatic_followers<D>(),
-          .find_costs = core::grid_finding<D>,
+          .find_costs = grid_finding<D>,
           .outline = core::outline_by(&AutoSearcher<D>::lay_out)};
 }
 

@@ -7,11 +7,11 @@
 
 #include "core/sample.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
 namespace {
 
 std::size_t place(std::size_t i, std::size_t count, std::size_t boxes) {
-  return count == boxes ? i : sampled_place(i, boxes);
+  return count == boxes ? i : core::sampled_place(i, boxes);
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ template <int D>
 void OverlapEstimate<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
   count_ = std::min({boxes.size(), max_count, max_boxes});
   for (std::size_t i = 0; i < count_; ++i) {
-    const Box<D>& box = boxes[sampled_place(i, boxes.size())];
+    const Box<D>& box = boxes[core::sampled_place(i, boxes.size())];
     for (int axis = 0; axis < D; ++axis) {
       min_[axis][i] = box.min[axis];
       max_[axis][i] = box.max[axis];
@@ -119,4 +119,4 @@ template class OverlapEstimate<3>;
 template ExtentStats extent_stats(std::span<const Box2>);
 template ExtentStats extent_stats(std::span<const Box3>);
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

@@ -9,7 +9,7 @@
 
 #include "broadside/box.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
 
 /// The same boxes always give the same sample. Cost O(most^2), without branches: about a microsecond for 64
 /// boxes. Parts are of the pairs in the sample; absent boxes overlap none.
@@ -52,4 +52,4 @@ struct ExtentStats {
 template <int D>
 ExtentStats extent_stats(std::span<const Box<D>> boxes);
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

@@ -5,11 +5,11 @@
 #include "broadside/algorithm.hpp"
 
 #include "algorithms/brute_force/brute_force_follower.hpp"
+#include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::algorithm {
@@ -63,8 +63,8 @@ class BruteForceSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> brute_force_strategies() {
   return {.searcher = make_strategy<BruteForceSearcher<D>>,
-          .followers = {{"brute_force", make_brute_force_follower<D>, core::brute_force_following, 1}},
-          .find_costs = core::brute_force_finding};
+          .followers = {{"brute_force", make_brute_force_follower<D>, brute_force_following, 1}},
+          .find_costs = brute_force_finding};
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "interface/event_sinks.hpp"
-#include "interface/moved_boxes.hpp"
+#include "algorithms/event_sinks.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -29,8 +28,8 @@ class BruteForceFollower final : public Follower<D> {
       for (std::size_t i = 0; i < size; ++i) set(i, change.before[i]);
     }
     moved_.clear();
-    core::append_moved(change, change.changed, moved_);
-    core::EventSinks<D> events(change, begun, ended);
+    append_moved(change, change.changed, moved_);
+    EventSinks<D> events(change, begun, ended);
     Checkpoint checkpoint(change.workers.checkpoint);
     for (std::size_t begin = 0; begin < size; begin += boxes_at_once) {
       const std::size_t end = std::min(begin + boxes_at_once, size);

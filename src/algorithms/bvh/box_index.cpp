@@ -11,10 +11,9 @@
 
 #include "algorithms/bvh/index.hpp"
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
-#include "interface/input_check.hpp"
-#include "interface/squared_distance.hpp"
 
 namespace broadside {
 namespace {
@@ -63,7 +62,7 @@ class CallersVisitor final : public Visitor<Found> {
 template <int D, typename Real>
 Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const Box<D, Real>& box) noexcept {
   const core::DefaultEnvironment environment;
-  const volatile Real result = core::squared_distance<D, Real>(point, box);
+  const volatile Real result = algorithm::squared_distance<D, Real>(point, box);
   return result;
 }
 

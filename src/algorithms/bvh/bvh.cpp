@@ -14,12 +14,12 @@
 
 #include "algorithms/bvh/bvh_follower.hpp"
 #include "algorithms/bvh/packer.hpp"
+#include "algorithms/follow_costs.hpp"
+#include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
-#include "interface/outline_text.hpp"
 #include "kernels/bvh_join.hpp"
 #include "kernels/waste.hpp"
 
@@ -80,7 +80,7 @@ class BvhSearcher final : public Searcher<D> {
     const std::size_t leaves = outline.levels.back().size();
     outline.caption = (leaves == 1 ? "1 leaf" : std::to_string(leaves) + " leaves") + " of up to " +
                       std::to_string(kernels::fan_out) + " boxes, " +
-                      core::counted(outline.levels.size(), "level") + " of bounds";
+                      counted(outline.levels.size(), "level") + " of bounds";
     return outline;
   }
 
@@ -160,8 +160,8 @@ class BvhSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> bvh_strategies() {
   return {.searcher = make_strategy<BvhSearcher<D>>,
-          .followers = {{"bvh", make_bvh_follower<D>, core::bvh_following<D>}},
-          .find_costs = core::tree_finding<D>,
+          .followers = {{"bvh", make_bvh_follower<D>, bvh_following<D>}},
+          .find_costs = tree_finding<D>,
           .outline = core::outline_by(&BvhSearcher<D>::lay_out)};
 }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "algorithms/bvh/index.hpp"
-#include "interface/moved_boxes.hpp"
+#include "algorithms/event_sinks.hpp"
 #include "kernels/bvh_follow.hpp"
 
 namespace broadside::algorithm {
@@ -71,8 +71,8 @@ class BvhFollower final : public Follower<D> {
     std::size_t movers = 0;
     for (std::size_t at = 0; at < change.changed.size(); at += moves_at_once) {
       moved_.clear();
-      core::append_moved(
-          change, change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)), moved_);
+      append_moved(change, change.changed.subspan(at, std::min(moves_at_once, change.changed.size() - at)),
+                   moved_);
       if (moved_.empty()) continue;
       insert_arrivals();
       calls_for_.resize(std::max(calls_for_.size(), moved_.size()));

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "algorithms/bvh/found.hpp"
-#include "interface/input_check.hpp"
-#include "interface/squared_distance.hpp"
+#include "core/input_check.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -231,7 +230,7 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
       if constexpr (is_float<Real>)
         found.offer({BoxId{child}, distances[i]});
       else
-        found.offer({BoxId{child}, core::squared_distance<D, Real>(point, exact_[child])});
+        found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
     }
     // The nearest one last, where it is taken from.
     std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),

@@ -17,6 +17,19 @@
 
 namespace broadside::algorithm {
 
+/// distance_squared() for code that is in a DefaultEnvironment already.
+template <int D, typename Real>
+Real squared_distance(const Point<D, Real>& point, const Box<D, Real>& box) noexcept {
+  Real sum = 0;
+  for (int axis = 0; axis < D; ++axis) {
+    Real outside = 0;
+    if (point[axis] < box.min[axis]) outside = box.min[axis] - point[axis];
+    if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
+    sum += outside * outside;
+  }
+  return sum;
+}
+
 /// Floats are searched exactly by the kernels. Boxes of doubles are in the tree as floats about an origin, by
 /// conservative rounding; what the kernels find there is tested again by the definitions, in double.
 template <int D, typename Real>

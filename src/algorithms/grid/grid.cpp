@@ -19,9 +19,11 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
+#include "algorithms/follow_costs.hpp"
 #include "algorithms/grid/grid_follower.hpp"
 #include "algorithms/grid/layout.hpp"
 #include "algorithms/grid/sweep.hpp"
+#include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "core/large_array.hpp"
 #include "core/lean.hpp"
@@ -29,8 +31,6 @@
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
-#include "interface/outline_text.hpp"
 #include "kernels/run.hpp"
 #include "kernels/waste.hpp"
 
@@ -133,14 +133,14 @@ class GridSearcher final : public Searcher<D> {
   /// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
   std::string caption() const {
     const std::array<int, D>& axes = layout_.axes();
-    const std::string swept = " swept along " + core::axis_name(axes[0]);
+    const std::string swept = " swept along " + axis_name(axes[0]);
     if (layout_.cells() == 1) return "1 cell," + swept;
     if constexpr (D == 2)
-      return core::counted(layout_.rows(), "cell") + " of " + core::three_digits(layout_.cell_size(0)) +
-             " over " + core::axis_name(axes[1]) + ", each" + swept;
-    return std::to_string(layout_.row_length()) + " x " + core::counted(layout_.rows(), "cell") + " of " +
-           core::three_digits(layout_.cell_size(0)) + " x " + core::three_digits(layout_.cell_size(1)) +
-           " over " + core::axis_name(axes[1]) + " and " + core::axis_name(axes[D - 1]) + ", each" + swept;
+      return counted(layout_.rows(), "cell") + " of " + three_digits(layout_.cell_size(0)) + " over " +
+             axis_name(axes[1]) + ", each" + swept;
+    return std::to_string(layout_.row_length()) + " x " + counted(layout_.rows(), "cell") + " of " +
+           three_digits(layout_.cell_size(0)) + " x " + three_digits(layout_.cell_size(1)) + " over " +
+           axis_name(axes[1]) + " and " + axis_name(axes[D - 1]) + ", each" + swept;
   }
 
   /// As far as the sample reaches on the swept axis, and a little more: a sample misses the ends.
@@ -235,8 +235,8 @@ class GridSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> grid_strategies() {
   return {.searcher = make_strategy<GridSearcher<D>>,
-          .followers = {{"grid", make_strategy<GridFollower<D>>, core::grid_following<D>}},
-          .find_costs = core::grid_finding<D>,
+          .followers = {{"grid", make_strategy<GridFollower<D>>, grid_following<D>}},
+          .find_costs = grid_finding<D>,
           .outline = core::outline_by(&GridSearcher<D>::lay_out)};
 }
 

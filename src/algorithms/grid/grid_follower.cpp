@@ -12,9 +12,8 @@
 
 #include "broadside/sinks.hpp"
 
+#include "algorithms/event_sinks.hpp"
 #include "core/filter_sink.hpp"
-#include "interface/event_sinks.hpp"
-#include "interface/moved_boxes.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -93,7 +92,7 @@ void GridFollower<D>::move(const Change<D>& change, std::span<const BoxId> ids) 
   parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
     std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
     boxes.clear();
-    core::append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes);
+    append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes);
     if (parallel_.workers() == 1) return;
     for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
   });
@@ -111,7 +110,7 @@ void GridFollower<D>::move(const Change<D>& change, std::span<const BoxId> ids) 
 template <int D>
 void GridFollower<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended) {
   const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
-    core::EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
+    EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
     part.work =
         kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
     events.flush();

@@ -22,6 +22,8 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
+#include "algorithms/follow_costs.hpp"
+#include "algorithms/outline_text.hpp"
 #include "algorithms/quadtree/quadtree_follower.hpp"
 #include "algorithms/quadtree/split.hpp"
 #include "algorithms/registry.hpp"
@@ -30,8 +32,6 @@
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
-#include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::algorithm {
@@ -104,8 +104,8 @@ class QuadtreeSearcher final : public Searcher<D> {
         lay_out(worker, 0, worker.stack.references.size(), {axes, region}, 0, outline.levels);
     std::size_t nodes = 0;
     for (const auto& level : outline.levels) nodes += level.size();
-    outline.caption = core::counted(nodes, "node") + " on " + core::counted(outline.levels.size(), "level") +
-                      ", " + (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
+    outline.caption = counted(nodes, "node") + " on " + counted(outline.levels.size(), "level") + ", " +
+                      (leaves == 1 ? "1 of them a leaf" : std::to_string(leaves) + " of them leaves");
     return outline;
   }
 
@@ -275,8 +275,8 @@ class QuadtreeSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> quadtree_strategies() {
   return {.searcher = make_strategy<QuadtreeSearcher<D>>,
-          .followers = {{"quadtree", make_quadtree_follower<D>, core::quadtree_following<D>}},
-          .find_costs = core::tree_finding<D>,
+          .followers = {{"quadtree", make_quadtree_follower<D>, quadtree_following<D>}},
+          .find_costs = tree_finding<D>,
           .outline = core::outline_by(&QuadtreeSearcher<D>::lay_out)};
 }
 

@@ -15,9 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/event_sinks.hpp"
 #include "algorithms/quadtree/nodes.hpp"
-#include "interface/event_sinks.hpp"
-#include "interface/moved_boxes.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -37,7 +36,7 @@ class QuadtreeFollower final : public Follower<D> {
 
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     movers_.clear();
-    core::append_moved(change, change.changed, movers_);
+    append_moved(change, change.changed, movers_);
     const std::size_t boxes = change.now.size();
     moved_since_build_ += movers_.size();
     if (change.rebuild || (tree_.needs_rebuild() && moved_since_build_ > boxes)) {
@@ -47,7 +46,7 @@ class QuadtreeFollower final : public Follower<D> {
     tree_.resize(boxes);
     Checkpoint checkpoint(change.workers.checkpoint);
     checkpoint_ = &checkpoint;
-    core::EventSinks<D> events(change, begun, ended, &checkpoint);
+    EventSinks<D> events(change, begun, ended, &checkpoint);
     std::uint64_t tests = 0;
     // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
     // once would be compared with each other.
@@ -92,8 +91,7 @@ class QuadtreeFollower final : public Follower<D> {
   };
 
   /// Takes some of the movers, by their numbers. Returns how many boxes they were compared with.
-  std::uint64_t take(std::uint32_t begin, std::uint32_t end, core::EventSinks<D>& events,
-                     const Change<D>& change) {
+  std::uint64_t take(std::uint32_t begin, std::uint32_t end, EventSinks<D>& events, const Change<D>& change) {
     entries_.clear();
     looks_.clear();
     above_.clear();

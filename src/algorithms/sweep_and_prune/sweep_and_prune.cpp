@@ -18,6 +18,8 @@
 #include "broadside/debug/outline.hpp"
 #include "broadside/error.hpp"
 
+#include "algorithms/follow_costs.hpp"
+#include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/sweep_and_prune/sweep_and_prune_follower.hpp"
 #include "core/cell_lists.hpp"
@@ -26,8 +28,6 @@
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 #include "core/tunables.hpp"
-#include "interface/follow_costs.hpp"
-#include "interface/outline_text.hpp"
 #include "kernels/sweep.hpp"
 #include "kernels/waste.hpp"
 
@@ -63,10 +63,10 @@ class SweepAndPruneSearcher final : public Searcher<D> {
     Outline<D> outline;
     outline.swept_axis = axes[0];
     outline.kind = borders_.empty() ? "sweep" : "stripes";
-    const std::string swept = "swept along " + core::axis_name(axes[0]);
-    outline.caption = borders_.empty() ? "one sweep along " + core::axis_name(axes[0])
-                                       : core::counted(borders_.size() + 1, "stripe") + " of " +
-                                             core::axis_name(axes[1]) + ", each " + swept;
+    const std::string swept = "swept along " + axis_name(axes[0]);
+    outline.caption = borders_.empty() ? "one sweep along " + axis_name(axes[0])
+                                       : counted(borders_.size() + 1, "stripe") + " of " +
+                                             axis_name(axes[1]) + ", each " + swept;
     Box<D> stripe;
     stripe.min.fill(-std::numeric_limits<float>::infinity());
     stripe.max.fill(std::numeric_limits<float>::infinity());
@@ -202,8 +202,8 @@ class SweepAndPruneSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> sweep_and_prune_strategies() {
   return {.searcher = make_strategy<SweepAndPruneSearcher<D>>,
-          .followers = {{"sweep_and_prune", make_sweep_and_prune_follower<D>, core::sweep_following<D>}},
-          .find_costs = core::sweep_finding<D>,
+          .followers = {{"sweep_and_prune", make_sweep_and_prune_follower<D>, sweep_following<D>}},
+          .find_costs = sweep_finding<D>,
           .outline = core::outline_by(&SweepAndPruneSearcher<D>::lay_out)};
 }
 

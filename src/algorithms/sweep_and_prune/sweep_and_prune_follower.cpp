@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/event_sinks.hpp"
 #include "algorithms/sweep_and_prune/order.hpp"
 #include "core/sample.hpp"
-#include "interface/event_sinks.hpp"
-#include "interface/moved_boxes.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -30,8 +29,8 @@ class SweepAndPruneFollower final : public Follower<D> {
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild || has_better_axis_) start(change);
     moved_.clear();
-    core::append_moved(change, change.changed, moved_);
-    core::EventSinks<D> events(change, begun, ended);
+    append_moved(change, change.changed, moved_);
+    EventSinks<D> events(change, begun, ended);
     Checkpoint checkpoint(change.workers.checkpoint);
     std::uint64_t tests = 0;
     bool comes_or_goes = false;

@@ -14,6 +14,9 @@
 namespace broadside::core {
 namespace {
 
+using algorithm::extent_stats;
+using algorithm::OverlapEstimate;
+
 /// The part of the pairs that overlap on `axis`, or on all axes if it is D.
 template <int D>
 double overlapping_part(const std::vector<Box<D>>& boxes, int axis) {

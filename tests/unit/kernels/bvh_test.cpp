@@ -14,8 +14,8 @@
 #include "broadside/queries.hpp"
 
 #include "algorithms/bvh/dynamic_bvh.hpp"
+#include "algorithms/bvh/index.hpp"
 #include "algorithms/bvh/packed_levels.hpp"
-#include "interface/squared_distance.hpp"
 #include "kernels/bvh_join.hpp"
 #include "kernels/bvh_query.hpp"
 #include "tests/support/model.hpp"
@@ -90,7 +90,7 @@ TEST(BvhNode, TellsHowFarItsChildrenAre) {
     std::array<float, fan_out> found;
     distances(node_of(children), query, found);
     for (std::size_t i = 0; i < children.size(); ++i)
-      EXPECT_EQ(found[i], core::squared_distance(point.min, children[i])) << i;
+      EXPECT_EQ(found[i], algorithm::squared_distance(point.min, children[i])) << i;
   });
 }
 

@@ -16,9 +16,9 @@
 #include "broadside/tracker.hpp"
 #include "broadside/world.hpp"
 
-#include "interface/margins.hpp"
 #include "lab/measure/memory.hpp"
 #include "tests/support/rng.hpp"
+#include "track/candidate_list.hpp"
 
 namespace broadside {
 namespace {
@@ -225,7 +225,7 @@ struct Moved {
   }
   std::optional<core::Margins<2, Real>> margins() const {
     const std::vector<std::uint8_t> flags(now.size(), 1);
-    return core::margins_for<2, Real>({before, now, changed, flags});
+    return track::CandidateList<2, Real>::margins_for({before, now, changed, flags});
   }
   Real margin_of(const core::Margins<2, Real>& margins, Real side) const {
     return -margins.enlarged({{0, 0}, {side, side}}, nullptr).min[0];

@@ -1,5 +1,5 @@
 // What a box must be, and the words with which others are refused.
-#include "interface/input_check.hpp"
+#include "core/input_check.hpp"
 
 #include <limits>
 #include <locale>

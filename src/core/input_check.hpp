@@ -17,6 +17,10 @@ constexpr bool is_invalid(const Box<D, Real>& box) noexcept {
   return !is_present(box) && !is_absent(box);
 }
 
+/// Such as "min (0, 0) and max (1, 2.5)", with as many digits as tell any two numbers apart.
+template <int D, typename Real>
+std::string text_of(const Box<D, Real>& box);
+
 /// The message of an exception for a box that is refused: `name`, its values, and what is expected, of which
 /// the absent box is one only if it `may_be_absent`.
 template <int D, typename Real>

@@ -1,12 +1,13 @@
-// The changed boxes of an update as a list of MovedBox.
-#include "interface/moved_boxes.hpp"
+// append_moved().
+#include "algorithms/event_sinks.hpp"
 
 #include "core/nan_box.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
 
 template <int D>
-void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<MovedBox<D>>& moved) {
+void append_moved(const Change<D>& change, std::span<const BoxId> ids,
+                  std::vector<core::MovedBox<D>>& moved) {
   for (const BoxId id : ids) {
     const Box<D>& before = change.before[index(id)];
     const Box<D>& now = change.now[index(id)];
@@ -17,8 +18,8 @@ void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vect
     const bool was = is_present(before);
     const bool is = is_present(now);
     if (!was && !is) continue;
-    moved.push_back({.before = was ? before : nan_box<D>(),
-                     .now = is ? now : nan_box<D>(),
+    moved.push_back({.before = was ? before : core::nan_box<D>(),
+                     .now = is ? now : core::nan_box<D>(),
                      .bounds = merged(before, now),
                      .id = id,
                      .was_present = was,
@@ -27,7 +28,7 @@ void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vect
   }
 }
 
-template void append_moved(const Change<2>&, std::span<const BoxId>, std::vector<MovedBox<2>>&);
-template void append_moved(const Change<3>&, std::span<const BoxId>, std::vector<MovedBox<3>>&);
+template void append_moved(const Change<2>&, std::span<const BoxId>, std::vector<core::MovedBox<2>>&);
+template void append_moved(const Change<3>&, std::span<const BoxId>, std::vector<core::MovedBox<3>>&);
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

@@ -7,10 +7,10 @@
 
 #include "core/number_text.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
 
 /// The number with three digits, such as "3.14" or "1e+06".
-inline std::string three_digits(double number) { return text_of(number, 3); }
+inline std::string three_digits(double number) { return core::text_of(number, 3); }
 
 /// "1 cell" or "3 cells".
 inline std::string counted(std::size_t count, std::string_view one) {
@@ -19,4 +19,4 @@ inline std::string counted(std::size_t count, std::string_view one) {
 
 inline std::string axis_name(int axis) { return {"xyz"[axis]}; }
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

@@ -1,11 +1,11 @@
 // append_moved(): which changed boxes a structure has to look at, and what it is told of them.
-#include "interface/moved_boxes.hpp"
-
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace broadside::core {
+#include "algorithms/event_sinks.hpp"
+
+namespace broadside::algorithm {
 namespace {
 
 constexpr Box2 here{{0, 0}, {1, 1}};
@@ -20,15 +20,15 @@ struct Moved {
   std::vector<Filter> filters = std::vector<Filter>(5);
   Change<2> change{.before = before, .now = now, .changed = ids, .flags = flags};
 
-  std::vector<MovedBox<2>> list() const {
-    std::vector<MovedBox<2>> moved;
+  std::vector<core::MovedBox<2>> list() const {
+    std::vector<core::MovedBox<2>> moved;
     append_moved(change, ids, moved);
     return moved;
   }
 };
 
 TEST(MovedBoxes, AreThoseWhoseBoxesDiffer) {
-  const std::vector<MovedBox<2>> moved = Moved().list();
+  const std::vector<core::MovedBox<2>> moved = Moved().list();
   ASSERT_EQ(moved.size(), 3U);
   EXPECT_EQ(moved[0].before, here);
   EXPECT_EQ(moved[0].now, there);
@@ -61,4 +61,4 @@ TEST(MovedBoxes, AreAllWhereCandidatesAreWanted) {
 }
 
 }  // namespace
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

@@ -1,5 +1,5 @@
 // Refuses boxes that no algorithm may see, before anything has changed.
-#include "interface/input_check.hpp"
+#include "core/input_check.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,9 +13,22 @@
 #include "core/float_environment.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
-#include "interface/box_text.hpp"
+#include "core/number_text.hpp"
 
 namespace broadside::core {
+
+template <int D, typename Real>
+std::string text_of(const Box<D, Real>& box) {
+  const auto point_text = [](const std::array<Real, D>& point) {
+    std::string text;
+    for (int axis = 0; axis < D; ++axis) {
+      text += axis == 0 ? "(" : ", ";
+      text += text_of(point[axis], std::numeric_limits<Real>::max_digits10);
+    }
+    return text += ")";
+  };
+  return message({"min ", point_text(box.min), " and max ", point_text(box.max)});
+}
 
 template <int D, typename Real>
 std::string fault_of(const Box<D, Real>& box, const std::string& name, bool may_be_absent) {
@@ -65,6 +78,10 @@ void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all
   if (is_lean || bad_input == BadInput::reject) check_boxes(boxes, first);
 }
 
+template std::string text_of(const Box2&);
+template std::string text_of(const Box3&);
+template std::string text_of(const DoubleBox2&);
+template std::string text_of(const DoubleBox3&);
 template std::string fault_of(const Box<2>&, const std::string&, bool);
 template std::string fault_of(const Box<3>&, const std::string&, bool);
 template std::string fault_of(const DoubleBox2&, const std::string&, bool);

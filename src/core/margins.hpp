@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "broadside/box.hpp"
-#include "broadside/follower.hpp"
 
 namespace broadside::core {
 
@@ -73,10 +71,5 @@ struct Margins {
     return has_margin ? std::min(margin, share) : share;
   }
 };
-
-/// The margins for boxes, from a sample of the changed ones, if many boxes moved and hardly any moved far.
-/// Otherwise nothing.
-template <int D, typename Real>
-std::optional<Margins<D, Real>> margins_for(const Change<D, Real>& change);
 
 }  // namespace broadside::core

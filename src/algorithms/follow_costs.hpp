@@ -9,7 +9,7 @@
 
 #include "broadside/algorithm.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
 
 inline constexpr FindCosts brute_force_finding = {.box = 40};
 inline constexpr FollowCosts brute_force_following = {
@@ -60,4 +60,4 @@ inline constexpr FollowCosts quadtree_following_for_auto = {
 inline constexpr FollowCosts bvh_following_for_auto = {
     .start = 100, .mover = 600, .mover_alone = 300, .test = 0.9, .further_test = 0.9};
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm

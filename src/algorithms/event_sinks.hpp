@@ -1,4 +1,5 @@
-// EventSinks: where a structure writes the events of an update, and the pairs that may be events.
+// What followers share: the changed boxes of an update as a list of MovedBox, and EventSinks, where a
+// structure writes the events of an update and the pairs that may be events.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "broadside/executor.hpp"
 #include "broadside/follower.hpp"
@@ -14,7 +16,13 @@
 #include "core/moved_box.hpp"
 #include "kernels/overlap_flags.hpp"
 
-namespace broadside::core {
+namespace broadside::algorithm {
+
+/// Appends the boxes of `ids`, some of `change.changed`, whose box or filter differs and that are present
+/// before or now. Where the change wants candidates, all that are present are appended, each as if its filter
+/// had changed.
+template <int D>
+void append_moved(const Change<D>& change, std::span<const BoxId> ids, std::vector<core::MovedBox<D>>& moved);
 
 /// Looks at each pair's boxes and filters in both frames, and writes it to the sink it belongs to, if any.
 /// To be flushed before the update ends.
@@ -71,7 +79,7 @@ class EventSinks {
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;
 
-  const ChangeSinks& sinks() const noexcept { return sinks_; }
+  const core::ChangeSinks& sinks() const noexcept { return sinks_; }
   void flush() { candidates_.flush(); }
 
   /// The pairs that had to be looked at again in both frames, up to the last flush().
@@ -79,7 +87,7 @@ class EventSinks {
 
  private:
   CandidateSink<D> candidates_;
-  ChangeSinks sinks_;
+  core::ChangeSinks sinks_;
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::algorithm
