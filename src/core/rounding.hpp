@@ -26,8 +26,8 @@ class LinearRounding {
 
   /// Finite, for an infinite value as well.
   float operator()(double value) const {
-    constexpr double largest = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp((value - origin_) * scale_, -largest, largest));
+    constexpr double largest_float = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp((value - origin_) * scale_, -largest_float, largest_float));
   }
 
   /// About the value that a float stands for, and the same for the same float.
