@@ -17,9 +17,6 @@ constexpr double max_cells = 1 << GridLayout<2>::cell_bits;
 /// Fewer boxes than this a cell, and looking at cells costs more than they save.
 constexpr double min_boxes_per_cell = 16;
 
-/// Where cells are asked for by their size, there may be this many for each box.
-constexpr double max_cells_per_box = 4;
-
 /// Likewise, the maximum number of cells that a box may be in on average.
 constexpr double max_references_per_box = 64;
 

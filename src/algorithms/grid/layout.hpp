@@ -14,6 +14,9 @@
 
 namespace broadside::algorithm {
 
+/// Where cells are asked for by their size, there may be this many for each box.
+inline constexpr double max_cells_per_box = 4;
+
 /// Cells over all axes but the one that is swept. On each of them they are equally wide, and those at the
 /// ends take in what lies beyond. The cells of the first of these axes make a row; in 3D there are rows one
 /// above the other, in 2D a cell is a row. Some rows together are a slab, which can be searched by itself.

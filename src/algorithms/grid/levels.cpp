@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "algorithms/grid/layout.hpp"
+
 namespace broadside::algorithm {
 namespace {
 
 /// Boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
 constexpr double boxes_per_cell = 10;
-
-/// Where cells are asked for by their size, there may be this many for each box.
-constexpr double max_cells_per_box = 4;
 
 /// With more others in a typical box's cell, smaller cells pay.
 constexpr double max_load_factor = 40;
@@ -127,10 +126,11 @@ void CellLevels<D>::lay_out_level(std::size_t index) {
     for (std::size_t i = 0; i < index; ++i) asked *= level_ratio;
     for (double& side : length) side = asked;
   }
-  const double max_cells = std::max(1.0, expected_[index] * (cell_ ? max_cells_per_box : 1 / boxes_per_cell));
+  const double max_level_cells =
+      std::max(1.0, expected_[index] * (cell_ ? max_cells_per_box : 1 / boxes_per_cell));
   if (factor_[index] == 0 || cell_) {
     double factor = 1;
-    while (product(cells(factor)) > max_cells) factor *= 1.125;
+    while (product(cells(factor)) > max_level_cells) factor *= 1.125;
     factor_[index] = factor;
   }
   const std::array<double, D> counts = cells(factor_[index]);
