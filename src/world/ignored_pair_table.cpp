@@ -25,12 +25,13 @@ bool IgnoredPairTable::erase(Pair pair) {
 }
 
 void IgnoredPairTable::forget(std::uint32_t slot) noexcept {
-  edges_.for_each_of(BoxId{slot}, [this](PairGraph::EdgeId edge) {
-    const Pair pair = edges_.pair(edge);
+  PairGraph::EdgeId edge;
+  while ((edge = edges_.first_of(BoxId{slot})) != PairGraph::none) {
+    const Pair pair = edges_.pairs()[edge];
     pairs_.erase(pair);
-    changed_.push_back(pair);
     edges_.erase(edge);
-  });
+    changed_.push_back(pair);
+  }
 }
 
 void IgnoredPairTable::shrink_to_fit() {

@@ -1,4 +1,4 @@
-// A set of pairs that finds a pair, and all pairs of a box, at once.
+// PairGraph: a set of pairs that finds a pair, and all pairs of a box, at once.
 #include "world/pair_graph.hpp"
 
 #include <algorithm>
@@ -8,101 +8,94 @@
 
 #include "broadside/sinks.hpp"
 
+#include "core/grow.hpp"
+
 namespace broadside::world {
 
 std::size_t PairGraph::home(Pair pair) const noexcept { return hash(pair) & (table_.size() - 1); }
 
+/// Where the pair is in a table that is not empty, or the free place where it would be.
+std::size_t PairGraph::place_of(Pair pair) const noexcept {
+  std::size_t place = home(pair);
+  while (table_[place] != none && pairs_[table_[place]] != pair) place = (place + 1) & (table_.size() - 1);
+  return place;
+}
+
 void PairGraph::reserve(std::size_t size, std::size_t boxes) {
+  if (size >= none / 2) throw std::bad_alloc();
   if (first_.size() < boxes) first_.resize(boxes, none);
-  if (edges_.capacity() < size) edges_.reserve(std::max(size, 2 * edges_.capacity()));
+  const std::size_t extra = size - std::min(size, pairs_.size());
+  core::make_room(pairs_, extra);
+  core::make_room(marks_, extra);
+  core::make_room(links_, extra);
   if (table_.size() < 2 * size) rehash(std::bit_ceil(std::max<std::size_t>(2 * size, 16)));
 }
 
-PairGraph::EdgeId PairGraph::insert(Pair pair) {
-  if (size_ + 1 >= none) throw std::bad_alloc();
-  reserve(size_ + 1, std::size_t{index(pair.second)} + 1);
-  EdgeId edge = free_;
-  if (edge == none) {
-    edge = static_cast<EdgeId>(edges_.size());
-    edges_.emplace_back();
-  } else {
-    free_ = edges_[edge].next[0];
+/// Makes two ends neighbours in the list of a box; either may be `none`.
+void PairGraph::join(End previous, End next, BoxId box) noexcept {
+  (previous == none ? first_[index(box)] : links_[previous / 2].next[previous % 2]) = next;
+  if (next != none) links_[next / 2].previous[next % 2] = previous;
+}
+
+PairGraph::EdgeId PairGraph::insert(Pair pair, std::uint8_t mark) {
+  reserve(size() + 1, std::size_t{index(pair.second)} + 1);
+  const auto edge = static_cast<EdgeId>(size());
+  table_[place_of(pair)] = edge;
+  pairs_.push_back(pair);
+  marks_.push_back(mark);
+  links_.emplace_back();
+  for (const End side : {0U, 1U}) {
+    const BoxId box = side == 0 ? pair.first : pair.second;
+    join(2 * edge + side, first_[index(box)], box);
+    join(none, 2 * edge + side, box);
   }
-  edges_[edge].pair = pair;
-  edges_[edge].mark = {};
-  link(edge, 0, pair.first);
-  link(edge, 1, pair.second);
-  std::size_t place = home(pair);
-  while (table_[place] != none) place = (place + 1) & (table_.size() - 1);
-  table_[place] = edge;
-  ++size_;
   return edge;
 }
 
 void PairGraph::erase(EdgeId edge) noexcept {
-  const Pair pair = edges_[edge].pair;
-  unlink(edge, 0, pair.first);
-  unlink(edge, 1, pair.second);
-  edges_[edge].pair = {BoxId{0}, BoxId{0}};
-  edges_[edge].next[0] = std::exchange(free_, edge);
-  --size_;
+  const Pair pair = pairs_[edge];
+  std::size_t hole = place_of(pair);
   const std::size_t mask = table_.size() - 1;
-  std::size_t hole = home(pair);
-  while (table_[hole] != edge) hole = (hole + 1) & mask;
   // The entries behind the hole move into it, unless that is before their home.
   for (std::size_t place = (hole + 1) & mask; table_[place] != none; place = (place + 1) & mask) {
-    const std::size_t distance = (place - home(edges_[table_[place]].pair)) & mask;
+    const std::size_t distance = (place - home(pairs_[table_[place]])) & mask;
     if (distance >= ((place - hole) & mask)) table_[std::exchange(hole, place)] = table_[place];
   }
   table_[hole] = none;
-}
-
-PairGraph::EdgeId PairGraph::find(Pair pair) const noexcept {
-  if (table_.empty()) return none;
-  for (std::size_t place = home(pair); table_[place] != none; place = (place + 1) & (table_.size() - 1)) {
-    if (edges_[table_[place]].pair == pair) return table_[place];
+  for (const End side : {0U, 1U})
+    join(links_[edge].previous[side], links_[edge].next[side], side == 0 ? pair.first : pair.second);
+  // The last edge takes the place.
+  const auto last = static_cast<EdgeId>(size() - 1);
+  if (edge != last) {
+    const Pair moved = pairs_[last];
+    table_[place_of(moved)] = edge;
+    pairs_[edge] = moved;
+    marks_[edge] = marks_[last];
+    links_[edge] = links_[last];
+    for (const End side : {0U, 1U}) {
+      const BoxId box = side == 0 ? moved.first : moved.second;
+      join(links_[edge].previous[side], 2 * edge + side, box);
+      join(2 * edge + side, links_[edge].next[side], box);
+    }
   }
-  return none;
-}
-
-void PairGraph::link(EdgeId edge, int side, BoxId box) noexcept {
-  EdgeId& first = first_[index(box)];
-  edges_[edge].next[side] = first;
-  edges_[edge].previous[side] = none;
-  if (first != none) edges_[first].previous[edges_[first].pair.first == box ? 0 : 1] = edge;
-  first = edge;
-}
-
-void PairGraph::unlink(EdgeId edge, int side, BoxId box) noexcept {
-  const EdgeId next = edges_[edge].next[side];
-  const EdgeId previous = edges_[edge].previous[side];
-  if (next != none) edges_[next].previous[edges_[next].pair.first == box ? 0 : 1] = previous;
-  if (previous != none)
-    edges_[previous].next[edges_[previous].pair.first == box ? 0 : 1] = next;
-  else
-    first_[index(box)] = next;
+  pairs_.pop_back();
+  marks_.pop_back();
+  links_.pop_back();
 }
 
 void PairGraph::rehash(std::size_t places) {
   table_ = std::vector<EdgeId>(places, none);
-  for_each([this](EdgeId edge) {
-    std::size_t place = home(edges_[edge].pair);
-    while (table_[place] != none) place = (place + 1) & (table_.size() - 1);
-    table_[place] = edge;
-  });
+  for (EdgeId edge = 0; edge < size(); ++edge) table_[place_of(pairs_[edge])] = edge;
 }
 
 void PairGraph::shrink_to_fit() {
-  PairGraph packed;
-  std::size_t boxes = 0;
-  for_each([&](EdgeId edge) { boxes = std::max(boxes, std::size_t{index(edges_[edge].pair.second)} + 1); });
-  packed.reserve(size_, boxes);
-  for_each([&](EdgeId edge) { packed.mark(packed.insert(edges_[edge].pair)) = edges_[edge].mark; });
-  std::swap(*this, packed);
+  while (!first_.empty() && first_.back() == none) first_.pop_back();
+  core::shrink(pairs_, marks_, links_, first_);
+  rehash(pairs_.empty() ? 0 : std::bit_ceil(std::max<std::size_t>(2 * size(), 16)));
 }
 
 std::size_t PairGraph::bytes() const noexcept {
-  return edges_.capacity() * sizeof(Edge) + (first_.capacity() + table_.capacity()) * sizeof(EdgeId);
+  return core::bytes_of(pairs_, marks_, links_, first_, table_);
 }
 
 }  // namespace broadside::world

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 #include "broadside/sinks.hpp"
@@ -18,14 +19,13 @@ namespace {
 /// fraction of the time an edge.
 constexpr std::size_t slots_per_change = 4;
 
-std::vector<Pair> sorted_edges(const PairGraph& graph, bool (*is_wanted)(const PairGraph::Mark&)) {
-  std::vector<Pair> edges;
-  edges.reserve(graph.size());
-  graph.for_each([&](PairGraph::EdgeId edge) {
-    if (is_wanted(graph.mark(edge))) edges.push_back(graph.pair(edge));
-  });
-  std::ranges::sort(edges);
-  return edges;
+/// Whether eight flags say what eight marks say, without a predicate.
+bool say_the_same(const std::uint8_t* flags, const std::uint8_t* marks) noexcept {
+  std::uint64_t eight_flags;
+  std::uint64_t eight_marks;
+  std::memcpy(&eight_flags, flags, sizeof(eight_flags));
+  std::memcpy(&eight_marks, marks, sizeof(eight_marks));
+  return eight_flags * edge_holds == eight_marks;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ void PairRefiner<D, Real>::adopt(std::span<const HandlePair> pairs, std::size_t 
   PairGraph graph;
   graph.reserve(pairs.size(), slots);
   for (const HandlePair& pair : pairs)
-    graph.mark(graph.insert({BoxId{pair.first.slot}, BoxId{pair.second.slot}})) = {true, true, 0};
+    graph.insert({BoxId{pair.first.slot}, BoxId{pair.second.slot}}, edge_holds);
   state_.graph = std::move(graph);
   // Events that a failed update has left are not among the pairs yet. The next update refines them.
 }
@@ -86,7 +86,7 @@ void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
   for (const Pair pair : candidates.ended) {
     const PairGraph::EdgeId edge = graph.find(pair);
     if (edge == PairGraph::none) continue;  // ended and never began: an algorithm of the caller's is wrong
-    if (graph.mark(edge).overlaps && graph.mark(edge).accepted) refined.ended.push_back(pair);
+    if (graph.marks()[edge] == edge_holds) refined.ended.push_back(pair);
     graph.erase(edge);
   }
   for (const Pair pair : candidates.begun) {
@@ -101,70 +101,58 @@ void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
   candidates.clear();
 }
 
-/// Reviews the new edges and the edges of the boxes that changed.
+/// Reviews the new edges and the edges of the boxes that changed, each once.
 template <int D, typename Real>
 void PairRefiner<D, Real>::review_changes(const BoxTable<D, Real>& boxes) {
-  const PairGraph& graph = state_.graph;
-  const auto review_edge = [&, all = boxes.boxes()](PairGraph::EdgeId edge) { review_once(edge, all); };
+  PairGraph& graph = state_.graph;
+  const auto review_once = [&, all = boxes.boxes()](PairGraph::EdgeId edge) {
+    if (!graph.renew_stamp(edge, stamp_)) return;
+    const auto [a, b] = graph.pairs()[edge];
+    review(edge, !by_boxes_ || overlap(all[index(a)], all[index(b)]));
+  };
   for (const Pair pair : state_.fresh) {
     const PairGraph::EdgeId edge = graph.find(pair);
-    if (edge != PairGraph::none) review_edge(edge);
+    if (edge != PairGraph::none) review_once(edge);
   }
   if (by_boxes_) {
-    for (const BoxId id : boxes.changed()) graph.for_each_of(id, review_edge);
+    for (const BoxId id : boxes.changed()) graph.for_each_of(id, review_once);
   }
-  for (const std::uint32_t slot : state_.asked_slots) graph.for_each_of(BoxId{slot}, review_edge);
-}
-
-/// Reviews an edge, unless this update has done so already.
-template <int D, typename Real>
-void PairRefiner<D, Real>::review_once(PairGraph::EdgeId edge, std::span<const Box<D, Real>> boxes) {
-  PairGraph::Mark& mark = state_.graph.mark(edge);
-  if (mark.stamp == stamp_) return;
-  mark.stamp = stamp_;
-  const auto [a, b] = state_.graph.pair(edge);
-  review(edge, !by_boxes_ || overlap(boxes[index(a)], boxes[index(b)]));
+  for (const std::uint32_t slot : state_.asked_slots) graph.for_each_of(BoxId{slot}, review_once);
 }
 
 template <int D, typename Real>
 void PairRefiner<D, Real>::review_all(std::span<const Box<D, Real>> boxes) {
-  constexpr std::size_t at_once = 256;
-  const PairGraph& graph = state_.graph;
-  std::array<PairGraph::EdgeId, at_once> edges;
-  std::array<Pair, at_once> pairs;
-  std::array<std::uint8_t, at_once> flags;
+  const std::span<const Pair> pairs = state_.graph.pairs();
+  const bool is_asking = has_predicate();
+  std::array<std::uint8_t, 256> flags;
   flags.fill(1);
-  std::size_t count = 0;
-  const auto review_these = [&] {
-    if (by_boxes_) kernels::set_overlap_flags(boxes, std::span<const Pair>(pairs).first(count), flags.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const PairGraph::Mark& mark = graph.mark(edges[i]);
-      const bool overlaps = flags[i] != 0;
-      if (has_predicate() || mark.overlaps != overlaps || mark.accepted != overlaps)
-        review(edges[i], overlaps);
+  for (std::size_t begin = 0; begin < pairs.size(); begin += flags.size()) {
+    const std::span<const Pair> some = pairs.subspan(begin, std::min(flags.size(), pairs.size() - begin));
+    if (by_boxes_) kernels::set_overlap_flags(boxes, some, flags.data());
+    const std::uint8_t* const marks = state_.graph.marks().data() + begin;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      // Nearly all are as they were.
+      if (!is_asking && i % 8 == 0 && i + 8 <= some.size() && say_the_same(&flags[i], marks + i))
+        i += 7;
+      else if (is_asking || marks[i] != flags[i] * edge_holds)
+        review(static_cast<PairGraph::EdgeId>(begin + i), flags[i] != 0);
     }
-    count = 0;
-  };
-  graph.for_each([&](PairGraph::EdgeId edge) {
-    edges[count] = edge;
-    pairs[count++] = graph.pair(edge);
-    if (count == at_once) review_these();
-  });
-  review_these();
+  }
 }
 
 /// Notes an edge if it may change.
 template <int D, typename Real>
 void PairRefiner<D, Real>::review(PairGraph::EdgeId edge, bool overlaps) {
-  const PairGraph::Mark& mark = state_.graph.mark(edge);
-  const Pair pair = state_.graph.pair(edge);
-  const bool is_asked = overlaps && has_predicate() &&
-                        (!mark.overlaps || asks_about(index(pair.first)) || asks_about(index(pair.second)));
-  if (is_asked)
+  const std::uint8_t mark = state_.graph.marks()[edge];
+  const std::uint8_t new_mark = overlaps ? edge_holds : 0;
+  const bool overlapped = (mark & edge_overlaps) != 0;
+  const Pair pair = state_.graph.pairs()[edge];
+  if (overlaps && has_predicate() &&
+      (!overlapped || asks_about(index(pair.first)) || asks_about(index(pair.second))))
     questions_.push_back({pair, reviewed_.size()});
-  else if (overlaps == mark.overlaps && (has_predicate() || mark.accepted == overlaps))
+  else if (has_predicate() ? overlaps == overlapped : mark == new_mark)
     return;
-  reviewed_.push_back({edge, overlaps, overlaps});
+  reviewed_.push_back({edge, new_mark});
 }
 
 /// Asks the predicate, in the order of the slots.
@@ -174,7 +162,7 @@ void PairRefiner<D, Real>::answer(const SlotTable<D, Real>& slots) {
   const core::CallersEnvironment callers;
   for (const Question& question : questions_) {
     const auto [first, second] = slots.handles(question.pair);
-    reviewed_[question.place].accepted = predicate_(first, second);
+    if (!predicate_(first, second)) reviewed_[question.place].new_mark = edge_overlaps;
   }
 }
 
@@ -184,13 +172,10 @@ void PairRefiner<D, Real>::tell() {
   auto& [begun, ended] = state_.refined;
   core::make_room(begun, reviewed_.size());
   core::make_room(ended, reviewed_.size());
-  for (const ReviewedEdge& now : reviewed_) {
-    PairGraph::Mark& mark = state_.graph.mark(now.edge);
-    const bool held = mark.overlaps && mark.accepted;
-    const bool holds = now.overlaps && now.accepted;
-    mark.overlaps = now.overlaps;
-    mark.accepted = now.accepted;
-    if (held != holds) (holds ? begun : ended).push_back(state_.graph.pair(now.edge));
+  for (const auto& [edge, new_mark] : reviewed_) {
+    const bool held = std::exchange(state_.graph.mark(edge), new_mark) == edge_holds;
+    const bool holds = new_mark == edge_holds;
+    if (held != holds) (holds ? begun : ended).push_back(state_.graph.pairs()[edge]);
   }
   state_.fresh.clear();
   sort_pairs(begun, sorting_);
@@ -232,13 +217,17 @@ std::vector<Pair> PairRefiner<D, Real>::tracked(std::vector<Pair> current) const
 
 template <int D, typename Real>
 std::vector<Pair> PairRefiner<D, Real>::edges() const {
-  return sorted_edges(state_.graph, [](const PairGraph::Mark&) { return true; });
+  std::vector<Pair> edges(state_.graph.pairs().begin(), state_.graph.pairs().end());
+  std::ranges::sort(edges);
+  return edges;
 }
 
 template <int D, typename Real>
 std::vector<Pair> PairRefiner<D, Real>::held_edges() const {
-  return sorted_edges(state_.graph,
-                      [](const PairGraph::Mark& mark) { return mark.overlaps && mark.accepted; });
+  std::vector<Pair> edges = this->edges();
+  std::erase_if(edges,
+                [&graph = state_.graph](Pair pair) { return graph.marks()[graph.find(pair)] != edge_holds; });
+  return edges;
 }
 
 template <int D, typename Real>

@@ -17,6 +17,12 @@
 
 namespace broadside::world {
 
+/// The marks of candidates: bits, as in snapshots. A pair holds if its boxes themselves overlap and, since
+/// they do, the predicate accepted it; without a predicate what overlaps is accepted.
+inline constexpr std::uint8_t edge_overlaps = 1;
+inline constexpr std::uint8_t edge_accepted = 2;
+inline constexpr std::uint8_t edge_holds = edge_overlaps | edge_accepted;
+
 /// The part of a PairRefiner that a world's future depends on.
 struct RefinerState {
   bool is_refining = false;  ///< whether the tracker's pairs are candidates; else they are the world's
@@ -92,8 +98,7 @@ class PairRefiner {
   /// A candidate that an update looks at, and what it makes of it.
   struct ReviewedEdge {
     PairGraph::EdgeId edge;
-    bool overlaps;
-    bool accepted;
+    std::uint8_t new_mark;
   };
 
   /// A pair that the predicate is asked about.
@@ -105,7 +110,6 @@ class PairRefiner {
   void take_candidates(std::size_t slots);
   void review_changes(const BoxTable<D, Real>& boxes);
   void review_all(std::span<const Box<D, Real>> boxes);
-  void review_once(PairGraph::EdgeId edge, std::span<const Box<D, Real>> boxes);
   void review(PairGraph::EdgeId edge, bool overlaps);
   void answer(const SlotTable<D, Real>& slots);
   void tell();

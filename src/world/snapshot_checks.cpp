@@ -107,24 +107,24 @@ void SnapshotChecks<D, Real>::check_marks(bool asks_predicate) const {
   const bool by_boxes = parts_.boxes.refines();
   Pairs new_edges = parts_.refiner.state().fresh;
   std::ranges::sort(new_edges);
-  graph.for_each([&](PairGraph::EdgeId edge) {
-    const Pair pair = graph.pair(edge);
-    const PairGraph::Mark& mark = graph.mark(edge);
-    if (mark.accepted && !mark.overlaps) refuse(pair, "is accepted and does not overlap");
+  for (PairGraph::EdgeId edge = 0; edge < graph.size(); ++edge) {
+    const Pair pair = graph.pairs()[edge];
+    const std::uint8_t mark = graph.marks()[edge];
+    if (mark == edge_accepted) refuse(pair, "is accepted and does not overlap");
     const std::uint32_t a = index(pair.first);
     const std::uint32_t b = index(pair.second);
     const bool is_looked_at = parts_.refiner.asks_about(a) || parts_.refiner.asks_about(b) ||
                               (by_boxes && (parts_.boxes.is_changed(a) || parts_.boxes.is_changed(b))) ||
                               std::ranges::binary_search(new_edges, pair);
-    if (is_looked_at) return;
+    if (is_looked_at) continue;
     const bool overlaps = !by_boxes || overlap(boxes[a], boxes[b]);
-    if (mark.overlaps != overlaps) {
-      refuse(pair, std::string("is said to ") + (mark.overlaps ? "" : "not ") +
+    if ((mark != 0) != overlaps) {
+      refuse(pair, std::string("is said to ") + (mark != 0 ? "" : "not ") +
                        "overlap; expected what its boxes do, which did not change");
     }
-    if (!asks_predicate && overlaps && !mark.accepted)
+    if (!asks_predicate && mark == edge_overlaps)
       refuse(pair, "overlaps and is not accepted; expected a predicate that refused it");
-  });
+  }
 }
 
 template <int D, typename Real>

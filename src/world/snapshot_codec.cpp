@@ -85,11 +85,7 @@ void put_last_frame(ByteWriter& out, const Frame<D, Real>& last, const Frame<D, 
 
 void put_refiner(ByteWriter& out, const RefinerState& state, const std::vector<Pair>& edges) {
   put_list<Pair>(out, edges);
-  for (const Pair pair : edges) {
-    const PairGraph::Mark& mark = state.graph.mark(state.graph.find(pair));
-    out.put(static_cast<std::uint8_t>((mark.overlaps ? snapshot::edge_overlaps : 0) |
-                                      (mark.accepted ? snapshot::edge_accepted : 0)));
-  }
+  for (const Pair pair : edges) out.put(state.graph.marks()[state.graph.find(pair)]);
   for (const PairEvents* const events : {&state.candidates, &state.refined}) {
     const PairEvents net = events->netted();
     put_list<Pair>(out, net.begun);

@@ -32,8 +32,4 @@ inline constexpr std::uint32_t all_flags = 1023;
 inline constexpr int last_has_filters = 1;
 inline constexpr int last_has_ignored = 2;
 
-// Flags of a pair of enlarged boxes.
-inline constexpr int edge_overlaps = 1;
-inline constexpr int edge_accepted = 2;
-
 }  // namespace broadside::world::snapshot

@@ -282,11 +282,9 @@ void SnapshotReader<D, Real>::read_edges() {
   in_.need(1, edges.size(), "marks");
   graph.reserve(edges.size(), slots);
   for (const Pair pair : edges) {
-    const int marks = in_.get<std::uint8_t>();
-    expect((marks & ~(snapshot::edge_overlaps | snapshot::edge_accepted)) == 0,
-           "a pair has no marks like these");
-    graph.mark(graph.insert(pair)) = {(marks & snapshot::edge_overlaps) != 0,
-                                      (marks & snapshot::edge_accepted) != 0, 0};
+    const auto mark = in_.get<std::uint8_t>();
+    expect(mark <= edge_holds, "a pair has no marks like these");
+    graph.insert(pair, mark);
   }
   candidates.begun = read_paired("candidates that began");
   candidates.ended = read_paired("candidates that ended");
