@@ -203,11 +203,6 @@ struct HandleNeighbour {
   friend constexpr bool operator==(const HandleNeighbour&, const HandleNeighbour&) = default;
 };
 
-namespace world {
-template <int D, typename Real>
-class WorldState;
-}  // namespace world
-
 /// A set of boxes that changes, and its overlapping pairs.
 ///
 /// Of boxes of floats or of doubles. What is done to boxes and filters shows its effect on pairs at the next
@@ -238,12 +233,14 @@ class BROADSIDE_PUBLIC World {
   ///
   /// `velocity` is how far the box is expected to go in a frame, for WorldOptions::predicted_frames; throws
   /// InvalidInput if a coordinate of it is not finite, std::logic_error where no frames are predicted.
-  void move(Handle handle, const Box<D, Real>& box);
-  void move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity);
+  void move(Handle handle, const Box<D, Real>& box) { move_to(handle, box, nullptr); }
+  void move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity) {
+    move_to(handle, box, &velocity);
+  }
 
   /// Takes a box out, and forgets what was ignored of it. O(1). Its pairs end at the next update. Throws
   /// InvalidHandle if it is not in the world.
-  void remove(Handle handle);
+  void remove(Handle handle) { remove(std::span<const Handle>(&handle, 1)); }
 
   /// The same for many at once: all of them or, if one is wrong, none. `handles` takes the names of the
   /// boxes; `options` and `velocities` are one for each box, or none. Adding a million boxes to an empty
@@ -426,6 +423,7 @@ class BROADSIDE_PUBLIC World {
   void set_workers(const Workers& workers);
 
  private:
+  void move_to(Handle handle, const Box<D, Real>& box, const Point<D, Real>* velocity);
   void join_into(const World& other, detail::Output<HandlePair>& pairs) const;
   void list_quarantined(detail::Output<Handle>& handles) const;
   void write_snapshot(detail::Output<std::byte>& bytes) const;
@@ -435,7 +433,8 @@ class BROADSIDE_PUBLIC World {
     return handle && contains(*handle) ? std::optional(BoxId{handle->slot}) : std::nullopt;
   }
 
-  std::unique_ptr<world::WorldState<D, Real>> state_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 using World2 = World<2>;

@@ -29,23 +29,23 @@ class ByteWriter {
   explicit ByteWriter(detail::Output<std::byte>& output) : output_(&output) {}
 
   template <typename T>
-  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void put(T value) {
-    const auto bits = std::bit_cast<Bits<T>>(value);
     if (bytes_.size() - size_ < sizeof(T)) reserve(2 * size_ + sizeof(T));
-    for (std::size_t i = 0; i < sizeof(T); ++i)
-      bytes_[size_ + i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
+    put_at(size_, value);
     size_ += sizeof(T);
+  }
+
+  /// Writes a number over the bytes at `at`.
+  template <typename T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void put_at(std::size_t at, T value) {
+    const auto bits = std::bit_cast<Bits<T>>(value);
+    for (std::size_t i = 0; i < sizeof(T); ++i) bytes_[at + i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
   }
 
   /// Increases the room to `bytes` in total.
   void reserve(std::size_t bytes) { bytes_ = output_->resize(bytes); }
   std::size_t size() const noexcept { return size_; }
-
-  /// Writes a number over the bytes at `at`.
-  void put_at(std::size_t at, std::uint64_t value) {
-    for (std::size_t i = 0; i < 8; ++i) bytes_[at + i] = static_cast<std::byte>(value >> 8 * i & 0xff);
-  }
 
   /// Appends the checksum of all bytes, and shrinks the output to what was written.
   void seal() {
@@ -76,7 +76,7 @@ class ByteReader {
   std::size_t left() const noexcept { return bytes_.size() - at_; }
 
   template <typename T>
-  requires std::is_arithmetic_v<T> T get() {
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T> T get() {
     need(sizeof(T), 1, "a number");
     Bits<T> bits = 0;
     for (std::size_t i = 0; i < sizeof(T); ++i)

@@ -1,5 +1,4 @@
-// CurrentPairs: the pairs that hold now, sorted: an array, and a log of the events that it has not taken in
-// yet.
+// CurrentPairs: the pairs that hold now, and the events of the last update.
 #include "world/current_pairs.hpp"
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "core/grow.hpp"
+#include "core/lean.hpp"
 
 namespace broadside::world {
 namespace {
@@ -32,24 +32,19 @@ void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair
             std::copy(begun.begin() + static_cast<std::ptrdiff_t>(i), begun.end(), out));
 }
 
-Pair slots(const HandlePair& pair) noexcept { return {BoxId{pair.first.slot}, BoxId{pair.second.slot}}; }
-
-HandlePair handles(Pair pair, CurrentPairs::Generations generations) noexcept {
-  return {{index(pair.first), generations[index(pair.first)]},
-          {index(pair.second), generations[index(pair.second)]}};
-}
+constexpr auto has_slots_before = [](const HandlePair& a, Pair b) { return slots_of(a) < b; };
 
 /// The first place in [from, to) that is not before `pair`, near `from` most of the time: steps that double,
 /// then a search between the last two.
 const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to, Pair pair) {
   std::ptrdiff_t step = 1;
   const HandlePair* low = from;
-  while (step < to - low && slots(low[step]) < pair) {
+  while (step < to - low && slots_of(low[step]) < pair) {
     low += step;
     step *= 2;
   }
   const HandlePair* const high = step < to - low ? low + step : to;
-  return std::lower_bound(low, high, pair, [](const HandlePair& a, Pair b) { return slots(a) < b; });
+  return std::lower_bound(low, high, pair, has_slots_before);
 }
 
 }  // namespace
@@ -57,6 +52,7 @@ const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to,
 CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
   keeps_ = other.keeps_;
   size_ = other.size_;
+  events_ = std::move(other.events_);
   pairs_ = std::move(other.pairs_);
   log_ = std::move(other.log_);
   scratch_ = std::move(other.scratch_);
@@ -66,26 +62,51 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
   return *this;
 }
 
-void CurrentPairs::add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations) {
-  const std::size_t events = begun.size() + ended.size();
-  if (keeps_) core::make_room(log_, events);
-  size_ += begun.size();
-  size_ -= ended.size();
-  if (keeps_ && events > 0) {
-    const std::size_t old_size = log_.size();
-    log_.resize(old_size + events);
-    merge_events(begun, ended, log_.data() + old_size);
-    try {
-      if (log_.size() > std::max(short_log, pairs_.size() / 2)) merge(generations);
-    } catch (...) {
-      log_.resize(old_size);
-      size_ -= begun.size();
-      size_ += ended.size();
-      throw;
-    }
-    is_merged_ = log_.empty();
+void CurrentPairs::take(PairEvents& events, Generations generations,
+                        const SlotColumn<std::uint64_t>& user_data) {
+  auto& [begun, ended, begun_data, ended_data] = events_;
+  const bool has_user_data = !core::is_lean && user_data.is_used();
+  begun.reserve(events.begun.size());
+  ended.reserve(events.ended.size());
+  if (has_user_data) {
+    begun_data.reserve(events.begun.size());
+    ended_data.reserve(events.ended.size());
   }
+  log(events, generations);
+  // Nothing below throws.
+  const auto replace = [&](std::vector<HandlePair>& handles, std::vector<UserDataPair>& data,
+                           std::span<const Pair> pairs) {
+    handles.resize(pairs.size());
+    if (!core::is_lean) data.resize(has_user_data ? pairs.size() : 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Pair pair = pairs[i];
+      handles[i] = handles_of(pair, generations);
+      if (has_user_data) data[i] = {user_data.get(index(pair.first)), user_data.get(index(pair.second))};
+    }
+  };
+  replace(begun, begun_data, events.begun);
+  replace(ended, ended_data, events.ended);
   has_persisting_ = false;
+  events.clear();
+}
+
+/// Brings size_ and the log up to date, or throws and changes nothing.
+void CurrentPairs::log(const PairEvents& events, Generations generations) {
+  const std::size_t count = events.begun.size() + events.ended.size();
+  const std::size_t old_log = log_.size();
+  const std::size_t old_size = std::exchange(size_, size_ + events.begun.size() - events.ended.size());
+  if (!keeps_ || count == 0) return;
+  try {
+    core::make_room(log_, count);
+    log_.resize(old_log + count);
+    merge_events(events.begun, events.ended, log_.data() + old_log);
+    if (log_.size() > std::max(short_log, pairs_.size() / 2)) merge(generations);
+  } catch (...) {
+    log_.resize(old_log);
+    size_ = old_size;
+    throw;
+  }
+  is_merged_ = log_.empty();
 }
 
 std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
@@ -97,16 +118,15 @@ std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
   return pairs_;
 }
 
-std::span<const HandlePair> CurrentPairs::persisting(std::span<const HandlePair> begun,
-                                                     Generations generations) const {
+std::span<const HandlePair> CurrentPairs::persisting(Generations generations) const {
   const std::span<const HandlePair> current = pairs(generations);
-  if (begun.empty()) return current;
+  if (events_.begun.empty()) return current;
   if (!has_persisting_.load(std::memory_order_acquire)) {
     const std::lock_guard lock(reading_);
     if (!has_persisting_.load(std::memory_order_relaxed)) {
       persisting_.clear();
       persisting_.reserve(current.size());
-      std::ranges::set_difference(current, begun, std::back_inserter(persisting_));
+      std::ranges::set_difference(current, events_.begun, std::back_inserter(persisting_));
       has_persisting_.store(true, std::memory_order_release);
     }
   }
@@ -140,10 +160,8 @@ std::size_t CurrentPairs::keep_toggled(Generations generations) const {
       log_[toggled++] = pair;
       continue;
     }
-    const auto place =
-        std::lower_bound(pairs_.begin(), pairs_.end(), pair,
-                         [](const HandlePair& kept, Pair searched) { return slots(kept) < searched; });
-    if (place != pairs_.end() && slots(*place) == pair) *place = handles(pair, generations);
+    const auto place = std::lower_bound(pairs_.begin(), pairs_.end(), pair, has_slots_before);
+    if (place != pairs_.end() && slots_of(*place) == pair) *place = handles_of(pair, generations);
   }
   return toggled;
 }
@@ -157,16 +175,16 @@ void CurrentPairs::toggle(std::size_t count, Generations generations) const {
   HandlePair* const end = begin + pairs_.size();
   HandlePair* out = end;  // at least `count` places above those that are left
   while (left > 0 && count > 0) {
-    const HandlePair toggled = handles(log_[count - 1], generations);
+    const HandlePair toggled = handles_of(log_[count - 1], generations);
     const HandlePair& held = begin[left - 1];
-    const std::uint64_t of_held = key(slots(held));
+    const std::uint64_t of_held = key(slots_of(held));
     const std::uint64_t of_toggled = key(log_[count - 1]);
     out[-1] = *(of_held > of_toggled ? &held : &toggled);
     out -= static_cast<std::ptrdiff_t>(of_held != of_toggled);
     left -= static_cast<std::size_t>(of_held >= of_toggled);
     count -= static_cast<std::size_t>(of_toggled >= of_held);
   }
-  while (count > 0) *--out = handles(log_[--count], generations);
+  while (count > 0) *--out = handles_of(log_[--count], generations);
   const HandlePair* const last = std::copy(out, end, begin + left);
   pairs_.resize(static_cast<std::size_t>(last - begin));
 }
@@ -188,7 +206,7 @@ std::size_t CurrentPairs::drop_ended(std::size_t count) const {
   std::size_t begun = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (read != end) keep_up_to(first_not_before(read, end, log_[i]));
-    if (read != end && slots(*read) == log_[i])
+    if (read != end && slots_of(*read) == log_[i])
       ++read;
     else
       log_[begun++] = log_[i];
@@ -208,18 +226,18 @@ void CurrentPairs::insert_begun(std::size_t count, Generations generations) cons
     // From the back, since that is where the place is near.
     std::size_t step = 1;
     std::size_t high = left;
-    while (step <= high && pair < slots(pairs_[high - step])) {
+    while (step <= high && pair < slots_of(pairs_[high - step])) {
       high -= step;
       step *= 2;
     }
     const std::size_t low = step <= high ? high - step : 0;
-    const auto place = std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(low),
-                                        pairs_.begin() + static_cast<std::ptrdiff_t>(high), pair,
-                                        [](const HandlePair& a, Pair b) { return slots(a) < b; });
+    const auto place =
+        std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(low),
+                         pairs_.begin() + static_cast<std::ptrdiff_t>(high), pair, has_slots_before);
     const auto kept = static_cast<std::size_t>(place - pairs_.begin());
     out = std::copy_backward(pairs_.data() + kept, pairs_.data() + left, out);
     left = kept;
-    *--out = handles(pair, generations);
+    *--out = handles_of(pair, generations);
   }
 }
 
@@ -229,22 +247,30 @@ void CurrentPairs::shrink_to_fit(Generations generations) {
   scratch_.clear();
   persisting_.clear();
   has_persisting_ = false;
-  core::shrink(pairs_, log_, scratch_, persisting_);
+  core::shrink(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
+               events_.ended_data);
 }
 
 std::size_t CurrentPairs::bytes() const {
   const std::lock_guard lock(reading_);
-  return core::bytes_of(pairs_, log_, scratch_, persisting_);
+  return core::bytes_of(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
+                        events_.ended_data);
 }
 
-void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, Generations generations) {
-  pairs_.clear();
-  pairs_.reserve(pairs.size());
-  for (const Pair pair : pairs) pairs_.push_back(handles(pair, generations));
+void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
+                           Generations generations) {
+  const auto handles_of_all = [generations](std::span<const Pair> all) {
+    std::vector<HandlePair> handles;
+    handles.reserve(all.size());
+    for (const Pair pair : all) handles.push_back(handles_of(pair, generations));
+    return handles;
+  };
+  pairs_ = handles_of_all(pairs);
+  size_ = size;
+  events_ = {handles_of_all(events.begun), handles_of_all(events.ended)};
   log_.clear();
   is_merged_ = true;
   has_persisting_ = false;
-  size_ = size;
 }
 
 }  // namespace broadside::world

@@ -1,5 +1,4 @@
-// CurrentPairs: the pairs that hold now, sorted: an array, and a log of the events that it has not taken in
-// yet.
+// CurrentPairs: the pairs that hold now, and the events of the last update.
 #pragma once
 
 #include <atomic>
@@ -12,15 +11,17 @@
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
+#include "world/pair_events.hpp"
+#include "world/slot_column.hpp"
+#include "world/slot_table.hpp"
+
 namespace broadside::world {
 
-/// An event toggles a pair, so a pair counts as changed if the log has it an odd number of times. The first
-/// reader after an update brings the array up to date; several threads may read at once.
+/// The pairs are in a sorted array. A log has the events that the array has not taken in yet: an event
+/// toggles a pair, so a pair counts as changed if the log has it an odd number of times. The first reader
+/// after an update brings the array up to date; several threads may read at once.
 class CurrentPairs {
  public:
-  /// The generation of each slot.
-  using Generations = std::span<const std::uint32_t>;
-
   /// Without `keeps` it only counts the pairs.
   explicit CurrentPairs(bool keeps) noexcept : keeps_(keeps) {}
   CurrentPairs& operator=(CurrentPairs&& other) noexcept;
@@ -30,25 +31,40 @@ class CurrentPairs {
   /// The number of pairs that hold.
   std::size_t size() const noexcept { return size_; }
 
-  /// Takes the events of an update, each of the two sorted. O(events), and where the log has grown too long
-  /// for the array, a pass over it. If it throws, nothing has changed.
-  void add(std::span<const Pair> begun, std::span<const Pair> ended, Generations generations);
+  /// The events of the last update, with the handles and the user data that the boxes had in it.
+  Events events() const noexcept {
+    return {events_.begun, events_.ended, events_.begun_data, events_.ended_data};
+  }
+
+  /// Takes the events of an update out of `events`, where both lists are sorted. O(events), and where the log
+  /// has grown too long for the array, a pass over it. If it throws, nothing has changed.
+  void take(PairEvents& events, Generations generations, const SlotColumn<std::uint64_t>& user_data);
 
   /// The pairs that hold, sorted by slots, and the ones among them that did not begin in the last update.
   /// Only if pairs are kept. Valid until the next call of a member that is not const. O(events since it was
   /// last asked), and a pass over the pairs if there were any.
   std::span<const HandlePair> pairs(Generations generations) const;
-  std::span<const HandlePair> persisting(std::span<const HandlePair> begun, Generations generations) const;
+  std::span<const HandlePair> persisting(Generations generations) const;
 
   /// Gives back memory that is not needed. O(pairs).
   void shrink_to_fit(Generations generations);
 
   std::size_t bytes() const;
 
-  /// Takes the pairs of a snapshot, sorted, which says that they are `size`.
-  void restore(std::span<const Pair> pairs, std::size_t size, Generations generations);
+  /// Takes the pairs of a snapshot, sorted, which says that they are `size`, and the events of its last
+  /// update.
+  void restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
+               Generations generations);
 
  private:
+  struct DeliveredEvents {
+    std::vector<HandlePair> begun{};
+    std::vector<HandlePair> ended{};
+    std::vector<UserDataPair> begun_data{};  ///< empty without user data
+    std::vector<UserDataPair> ended_data{};
+  };
+
+  void log(const PairEvents& events, Generations generations);
   void merge(Generations generations) const;
   std::size_t keep_toggled(Generations generations) const;
   void toggle(std::size_t count, Generations generations) const;
@@ -57,6 +73,7 @@ class CurrentPairs {
 
   bool keeps_;
   std::size_t size_ = 0;
+  DeliveredEvents events_;
   mutable std::mutex reading_;
   mutable std::vector<HandlePair> pairs_;
   mutable std::vector<Pair> log_;

@@ -6,38 +6,22 @@
 
 #include "broadside/sinks.hpp"
 
-#include "core/grow.hpp"
-
 namespace broadside::world {
 
-void PairEvents::cancel() {
-  std::vector<Pair> scratch;
-  sort_pairs(begun, scratch);
-  sort_pairs(ended, scratch);
-  std::size_t kept_begun = 0;
-  std::size_t kept_ended = 0;
-  std::size_t j = 0;
-  for (const Pair pair : begun) {
-    while (j < ended.size() && ended[j] < pair) ended[kept_ended++] = ended[j++];
-    if (j < ended.size() && ended[j] == pair)
-      ++j;
-    else
-      begun[kept_begun++] = pair;
-  }
-  while (j < ended.size()) ended[kept_ended++] = ended[j++];
-  begun.resize(kept_begun);
-  ended.resize(kept_ended);
-}
-
 PairEvents PairEvents::netted() const {
-  PairEvents net = *this;
-  net.cancel();
+  PairEvents sorted = *this;
+  std::vector<Pair> scratch;
+  sort_pairs(sorted.begun, scratch);
+  sort_pairs(sorted.ended, scratch);
+  PairEvents net;
+  std::ranges::set_difference(sorted.begun, sorted.ended, std::back_inserter(net.begun));
+  std::ranges::set_difference(sorted.ended, sorted.begun, std::back_inserter(net.ended));
   return net;
 }
 
-void PairEvents::shrink_to_fit() { core::shrink(begun, ended); }
-
-std::size_t PairEvents::bytes() const noexcept { return core::bytes_of(begun, ended); }
+std::vector<Pair> PairEvents::undone(const std::vector<Pair>& pairs) const {
+  return symmetric_difference(symmetric_difference(pairs, begun), ended);
+}
 
 std::vector<Pair> symmetric_difference(const std::vector<Pair>& a, const std::vector<Pair>& b) {
   std::vector<Pair> pairs;

@@ -6,6 +6,8 @@
 
 #include "broadside/pair.hpp"
 
+#include "core/grow.hpp"
+
 namespace broadside::world {
 
 /// Events that no update has delivered yet. After an update that failed they wait for the next one.
@@ -19,14 +21,14 @@ struct PairEvents {
     ended.clear();
   }
 
-  /// Takes from both what is in both: events that were undone before they were delivered. Sorts both.
-  void cancel();
-
-  /// A copy after cancel(): an update that ran out of memory may not have come to that.
+  /// The events but for those that are in both lists: they were undone before they were delivered. Sorted.
   PairEvents netted() const;
 
-  void shrink_to_fit();
-  std::size_t bytes() const noexcept;
+  /// The pairs that held before the events, which are sorted, if `pairs` hold after them; sorted as well.
+  std::vector<Pair> undone(const std::vector<Pair>& pairs) const;
+
+  void shrink_to_fit() { core::shrink(begun, ended); }
+  std::size_t bytes() const noexcept { return core::bytes_of(begun, ended); }
 };
 
 /// The pairs that are in one of the two and not in the other; all sorted.

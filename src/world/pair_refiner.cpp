@@ -30,25 +30,21 @@ bool say_the_same(const std::uint8_t* flags, const std::uint8_t* marks) noexcept
 
 }  // namespace
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::adopt(std::span<const HandlePair> pairs, std::size_t slots) {
+void PairRefiner::adopt(std::span<const HandlePair> pairs, std::size_t slots) {
   PairGraph graph;
   graph.reserve(pairs.size(), slots);
-  for (const HandlePair& pair : pairs)
-    graph.insert({BoxId{pair.first.slot}, BoxId{pair.second.slot}}, edge_holds);
+  for (const HandlePair& pair : pairs) graph.insert(slots_of(pair), edge_holds);
   state_.graph = std::move(graph);
   // Events that a failed update has left are not among the pairs yet. The next update refines them.
 }
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::swap_predicate(PairPredicate& predicate) noexcept {
+void PairRefiner::swap_predicate(PairPredicate& predicate) noexcept {
   state_.is_refining = true;
   state_.asks_about_all = true;
   predicate_.swap(predicate);
 }
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::ask_again(std::uint32_t slot, std::size_t slots) {
+void PairRefiner::ask_again(std::uint32_t slot, std::size_t slots) {
   if (!has_predicate()) return;
   if (asked_marks_.size() < slots) asked_marks_.resize(slots);
   if (asked_marks_[slot] != 0) return;
@@ -57,27 +53,26 @@ void PairRefiner<D, Real>::ask_again(std::uint32_t slot, std::size_t slots) {
 }
 
 template <int D, typename Real>
-PairEvents& PairRefiner<D, Real>::refine(const SlotTable<D, Real>& slots, const BoxTable<D, Real>& boxes) {
+PairEvents& PairRefiner::refine(const BoxTable<D, Real>& boxes, Generations generations) {
   if (!state_.is_refining) return state_.candidates;
   const bool is_retry = !state_.refined.empty();
-  take_candidates(slots.size());
+  take_candidates(generations.size());
   const core::DefaultEnvironment environment;
   ++stamp_;
   reviewed_.clear();
   questions_.clear();
-  if (state_.asks_about_all || (by_boxes_ && boxes.changed().size() > slots.size() / slots_per_change))
+  if (state_.asks_about_all || (by_boxes_ && boxes.changed().size() > generations.size() / slots_per_change))
     review_all(boxes.boxes());
   else
     review_changes(boxes);
-  if (has_predicate()) answer(slots);
+  if (has_predicate()) answer(generations);
   tell();
-  if (is_retry) state_.refined.cancel();
+  if (is_retry) state_.refined = state_.refined.netted();
   return state_.refined;
 }
 
 /// Brings the graph up to date.
-template <int D, typename Real>
-void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
+void PairRefiner::take_candidates(std::size_t slots) {
   auto& [is_refining, asks_about_all, asked_slots, graph, candidates, refined, fresh] = state_;
   graph.reserve(graph.size() + candidates.begun.size(), slots);
   core::make_room(fresh, candidates.begun.size());
@@ -103,7 +98,7 @@ void PairRefiner<D, Real>::take_candidates(std::size_t slots) {
 
 /// Reviews the new edges and the edges of the boxes that changed, each once.
 template <int D, typename Real>
-void PairRefiner<D, Real>::review_changes(const BoxTable<D, Real>& boxes) {
+void PairRefiner::review_changes(const BoxTable<D, Real>& boxes) {
   PairGraph& graph = state_.graph;
   const auto review_once = [&, all = boxes.boxes()](PairGraph::EdgeId edge) {
     if (!graph.renew_stamp(edge, stamp_)) return;
@@ -121,7 +116,7 @@ void PairRefiner<D, Real>::review_changes(const BoxTable<D, Real>& boxes) {
 }
 
 template <int D, typename Real>
-void PairRefiner<D, Real>::review_all(std::span<const Box<D, Real>> boxes) {
+void PairRefiner::review_all(std::span<const Box<D, Real>> boxes) {
   const std::span<const Pair> pairs = state_.graph.pairs();
   const bool is_asking = has_predicate();
   std::array<std::uint8_t, 256> flags;
@@ -141,8 +136,7 @@ void PairRefiner<D, Real>::review_all(std::span<const Box<D, Real>> boxes) {
 }
 
 /// Notes an edge if it may change.
-template <int D, typename Real>
-void PairRefiner<D, Real>::review(PairGraph::EdgeId edge, bool overlaps) {
+void PairRefiner::review(PairGraph::EdgeId edge, bool overlaps) {
   const std::uint8_t mark = state_.graph.marks()[edge];
   const std::uint8_t new_mark = overlaps ? edge_holds : 0;
   const bool overlapped = (mark & edge_overlaps) != 0;
@@ -156,19 +150,17 @@ void PairRefiner<D, Real>::review(PairGraph::EdgeId edge, bool overlaps) {
 }
 
 /// Asks the predicate, in the order of the slots.
-template <int D, typename Real>
-void PairRefiner<D, Real>::answer(const SlotTable<D, Real>& slots) {
+void PairRefiner::answer(Generations generations) {
   std::ranges::sort(questions_, {}, &Question::pair);
   const core::CallersEnvironment callers;
   for (const Question& question : questions_) {
-    const auto [first, second] = slots.handles(question.pair);
+    const auto [first, second] = handles_of(question.pair, generations);
     if (!predicate_(first, second)) reviewed_[question.place].new_mark = edge_overlaps;
   }
 }
 
 /// Makes events of what the edges have become.
-template <int D, typename Real>
-void PairRefiner<D, Real>::tell() {
+void PairRefiner::tell() {
   auto& [begun, ended] = state_.refined;
   core::make_room(begun, reviewed_.size());
   core::make_room(ended, reviewed_.size());
@@ -182,8 +174,7 @@ void PairRefiner<D, Real>::tell() {
   sort_pairs(ended, sorting_);
 }
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::settle() noexcept {
+void PairRefiner::settle() noexcept {
   for (const std::uint32_t slot : state_.asked_slots) asked_marks_[slot] = 0;
   state_.asked_slots.clear();
   state_.asks_about_all = false;
@@ -193,8 +184,7 @@ void PairRefiner<D, Real>::settle() noexcept {
   }
 }
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::shrink_to_fit() {
+void PairRefiner::shrink_to_fit() {
   state_.graph.shrink_to_fit();
   state_.candidates.shrink_to_fit();
   state_.refined.shrink_to_fit();
@@ -202,44 +192,37 @@ void PairRefiner<D, Real>::shrink_to_fit() {
   core::shrink(state_.asked_slots, state_.fresh, asked_marks_, reviewed_, questions_, sorting_);
 }
 
-template <int D, typename Real>
-std::size_t PairRefiner<D, Real>::bytes() const noexcept {
+std::size_t PairRefiner::bytes() const noexcept {
   return state_.graph.bytes() + state_.candidates.bytes() + state_.refined.bytes() +
          core::bytes_of(state_.asked_slots, state_.fresh, asked_marks_, reviewed_, questions_, sorting_);
 }
 
-template <int D, typename Real>
-std::vector<Pair> PairRefiner<D, Real>::tracked(std::vector<Pair> current) const {
-  const PairEvents waiting = state_.candidates.netted();
-  if (state_.is_refining) current = edges();
-  return symmetric_difference(symmetric_difference(current, waiting.begun), waiting.ended);
+std::vector<Pair> PairRefiner::tracked(std::vector<Pair> current) const {
+  return state_.candidates.netted().undone(state_.is_refining ? edges() : std::move(current));
 }
 
-template <int D, typename Real>
-std::vector<Pair> PairRefiner<D, Real>::edges() const {
+std::vector<Pair> PairRefiner::edges() const {
   std::vector<Pair> edges(state_.graph.pairs().begin(), state_.graph.pairs().end());
   std::ranges::sort(edges);
   return edges;
 }
 
-template <int D, typename Real>
-std::vector<Pair> PairRefiner<D, Real>::held_edges() const {
+std::vector<Pair> PairRefiner::held_edges() const {
   std::vector<Pair> edges = this->edges();
   std::erase_if(edges,
                 [&graph = state_.graph](Pair pair) { return graph.marks()[graph.find(pair)] != edge_holds; });
   return edges;
 }
 
-template <int D, typename Real>
-void PairRefiner<D, Real>::restore(RefinerState state, std::size_t slots) {
+void PairRefiner::restore(RefinerState state, std::size_t slots) {
   state_ = std::move(state);
   asked_marks_.assign(state_.asked_slots.empty() ? 0 : slots, 0);
   for (const std::uint32_t slot : state_.asked_slots) asked_marks_[slot] = 1;
 }
 
-template class PairRefiner<2, float>;
-template class PairRefiner<2, double>;
-template class PairRefiner<3, float>;
-template class PairRefiner<3, double>;
+template PairEvents& PairRefiner::refine(const BoxTable<2, float>&, Generations);
+template PairEvents& PairRefiner::refine(const BoxTable<2, double>&, Generations);
+template PairEvents& PairRefiner::refine(const BoxTable<3, float>&, Generations);
+template PairEvents& PairRefiner::refine(const BoxTable<3, double>&, Generations);
 
 }  // namespace broadside::world

@@ -40,7 +40,6 @@ struct RefinerState {
 ///
 /// Each step first does all that can fail and then changes something, so that an update that throws can be
 /// tried again: what its steps had done by then waits in `candidates`, `fresh` and `refined`.
-template <int D, typename Real>
 class PairRefiner {
  public:
   /// `by_boxes`: whether the boxes themselves decide about pairs of enlarged ones.
@@ -73,7 +72,8 @@ class PairRefiner {
   void ask_again() noexcept { state_.asks_about_all |= has_predicate(); }
 
   /// Makes the candidates' events the world's, which it returns, sorted; to be cleared when delivered.
-  PairEvents& refine(const SlotTable<D, Real>& slots, const BoxTable<D, Real>& boxes);
+  template <int D, typename Real>
+  PairEvents& refine(const BoxTable<D, Real>& boxes, Generations generations);
 
   /// At the end of an update.
   void settle() noexcept;
@@ -108,10 +108,12 @@ class PairRefiner {
   };
 
   void take_candidates(std::size_t slots);
+  template <int D, typename Real>
   void review_changes(const BoxTable<D, Real>& boxes);
+  template <int D, typename Real>
   void review_all(std::span<const Box<D, Real>> boxes);
   void review(PairGraph::EdgeId edge, bool overlaps);
-  void answer(const SlotTable<D, Real>& slots);
+  void answer(Generations generations);
   void tell();
 
   RefinerState state_;

@@ -34,14 +34,9 @@ std::uint32_t SlotTable<D, Real>::readable_slot(Handle handle) const {
 
 template <int D, typename Real>
 const Box<D, Real>* SlotTable<D, Real>::removed_box(std::uint32_t slot) const noexcept {
-  switch (states_[slot]) {
-    case SlotState::removed:
-      return &removed_[places_[slot]].box;
-    case SlotState::reported:
-      return &reported_[places_[slot]].box;
-    default:
-      return nullptr;
-  }
+  if (states_[slot] == SlotState::removed) return &removed_[places_[slot]].box;
+  if (states_[slot] == SlotState::reported) return &reported_[places_[slot]].box;
+  return nullptr;
 }
 
 template <int D, typename Real>
@@ -90,22 +85,24 @@ Handle SlotTable<D, Real>::add() noexcept {
 }
 
 template <int D, typename Real>
-void SlotTable<D, Real>::reserve_removals(std::size_t count) {
-  core::make_room(removed_, count);
-}
-
-template <int D, typename Real>
-void SlotTable<D, Real>::remove(std::uint32_t slot, const Box<D, Real>& box) noexcept {
-  states_[slot] = SlotState::removed;
-  places_[slot] = static_cast<std::uint32_t>(removed_.size());
-  removed_.push_back({slot, box});
-  --live_;
-}
-
-template <int D, typename Real>
-void SlotTable<D, Real>::undo_removals(std::size_t count) noexcept {
-  for (; removed_.size() > count; removed_.pop_back(), ++live_)
-    states_[removed_.back().slot] = SlotState::live;
+std::span<const RemovedBox<D, Real>> SlotTable<D, Real>::remove(std::span<const Handle> handles,
+                                                                std::span<const Box<D, Real>> boxes) {
+  core::make_room(removed_, handles.size());
+  const std::size_t before = removed_.size();
+  // Each handle is read once, because another thread may write to the caller's list. A handle that is listed
+  // twice is no longer live the second time.
+  for (const Handle handle : handles) {
+    if (!is_live(handle)) {
+      for (; removed_.size() > before; removed_.pop_back(), ++live_)
+        states_[removed_.back().slot] = SlotState::live;
+      refuse(handle, is_live(handle) ? "remove twice" : "remove");
+    }
+    states_[handle.slot] = SlotState::removed;
+    places_[handle.slot] = static_cast<std::uint32_t>(removed_.size());
+    removed_.push_back({handle.slot, boxes[handle.slot]});
+    --live_;
+  }
+  return removed().subspan(before);
 }
 
 template <int D, typename Real>

@@ -18,6 +18,25 @@ namespace broadside::world {
 /// removal, and the box can still be read), and free again; or retired, if its generations are used up.
 enum class SlotState : std::uint8_t { free, live, removed, reported, retired };
 
+/// The generation of each slot.
+using Generations = std::span<const std::uint32_t>;
+
+inline Pair slots_of(const HandlePair& pair) noexcept {
+  return {BoxId{pair.first.slot}, BoxId{pair.second.slot}};
+}
+
+inline std::vector<Pair> slots_of(std::span<const HandlePair> handles) {
+  std::vector<Pair> pairs;
+  pairs.reserve(handles.size());
+  for (const HandlePair& pair : handles) pairs.push_back(slots_of(pair));
+  return pairs;
+}
+
+inline HandlePair handles_of(Pair pair, Generations generations) noexcept {
+  return {{index(pair.first), generations[index(pair.first)]},
+          {index(pair.second), generations[index(pair.second)]}};
+}
+
 /// A box that was removed and can still be read.
 template <int D, typename Real>
 struct RemovedBox {
@@ -44,13 +63,12 @@ class SlotTable {
 
   SlotState state(std::uint32_t slot) const noexcept { return states_[slot]; }
   std::span<const SlotState> states() const noexcept { return states_; }
-  std::span<const std::uint32_t> generations() const noexcept { return generations_; }
+  Generations generations() const noexcept { return generations_; }
 
   /// The generation of slots that do not exist yet: above that of any slot that was dropped.
   std::uint32_t first_generation() const noexcept { return first_generation_; }
 
   Handle handle(BoxId id) const noexcept { return {index(id), generations_[index(id)]}; }
-  HandlePair handles(Pair pair) const noexcept { return {handle(pair.first), handle(pair.second)}; }
 
   bool is_live(Handle handle) const noexcept {
     return handle.slot < generations_.size() && generations_[handle.slot] == handle.generation &&
@@ -89,14 +107,9 @@ class SlotTable {
 
   Handle add() noexcept;
 
-  /// Makes room for `count` removals.
-  void reserve_removals(std::size_t count);
-
-  /// Takes the box out of a live slot.
-  void remove(std::uint32_t slot, const Box<D, Real>& box) noexcept;
-
-  /// Undoes the removals since there were `count` since the last update; their boxes are live again.
-  void undo_removals(std::size_t count) noexcept;
+  /// Takes boxes, which are given by slot, out of the table: all of them or, if a handle is refused, none.
+  /// Returns these removals. Throws InvalidHandle.
+  std::span<const Removed> remove(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes);
 
   /// The removals since the last update, and the removals that the last update reported.
   std::span<Removed> removed() noexcept { return removed_; }

@@ -1,9 +1,11 @@
-// SnapshotChecks: checks that the parts of a snapshot agree.
-#include "world/snapshot_checks.hpp"
-
+// DecodedSnapshot's checks: whether its parts agree, so that update(), pairs() and queries can rely on it.
+// SnapshotReader has checked each part alone.
 #include <algorithm>
 #include <cstdint>
 #include <span>
+
+#include "world/snapshot_codec.hpp"
+#include "world/snapshot_format.hpp"
 
 namespace broadside::world {
 namespace {
@@ -28,24 +30,17 @@ void expect_within(const Pairs& pairs, const Pairs& others, const char* what) {
   }
 }
 
-Pairs slots_of(std::span<const HandlePair> handles) {
-  Pairs pairs;
-  pairs.reserve(handles.size());
-  for (const HandlePair& pair : handles) pairs.push_back({BoxId{pair.first.slot}, BoxId{pair.second.slot}});
-  return pairs;
-}
-
 }  // namespace
 
 template <int D, typename Real>
-void SnapshotChecks<D, Real>::check_last_frame(const TakenFrame<D, Real>& last) const {
-  check_differences(last);
-  for (std::uint32_t slot = 0; slot < last.boxes.size(); ++slot) {
-    if (is_absent(last.boxes[slot])) continue;
-    expect(slot < parts_.slots.size() && parts_.slots.is_paired(slot),
+void DecodedSnapshot<D, Real>::check_last_frame() const {
+  check_differences();
+  for (std::uint32_t slot = 0; slot < last_frame.boxes.size(); ++slot) {
+    if (is_absent(last_frame.boxes[slot])) continue;
+    expect(slot < parts->slots.size() && parts->slots.is_paired(slot),
            "the last frame has a box in a slot that has none now, and none was removed there");
   }
-  Pairs listed(parts_.ignored.changed().begin(), parts_.ignored.changed().end());
+  Pairs listed(parts->ignored.changed().begin(), parts->ignored.changed().end());
   std::ranges::sort(listed);
   const auto expect_listed = [&listed](const IgnoredPairs& some, const IgnoredPairs& others) {
     some.for_each([&](Pair pair) {
@@ -54,46 +49,47 @@ void SnapshotChecks<D, Real>::check_last_frame(const TakenFrame<D, Real>& last) 
     });
   };
   // Without a set of them, the next update takes all for changed.
-  if (!last.has_ignored) return;
-  expect_listed(parts_.ignored.pairs(), last.ignored);
-  expect_listed(last.ignored, parts_.ignored.pairs());
+  if (!last_frame.has_ignored) return;
+  expect_listed(parts->ignored.pairs(), last_frame.ignored);
+  expect_listed(last_frame.ignored, parts->ignored.pairs());
 }
 
 /// Every box and filter that differs between the last frame and now is listed.
 template <int D, typename Real>
-void SnapshotChecks<D, Real>::check_differences(const TakenFrame<D, Real>& last) const {
-  const Frame<D, Real> now = parts_.frame();
+void DecodedSnapshot<D, Real>::check_differences() const {
+  const Frame<D, Real> now = parts->frame();
   std::vector<BoxId> listed(now.changed.begin(), now.changed.end());
   std::ranges::sort(listed);
   const auto is_listed = [&listed](std::uint32_t slot) {
     return std::ranges::binary_search(listed, BoxId{slot});
   };
   for (std::uint32_t i = 0; i < now.boxes.size(); ++i) {
-    if (i < last.boxes.size() && last.boxes[i] == now.boxes[i]) continue;
-    expect((i >= last.boxes.size() && is_absent(now.boxes[i])) || is_listed(i),
+    if (i < last_frame.boxes.size() && last_frame.boxes[i] == now.boxes[i]) continue;
+    expect((i >= last_frame.boxes.size() && is_absent(now.boxes[i])) || is_listed(i),
            "a box changed and is not in the list of those that did");
   }
   const auto filter_of = [](std::span<const Filter> some, std::size_t i) {
     return i < some.size() ? some[i] : Filter{};
   };
-  const std::size_t filtered = last.filters.empty() && now.filters.empty() ? 0 : now.boxes.size();
+  const std::size_t filtered = last_frame.filters.empty() && now.filters.empty() ? 0 : now.boxes.size();
   for (std::uint32_t i = 0; i < filtered; ++i)
-    expect(filter_of(last.filters, i) == filter_of(now.filters, i) || is_listed(i),
+    expect(filter_of(last_frame.filters, i) == filter_of(now.filters, i) || is_listed(i),
            "a filter changed and is not in the list of boxes that did");
 }
 
 template <int D, typename Real>
-void SnapshotChecks<D, Real>::check_pending(bool is_settled, bool asks_predicate) const {
-  const RefinerState& refiner = parts_.refiner.state();
+void DecodedSnapshot<D, Real>::check_pending(bool is_settled, bool asks_predicate) const {
+  const RefinerState& refiner = parts->refiner.state();
   const bool has_waiting = !refiner.candidates.empty() || !refiner.refined.empty() || !refiner.fresh.empty();
-  if (!parts_.has_updated) {
-    expect(parts_.current.size() == 0 && parts_.events.begun().empty() && parts_.events.ended().empty() &&
-               refiner.graph.size() == 0 && parts_.slots.reported().empty() && !has_waiting,
+  if (!parts->has_updated) {
+    expect(parts->current.size() == 0 && parts->current.events().begun.empty() &&
+               parts->current.events().ended.empty() && refiner.graph.size() == 0 &&
+               parts->slots.reported().empty() && !has_waiting,
            "it had no update and has pairs, events or boxes whose removal was told");
   }
   if (is_settled) {
-    expect(parts_.boxes.changed().empty() && parts_.slots.removed().empty() &&
-               parts_.ignored.changed().empty() && !has_waiting,
+    expect(parts->boxes.changed().empty() && parts->slots.removed().empty() &&
+               parts->ignored.changed().empty() && !has_waiting,
            "nothing is pending and an update has something to tell");
   }
   if (refiner.is_refining) check_marks(asks_predicate);
@@ -101,11 +97,11 @@ void SnapshotChecks<D, Real>::check_pending(bool is_settled, bool asks_predicate
 
 /// An update looks only at what changed: the marks of all other edges must be right as they are.
 template <int D, typename Real>
-void SnapshotChecks<D, Real>::check_marks(bool asks_predicate) const {
-  const PairGraph& graph = parts_.refiner.state().graph;
-  const std::span<const Box<D, Real>> boxes = parts_.boxes.boxes();
-  const bool by_boxes = parts_.boxes.refines();
-  Pairs new_edges = parts_.refiner.state().fresh;
+void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
+  const PairGraph& graph = parts->refiner.state().graph;
+  const std::span<const Box<D, Real>> boxes = parts->boxes.boxes();
+  const bool by_boxes = parts->boxes.refines();
+  Pairs new_edges = parts->refiner.state().fresh;
   std::ranges::sort(new_edges);
   for (PairGraph::EdgeId edge = 0; edge < graph.size(); ++edge) {
     const Pair pair = graph.pairs()[edge];
@@ -113,8 +109,8 @@ void SnapshotChecks<D, Real>::check_marks(bool asks_predicate) const {
     if (mark == edge_accepted) refuse(pair, "is accepted and does not overlap");
     const std::uint32_t a = index(pair.first);
     const std::uint32_t b = index(pair.second);
-    const bool is_looked_at = parts_.refiner.asks_about(a) || parts_.refiner.asks_about(b) ||
-                              (by_boxes && (parts_.boxes.is_changed(a) || parts_.boxes.is_changed(b))) ||
+    const bool is_looked_at = parts->refiner.asks_about(a) || parts->refiner.asks_about(b) ||
+                              (by_boxes && (parts->boxes.is_changed(a) || parts->boxes.is_changed(b))) ||
                               std::ranges::binary_search(new_edges, pair);
     if (is_looked_at) continue;
     const bool overlaps = !by_boxes || overlap(boxes[a], boxes[b]);
@@ -128,38 +124,39 @@ void SnapshotChecks<D, Real>::check_marks(bool asks_predicate) const {
 }
 
 template <int D, typename Real>
-void SnapshotChecks<D, Real>::check_pairs(const Pairs& tracked) const {
-  const RefinerState& refiner = parts_.refiner.state();
+void DecodedSnapshot<D, Real>::check_pairs(const Pairs& tracked) const {
+  const RefinerState& refiner = parts->refiner.state();
   const PairEvents& candidates = refiner.candidates;
   expect_within(candidates.begun, tracked, "is a candidate that began; expected the tracker to have it");
   expect_apart(candidates.ended, tracked, "is a candidate that ended; expected the tracker not to have it");
-  const Pairs known = symmetric_difference(symmetric_difference(tracked, candidates.begun), candidates.ended);
+  const Pairs known = candidates.undone(tracked);
   Pairs held = known;
   if (refiner.is_refining) {
-    expect(parts_.refiner.edges() == known, "its pairs to refine are not those of its boxes");
-    held = parts_.refiner.held_edges();
+    expect(parts->refiner.edges() == known, "its pairs to refine are not those of its boxes");
+    held = parts->refiner.held_edges();
     expect_within(refiner.refined.begun, held, "began when refined; expected it to hold");
     expect_apart(refiner.refined.ended, held, "ended when refined; expected it not to hold");
   }
   // The pairs that a failed update refined are not among the pairs yet.
-  const Pairs told =
-      symmetric_difference(symmetric_difference(held, refiner.refined.begun), refiner.refined.ended);
-  if (parts_.current.size() != told.size()) {
+  const Pairs told = refiner.refined.undone(held);
+  if (parts->current.size() != told.size()) {
     throw InvalidSnapshot("a snapshot contradicts itself: it counts " +
-                          std::to_string(parts_.current.size()) + " pairs; expected " +
+                          std::to_string(parts->current.size()) + " pairs; expected " +
                           std::to_string(told.size()) + ", which its boxes make");
   }
-  if (parts_.current.keeps()) {
-    expect(slots_of(parts_.current.pairs(parts_.slots.generations())) == told,
+  if (parts->current.keeps()) {
+    expect(slots_of(parts->current.pairs(parts->slots.generations())) == told,
            "its pairs are not those of its boxes");
   }
-  expect_within(slots_of(parts_.events.begun()), told, "began with the last update; expected it to hold");
-  expect_apart(slots_of(parts_.events.ended()), told, "ended with the last update; expected it not to hold");
+  expect_within(slots_of(parts->current.events().begun), told,
+                "began with the last update; expected it to hold");
+  expect_apart(slots_of(parts->current.events().ended), told,
+               "ended with the last update; expected it not to hold");
 }
 
-template class SnapshotChecks<2, float>;
-template class SnapshotChecks<2, double>;
-template class SnapshotChecks<3, float>;
-template class SnapshotChecks<3, double>;
+template struct DecodedSnapshot<2, float>;
+template struct DecodedSnapshot<2, double>;
+template struct DecodedSnapshot<3, float>;
+template struct DecodedSnapshot<3, double>;
 
 }  // namespace broadside::world

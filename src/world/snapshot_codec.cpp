@@ -10,8 +10,6 @@
 #include "broadside/error.hpp"
 
 #include "world/byte_stream.hpp"
-#include "world/serializer.hpp"
-#include "world/snapshot_checks.hpp"
 #include "world/snapshot_format.hpp"
 #include "world/snapshot_reader.hpp"
 
@@ -47,7 +45,7 @@ void put_slots(ByteWriter& out, const WorldParts<D, Real>& parts) {
   out.put(std::uint64_t{slots.size()});
   put_all(out, boxes.boxes());
   put_all(out, slots.generations());
-  for (const SlotState state : slots.states()) out.put(static_cast<std::uint8_t>(state));
+  put_all(out, slots.states());
   put_all(out, boxes.enlarged());
   put_all(out, boxes.filters().values());
   put_all(out, parts.user_data.values());
@@ -131,18 +129,17 @@ void SnapshotCodec<D, Real>::encode(const Parts& parts, const Tracker& tracker,
   put_list(out, parts.ignored.changed());
   put_last_frame(out, tracker.last_frame(), parts.frame());
   put_pairs(out, current);
-  put_pairs(out, parts.events.begun());
-  put_pairs(out, parts.events.ended());
+  put_pairs(out, parts.current.events().begun);
+  put_pairs(out, parts.current.events().ended);
   put_refiner(out, refiner, parts.refiner.edges());
 
-  out.put_at(length_at, out.size() + checksum_bytes);
+  out.put_at(length_at, std::uint64_t{out.size() + checksum_bytes});
   out.seal();
 }
 
 template <int D, typename Real>
-typename SnapshotCodec<D, Real>::Decoded SnapshotCodec<D, Real>::decode(std::span<const std::byte> bytes,
-                                                                        const Parts& parts,
-                                                                        const Tracker& tracker) {
+DecodedSnapshot<D, Real> SnapshotCodec<D, Real>::decode(std::span<const std::byte> bytes, const Parts& parts,
+                                                        const Tracker& tracker) {
   ByteReader in(bytes, snapshot::version);
   for (const unsigned char byte : snapshot::magic)
     expect_equal("a byte of the magic number", in.get<unsigned char>(), byte);
@@ -159,15 +156,10 @@ typename SnapshotCodec<D, Real>::Decoded SnapshotCodec<D, Real>::decode(std::spa
   expect_equal("the checksum", end.get<std::uint32_t>(), ByteWriter::checksum_of(body));
 
   ByteReader rest(body.subspan(bytes.size() - in.left()), version);
-  Decoded decoded;
+  DecodedSnapshot<D, Real> decoded;
   SnapshotReader<D, Real>(rest, decoded).read(parts, tracker);
   expect_equal("the number of bytes behind the end", rest.left(), std::size_t{0});
   return decoded;
-}
-
-template <int D, typename Real>
-void SnapshotCodec<D, Real>::check_pairs(const Parts& parts, const std::vector<Pair>& tracked) {
-  SnapshotChecks(parts).check_pairs(tracked);
 }
 
 template class SnapshotCodec<2, float>;

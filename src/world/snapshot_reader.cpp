@@ -9,8 +9,6 @@
 #include "broadside/error.hpp"
 
 #include "core/former_names.hpp"
-#include "world/serializer.hpp"
-#include "world/snapshot_checks.hpp"
 #include "world/snapshot_format.hpp"
 
 namespace broadside::world {
@@ -65,12 +63,11 @@ void SnapshotReader<D, Real>::read(const Parts& world, const WorldTracker<D, Rea
   // If nothing is listed and the flag is not set, an update has failed.
   parts.update_failed = !is_set(snapshot::was_settled) && parts.is_settled();
   read_last_frame();
-  const SnapshotChecks checks(parts);
-  checks.check_last_frame(decoded_.last_frame);
+  decoded_.check_last_frame();
   read_pairs(pair_count);
   read_edges();
   parts.refiner.restore(std::move(refiner_), parts.slots.size());
-  checks.check_pending(is_set(snapshot::was_settled), is_set(snapshot::has_predicate));
+  decoded_.check_pending(is_set(snapshot::was_settled), is_set(snapshot::has_predicate));
 }
 
 template <int D, typename Real>
@@ -117,12 +114,9 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
   const std::size_t count = in_.count(Serializer<Box<D, Real>>::bytes, "slots");
   auto boxes = get_all<Box<D, Real>>(in_, count, "boxes");
   auto generations = get_all<std::uint32_t>(in_, count, "generations");
-  in_.need(1, count, "states of slots");
-  std::vector<SlotState> states(count);
+  auto states = get_all<SlotState>(in_, count, "states of slots");
   for (std::uint32_t slot = 0; slot < count; ++slot) {
-    const auto found = in_.get<std::uint8_t>();
-    expect(found <= static_cast<std::uint8_t>(SlotState::retired), "a slot is in no state that there is");
-    states[slot] = static_cast<SlotState>(found);
+    expect(states[slot] <= SlotState::retired, "a slot is in no state that there is");
     expect(states[slot] != SlotState::retired || generations[slot] == max_generation,
            "a slot is used up and has generations left");
     // One that was invalid is live and absent.
@@ -260,17 +254,14 @@ void SnapshotReader<D, Real>::read_pairs(std::size_t pair_count) {
   const SlotTable<D, Real>& slots = parts.slots;
   const Pairs pairs = read_paired("pairs");
   expect(parts.options.keep_pairs || pairs.empty(), "it keeps no pairs and has some");
-  parts.current.restore(pairs, pair_count, slots.generations());
-  std::vector<HandlePair> begun;
-  std::vector<HandlePair> ended;
-  for (const Pair pair : read_paired("pairs that began")) begun.push_back(slots.handles(pair));
-  for (const Pair pair : get_sorted_pairs(in_, slots.size(), "pairs that ended")) {
+  const Pairs begun = read_paired("pairs that began");
+  const Pairs ended = get_sorted_pairs(in_, slots.size(), "pairs that ended");
+  for (const Pair pair : ended) {
     for (const BoxId id : {pair.first, pair.second})
       expect(slots.is_paired(index(id)) || slots.state(index(id)) == SlotState::reported,
              "a pair ended whose boxes can no longer be read");
-    ended.push_back(slots.handles(pair));
   }
-  parts.events.restore(std::move(begun), std::move(ended));
+  parts.current.restore(pairs, pair_count, {begun, ended}, slots.generations());
 }
 
 template <int D, typename Real>

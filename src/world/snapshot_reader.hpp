@@ -18,7 +18,7 @@ template <int D, typename Real>
 class SnapshotReader {
  public:
   using Parts = WorldParts<D, Real>;
-  using Decoded = typename SnapshotCodec<D, Real>::Decoded;
+  using Decoded = DecodedSnapshot<D, Real>;
 
   SnapshotReader(ByteReader& in, Decoded& decoded) noexcept : in_(in), decoded_(decoded) {}
 
@@ -30,7 +30,6 @@ class SnapshotReader {
 
   void read_options(const Parts& world, const WorldTracker<D, Real>& tracker);
   void read_slots(std::uint32_t first_generation);
-  void read_boxes(std::vector<Box<D, Real>> boxes, const std::vector<SlotState>& states);
   std::vector<RemovedBox<D, Real>> read_removed(const std::vector<SlotState>& states, SlotState state,
                                                 const char* things);
   void read_changes();

@@ -1,13 +1,17 @@
-// World: checks handles and sets the floating-point environment, and hands on to WorldState and its parts.
+// World: what each call does to the parts of a world. Each call first does all that can fail and then changes
+// something, so that one that throws can be tried again.
 #include "broadside/world.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "core/float_environment.hpp"
+#include "core/lean.hpp"
 #include "core/message.hpp"
+#include "core/number_text.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "world/snapshot_codec.hpp"
 #include "world/world_state.hpp"
@@ -15,34 +19,36 @@
 namespace broadside {
 namespace {
 
-WorldOptions with_algorithm(const Spec& spec) {
-  WorldOptions options;
-  options.algorithm = spec;
-  return options;
+/// The pair of two boxes in the world. Throws InvalidHandle, which names the `action`, if one is not there.
+template <int D, typename Real>
+Pair live_pair(const world::SlotTable<D, Real>& slots, Handle a, Handle b, const char* action) {
+  const std::uint32_t first = slots.live_slot(a, action);
+  const std::uint32_t second = slots.live_slot(b, action);
+  if (first == second) {
+    throw std::invalid_argument(
+        core::message({"a pair to be ignored has slot ", first, " twice; expected two different boxes"}));
+  }
+  return {BoxId{std::min(first, second)}, BoxId{std::max(first, second)}};
 }
 
-/// The pair of two boxes that are in the world.
-Pair pair_of(Handle a, Handle b) {
-  if (a.slot == b.slot) {
-    throw std::invalid_argument(
-        core::message({"a pair to be ignored has slot ", a.slot, " twice; expected two different boxes"}));
-  }
-  return {BoxId{std::min(a.slot, b.slot)}, BoxId{std::max(a.slot, b.slot)}};
+void check_lengths(std::size_t found, const char* things, std::size_t count, const char* expected) {
+  if (found == count) return;
+  throw std::invalid_argument(
+      core::message({found, " ", things, " for ", count, " ", expected, "; expected one for each"}));
 }
 
 }  // namespace
 
 template <int D, typename Real>
-World<D, Real>::World(const Spec& spec) : World(with_algorithm(spec)) {}
+World<D, Real>::World(const Spec& spec) : World(WorldOptions{.algorithm = spec}) {}
 
 template <int D, typename Real>
 World<D, Real>::World(const WorldOptions& options)
-    : state_(std::make_unique<world::WorldState<D, Real>>(world::WorldTracker<D, Real>(options), options)) {}
+    : state_(std::make_unique<State>(world::WorldTracker<D, Real>(options), options)) {}
 
 template <int D, typename Real>
 World<D, Real>::World(Tracker<D, Real> tracker, const WorldOptions& options)
-    : state_(std::make_unique<world::WorldState<D, Real>>(
-          world::WorldTracker<D, Real>(std::move(tracker), options), options)) {}
+    : state_(std::make_unique<State>(world::WorldTracker<D, Real>(std::move(tracker), options), options)) {}
 
 template <int D, typename Real>
 World<D, Real>::World(World&& other) noexcept = default;
@@ -64,70 +70,72 @@ template <int D, typename Real>
 void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
                          std::span<const BoxOptions> options) {
   const core::DefaultEnvironment environment;
+  check_lengths(handles.size(), "handles", boxes.size(), "boxes");
+  if (!options.empty()) check_lengths(options.size(), "options", boxes.size(), "boxes");
   state_->add(boxes, handles, options);
 }
 
 template <int D, typename Real>
-void World<D, Real>::move(Handle handle, const Box<D, Real>& box) {
+void World<D, Real>::move_to(Handle handle, const Box<D, Real>& box, const Point<D, Real>* velocity) {
   const core::DefaultEnvironment environment;
-  state_->move(state_->parts.slots.live_slot(handle, "move"), box, nullptr);
-}
-
-template <int D, typename Real>
-void World<D, Real>::move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity) {
-  const core::DefaultEnvironment environment;
-  state_->move(state_->parts.slots.live_slot(handle, "move"), box, &velocity);
+  world::BoxTable<D, Real>& boxes = state_->parts.boxes;
+  const std::uint32_t slot = state_->parts.slots.live_slot(handle, "move");
+  boxes.check(box, 0, "for slot", slot);
+  if (velocity != nullptr) boxes.check_velocity(*velocity, 0, "for slot", slot);
+  boxes.reserve_changes(1);
+  boxes.set(slot, box, velocity);
+  state_->query_index.mark(slot);
 }
 
 template <int D, typename Real>
 void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxes,
                           std::span<const Point<D, Real>> velocities) {
   const core::DefaultEnvironment environment;
-  state_->move(handles, boxes, velocities);
-}
-
-template <int D, typename Real>
-void World<D, Real>::remove(Handle handle) {
-  state_->remove(std::span(&handle, 1));
+  world::WorldParts<D, Real>& parts = state_->parts;
+  check_lengths(handles.size(), "handles", boxes.size(), "boxes");
+  if (!velocities.empty()) check_lengths(velocities.size(), "velocities", boxes.size(), "boxes");
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!parts.slots.is_live(handles[i])) parts.slots.refuse(handles[i], "move");
+    parts.boxes.check(boxes[i], i, "to be moved to, number", i);
+    if (!velocities.empty()) parts.boxes.check_velocity(velocities[i], i, "of the box number", i);
+  }
+  parts.boxes.reserve_changes(boxes.size());
+  parts.boxes.set(handles, boxes, velocities);
+  state_->query_index.mark(handles);
 }
 
 template <int D, typename Real>
 void World<D, Real>::remove(std::span<const Handle> handles) {
-  state_->remove(handles);
+  world::WorldParts<D, Real>& parts = state_->parts;
+  parts.boxes.reserve_changes(handles.size());
+  parts.ignored.reserve_forgetting();
+  for (const auto& removed : parts.slots.remove(handles, parts.boxes.boxes())) {
+    parts.boxes.remove(removed.slot);
+    parts.ignored.forget(removed.slot);
+    state_->query_index.mark(removed.slot);
+  }
 }
 
 template <int D, typename Real>
 void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
   const core::DefaultEnvironment environment;
+  for (int axis = 0; axis < D; ++axis) {
+    if (std::isfinite(origin[axis])) continue;
+    throw std::invalid_argument(core::message({"coordinate ", axis, " of a new origin is ",
+                                               core::text_of(origin[axis]), "; expected a finite number"}));
+  }
   state_->shift_origin(origin);
 }
 
 template <int D, typename Real>
-bool World<D, Real>::contains(Handle handle) const noexcept {
-  return state_->parts.slots.is_live(handle);
-}
-
-template <int D, typename Real>
-const Box<D, Real>& World<D, Real>::box(Handle handle) const {
-  const std::uint32_t slot = state_->parts.slots.readable_slot(handle);
-  const Box<D, Real>* const removed = state_->parts.slots.removed_box(slot);
-  return removed != nullptr ? *removed : state_->parts.boxes.boxes()[slot];
-}
-
-template <int D, typename Real>
-const Box<D, Real>& World<D, Real>::enlarged_box(Handle handle) const {
-  return state_->parts.boxes.shown()[state_->parts.slots.live_slot(handle, "read the enlarged box of")];
-}
-
-template <int D, typename Real>
-Filter World<D, Real>::filter(Handle handle) const {
-  return state_->parts.boxes.filters().get(state_->parts.slots.readable_slot(handle));
-}
-
-template <int D, typename Real>
-std::uint64_t World<D, Real>::user_data(Handle handle) const {
-  const std::uint32_t slot = state_->parts.slots.readable_slot(handle);
-  return state_->parts.keeps_user_data() ? state_->parts.user_data.get(slot) : 0;
+void World<D, Real>::set_filter(Handle handle, const Filter& filter) {
+  world::BoxTable<D, Real>& boxes = state_->parts.boxes;
+  const std::uint32_t slot = state_->parts.slots.live_slot(handle, "filter");
+  if (filter == boxes.filters().get(slot)) return;
+  boxes.reserve_changes(1);
+  state_->reserve(0, true, false);  // begins to use filters, so it comes last
+  boxes.set_filter(slot, filter);
+  state_->query_index.mark(slot);
 }
 
 template <int D, typename Real>
@@ -138,48 +146,18 @@ void World<D, Real>::set_user_data(Handle handle, std::uint64_t user_data) {
 }
 
 template <int D, typename Real>
-void World<D, Real>::list_quarantined(detail::Output<Handle>& output) const {
-  const world::WorldParts<D, Real>& parts = state_->parts;
-  std::vector<Handle> handles;
-  for (std::uint32_t slot = 0; slot < parts.slots.size(); ++slot) {
-    if (parts.slots.state(slot) == world::SlotState::live && is_absent(parts.boxes.boxes()[slot]))
-      handles.push_back(handle_of(BoxId{slot}));
-  }
-  std::ranges::copy(handles, output.resize(handles.size()).begin());
-}
-
-template <int D, typename Real>
-std::size_t World<D, Real>::size() const noexcept {
-  return state_->parts.slots.live();
-}
-
-template <int D, typename Real>
-std::size_t World<D, Real>::slots() const noexcept {
-  return state_->parts.slots.size();
-}
-
-template <int D, typename Real>
-void World<D, Real>::set_filter(Handle handle, const Filter& filter) {
-  state_->set_filter(state_->parts.slots.live_slot(handle, "filter"), filter);
-}
-
-template <int D, typename Real>
 void World<D, Real>::ignore(Handle a, Handle b) {
-  state_->parts.slots.live_slot(a, "ignore a pair of");
-  state_->parts.slots.live_slot(b, "ignore a pair of");
-  state_->parts.ignored.insert(pair_of(a, b));
+  state_->parts.ignored.insert(live_pair(state_->parts.slots, a, b, "ignore a pair of"));
 }
 
 template <int D, typename Real>
 void World<D, Real>::unignore(Handle a, Handle b) {
-  if (is_ignored(a, b)) state_->parts.ignored.erase(pair_of(a, b));
+  state_->parts.ignored.erase(live_pair(state_->parts.slots, a, b, "look up an ignored pair of"));
 }
 
 template <int D, typename Real>
 bool World<D, Real>::is_ignored(Handle a, Handle b) const {
-  state_->parts.slots.live_slot(a, "look up an ignored pair of");
-  state_->parts.slots.live_slot(b, "look up an ignored pair of");
-  return state_->parts.ignored.contains(pair_of(a, b));
+  return state_->parts.ignored.contains(live_pair(state_->parts.slots, a, b, "look up an ignored pair of"));
 }
 
 template <int D, typename Real>
@@ -206,17 +184,18 @@ void World<D, Real>::refilter() {
   state_->parts.refiner.ask_again();
 }
 
+/// The tracker's events are candidates; where there is a margin or a predicate, they are refined.
 template <int D, typename Real>
 Events World<D, Real>::update() {
-  state_->update();
-  return state_->parts.events.view();
-}
-
-template <int D, typename Real>
-void World<D, Real>::shrink_to_fit() {
-  state_->wants_release = true;
-  // Another tracker has to begin where this one is.
-  if (state_->parts.is_settled()) state_->release();
+  world::WorldParts<D, Real>& parts = state_->parts;
+  state_->query_index.drop_outdated(parts.slots.size());
+  parts.update_failed = true;
+  state_->tracker.update(parts.frame(), parts.refiner.candidates());
+  parts.has_updated = true;
+  world::PairEvents& events = parts.refiner.refine(parts.boxes, parts.slots.generations());
+  parts.current.take(events, parts.slots.generations(), parts.user_data);
+  state_->settle();
+  return parts.current.events();
 }
 
 template <int D, typename Real>
@@ -231,51 +210,41 @@ std::span<const HandlePair> World<D, Real>::pairs() const {
 template <int D, typename Real>
 std::span<const HandlePair> World<D, Real>::persisting() const {
   static_cast<void>(pairs());  // throws if there are none
-  return state_->parts.current.persisting(state_->parts.events.begun(), state_->parts.slots.generations());
+  return state_->parts.current.persisting(state_->parts.slots.generations());
 }
 
 template <int D, typename Real>
 void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const {
   const core::DefaultEnvironment environment;
-  if (flags.size() != pairs.size()) {
-    throw std::invalid_argument(
-        core::message({flags.size(), " flags for ", pairs.size(), " pairs; expected one for each"}));
-  }
-  const world::WorldParts<D, Real>& parts = state_->parts;
-  const std::span<const Box<D, Real>> boxes = parts.boxes.boxes();
-  constexpr std::size_t at_once = 256;
-  std::array<Pair, at_once> places;
-  std::array<std::uint8_t, at_once> are_live;
-  for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
-    const std::span<const HandlePair> some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
-    std::uint8_t* const its_flags = flags.data() + begin;
-    if (boxes.empty()) {
-      std::fill_n(its_flags, some.size(), std::uint8_t{0});
-      continue;
-    }
+  check_lengths(flags.size(), "flags", pairs.size(), "pairs");
+  const std::span<const Box<D, Real>> boxes = state_->parts.boxes.boxes();
+  if (boxes.empty()) std::ranges::fill(flags, std::uint8_t{0});
+  std::array<Pair, 256> places;
+  std::array<std::uint8_t, places.size()> are_live;
+  for (std::size_t begin = 0; begin < pairs.size() && !boxes.empty(); begin += places.size()) {
+    const auto some = pairs.subspan(begin, std::min(places.size(), pairs.size() - begin));
     for (std::size_t i = 0; i < some.size(); ++i) {
-      are_live[i] = parts.slots.is_live(some[i].first) && parts.slots.is_live(some[i].second);
-      places[i] = are_live[i] != 0 ? Pair{BoxId{some[i].first.slot}, BoxId{some[i].second.slot}} : Pair{};
+      are_live[i] = contains(some[i].first) && contains(some[i].second);
+      places[i] = are_live[i] != 0 ? world::slots_of(some[i]) : Pair{};
     }
-    kernels::set_overlap_flags(boxes, std::span<const Pair>(places).first(some.size()), its_flags);
-    for (std::size_t i = 0; i < some.size(); ++i) its_flags[i] &= are_live[i];
+    kernels::set_overlap_flags(boxes, std::span<const Pair>(places).first(some.size()), &flags[begin]);
+    for (std::size_t i = 0; i < some.size(); ++i) flags[begin + i] &= are_live[i];
   }
 }
 
 template <int D, typename Real>
 void World<D, Real>::join_into(const World& other, detail::Output<HandlePair>& pairs) const {
-  state_->joined.join(state_->join_side(), other.state_->join_side(), state_->tracker.spec(), workers(),
-                      pairs);
+  state_->join(*other.state_, pairs);
 }
 
 template <int D, typename Real>
 const BoxIndex<D, Real>& World<D, Real>::box_index() const {
-  const world::WorldParts<D, Real>& parts = state_->parts;
+  const world::BoxTable<D, Real>& boxes = state_->parts.boxes;
   // The tracker's own index, if it has one of the boxes as they are now.
-  if (!parts.boxes.enlarges() && parts.boxes.changed().empty()) {
+  if (!boxes.enlarges() && boxes.changed().empty()) {
     if (const BoxIndex<D, Real>* const trackers = state_->tracker.box_index()) return *trackers;
   }
-  return state_->query_index.updated(parts.boxes.boxes(), parts.boxes.filters().values());
+  return state_->query_index.updated(boxes.boxes(), boxes.filters().values());
 }
 
 template <int D, typename Real>
@@ -284,8 +253,63 @@ Handle World<D, Real>::handle_of(BoxId slot) const noexcept {
 }
 
 template <int D, typename Real>
+bool World<D, Real>::contains(Handle handle) const noexcept {
+  return state_->parts.slots.is_live(handle);
+}
+
+template <int D, typename Real>
+const Box<D, Real>& World<D, Real>::box(Handle handle) const {
+  const std::uint32_t slot = state_->parts.slots.readable_slot(handle);
+  const Box<D, Real>* const removed = state_->parts.slots.removed_box(slot);
+  return removed != nullptr ? *removed : state_->parts.boxes.boxes()[slot];
+}
+
+template <int D, typename Real>
+const Box<D, Real>& World<D, Real>::enlarged_box(Handle handle) const {
+  return state_->parts.boxes.shown()[state_->parts.slots.live_slot(handle, "read the enlarged box of")];
+}
+
+template <int D, typename Real>
+Filter World<D, Real>::filter(Handle handle) const {
+  return state_->parts.boxes.filters().get(state_->parts.slots.readable_slot(handle));
+}
+
+template <int D, typename Real>
+std::uint64_t World<D, Real>::user_data(Handle handle) const {
+  return state_->parts.user_data.get(state_->parts.slots.readable_slot(handle));
+}
+
+template <int D, typename Real>
+void World<D, Real>::list_quarantined(detail::Output<Handle>& output) const {
+  const world::WorldParts<D, Real>& parts = state_->parts;
+  std::vector<Handle> handles;
+  for (std::uint32_t slot = 0; slot < parts.slots.size(); ++slot) {
+    if (parts.slots.state(slot) == world::SlotState::live && is_absent(parts.boxes.boxes()[slot]))
+      handles.push_back(handle_of(BoxId{slot}));
+  }
+  std::ranges::copy(handles, output.resize(handles.size()).begin());
+}
+
+template <int D, typename Real>
+std::size_t World<D, Real>::size() const noexcept {
+  return state_->parts.slots.live();
+}
+
+template <int D, typename Real>
+std::size_t World<D, Real>::slots() const noexcept {
+  return state_->parts.slots.size();
+}
+
+template <int D, typename Real>
 WorldStatistics World<D, Real>::statistics() const {
   return state_->statistics();
+}
+
+template <int D, typename Real>
+void World<D, Real>::shrink_to_fit() {
+  state_->wants_release = true;
+  // Another tracker has to begin where this one is.
+  if (state_->parts.is_settled()) state_->release();
 }
 
 template <int D, typename Real>

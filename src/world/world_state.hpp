@@ -1,27 +1,69 @@
-// WorldState: what is behind a World: its parts, and how they change together.
+// World::State: the parts of a world, and what all of them do together.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <mutex>
+#include <optional>
+#include <vector>
 
-#include "broadside/box.hpp"
-#include "broadside/box_view.hpp"
+#include "broadside/finder.hpp"
+#include "broadside/tracker.hpp"
 #include "broadside/world.hpp"
 
-#include "world/pair_events.hpp"
+#include "world/box_table.hpp"
+#include "world/current_pairs.hpp"
+#include "world/ignored_pair_table.hpp"
+#include "world/pair_refiner.hpp"
 #include "world/query_index.hpp"
-#include "world/world_join.hpp"
-#include "world/world_parts.hpp"
+#include "world/slot_column.hpp"
+#include "world/slot_table.hpp"
 #include "world/world_tracker.hpp"
 
 namespace broadside::world {
 
-/// Members do what World's of the same name say. The caller has set the default floating-point environment.
+/// The parts that a world's future depends on: its snapshots hold them. Arrays by slot are all as long as
+/// `slots`.
 template <int D, typename Real>
-class WorldState {
- public:
-  WorldState(WorldTracker<D, Real> its_tracker, const WorldOptions& options);
+struct WorldParts {
+  /// An empty world. Throws std::invalid_argument, as BoxTable does.
+  explicit WorldParts(const WorldOptions& its_options)
+      : options(its_options),
+        slots(options.first_generation),
+        boxes(options),
+        refiner(boxes.refines()),
+        current(options.keep_pairs) {}
+
+  WorldOptions options;
+  SlotTable<D, Real> slots;
+  BoxTable<D, Real> boxes;
+  SlotColumn<std::uint64_t> user_data;  // in use from the first one on that is not 0
+  IgnoredPairTable ignored;
+  PairRefiner refiner;
+  CurrentPairs current;
+  bool has_updated = false;
+  bool update_failed = false;  // the last update did, or is in progress
+
+  /// Whether nothing has changed since the last update, and that one did not fail.
+  bool is_settled() const noexcept {
+    return !update_failed && boxes.changed().empty() && ignored.changed().empty();
+  }
+
+  /// What the tracker is to be shown.
+  Frame<D, Real> frame() const noexcept {
+    return {boxes.shown(), boxes.shown_changes(), boxes.filters().values(), &ignored.pairs(),
+            ignored.changed()};
+  }
+};
+
+}  // namespace broadside::world
+
+namespace broadside {
+
+template <int D, typename Real>
+struct BROADSIDE_HIDDEN World<D, Real>::State {
+  State(world::WorldTracker<D, Real> its_tracker, const WorldOptions& options)
+      : parts(options), tracker(std::move(its_tracker)) {}
 
   /// Makes room for `count` calls of add(), with a first filter and first user data if there are such.
   void reserve(std::size_t count, bool with_filters, bool with_user_data);
@@ -29,46 +71,25 @@ class WorldState {
   /// Adds a box that has been checked.
   Handle add(const Box<D, Real>& box, const BoxOptions& options) noexcept;
 
-  /// Moves a box that is in the world.
-  void move(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) {
-    parts.boxes.check(box, 0, "for slot", slot);
-    if (velocity != nullptr) parts.boxes.check_velocity(*velocity, 0, "for slot", slot);
-    parts.boxes.reserve_changes(1);
-    parts.boxes.set(slot, box, velocity);
-    query_index.mark(slot);
-  }
-
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options);
-  void move(std::span<const Handle> handles, BoxView<D, Real> boxes,
-            std::span<const Point<D, Real>> velocities);
-  void remove(std::span<const Handle> handles);
   void shift_origin(const Point<D, Real>& origin);
-  void set_filter(std::uint32_t slot, const Filter& filter);
 
-  /// Brings the events and the pairs up to date.
-  void update();
+  /// Ends an update: nothing has changed since.
+  void settle() noexcept;
 
   /// Gives back memory that is not needed. After an update, before anything else changes.
   void release();
 
-  void restore(std::span<const std::byte> bytes);
+  void join(const State& other, detail::Output<HandlePair>& pairs);
   WorldStatistics statistics() const;
+  void restore(std::span<const std::byte> bytes);
 
-  /// This world's side of a join.
-  JoinSide<D, Real> join_side() const noexcept {
-    return {parts.boxes.boxes(), parts.boxes.filters().values(), parts.slots.generations()};
-  }
-
-  WorldParts<D, Real> parts;
-  WorldTracker<D, Real> tracker;
-  bool wants_release = false;  // by the next update
-  mutable WorldJoin<D, Real> joined;
-  mutable QueryIndex<D, Real> query_index;
-
- private:
-  void forget(std::uint32_t slot) noexcept;
-  void deliver(PairEvents& pairs);
-  void settle() noexcept;
+  world::WorldParts<D, Real> parts;
+  world::WorldTracker<D, Real> tracker;
+  world::QueryIndex<D, Real> query_index;
+  std::mutex joining;
+  std::optional<Finder<D, Real>> joiner;  // none until worlds are joined
+  bool wants_release = false;             // by the next update
 };
 
-}  // namespace broadside::world
+}  // namespace broadside

@@ -10,19 +10,6 @@
 namespace broadside::world {
 
 template <int D, typename Real>
-TakenFrame<D, Real>::TakenFrame(const Frame<D, Real>& frame)
-    : boxes(frame.boxes.begin(), frame.boxes.end()),
-      filters(frame.filters.begin(), frame.filters.end()),
-      has_ignored(frame.ignored != nullptr) {
-  if (has_ignored) ignored = *frame.ignored;
-}
-
-template <int D, typename Real>
-Frame<D, Real> TakenFrame<D, Real>::frame() const noexcept {
-  return {boxes, {}, filters, has_ignored ? &ignored : nullptr, {}};
-}
-
-template <int D, typename Real>
 WorldTracker<D, Real>::WorldTracker(const WorldOptions& options)
     : is_own_(true), spec_(options.algorithm), tracker_(make(spec_, options.shadow)) {
   if constexpr (!core::is_lean) spec_ = core::canonical_spec(spec_);
@@ -34,6 +21,7 @@ WorldTracker<D, Real>::WorldTracker(Tracker<D, Real> tracker, const WorldOptions
 
 template <int D, typename Real>
 void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& events) {
+  if constexpr (!core::is_lean) lead_back();
   const std::size_t begun_before = events.begun.size();
   const std::size_t ended_before = events.ended.size();
   try {
@@ -49,7 +37,7 @@ void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& even
     events.ended.resize(ended_before);
     throw;
   }
-  if (begun_before + ended_before > 0) events.cancel();
+  if (begun_before + ended_before > 0) events = events.netted();
 }
 
 /// Takes any frame.
@@ -83,7 +71,8 @@ WorldTracker<D, Real> WorldTracker<D, Real>::remade(const Spec& spec) const {
 }
 
 template <int D, typename Real>
-std::vector<Pair> WorldTracker<D, Real>::lead_to(const Taken& frame, std::optional<std::vector<Pair>> known) {
+void WorldTracker<D, Real>::lead_to(const Taken& frame, std::optional<std::vector<Pair>> known,
+                                    const std::function<void(const std::vector<Pair>&)>& check) {
   lead_back();
   way_back_ = std::make_unique<Taken>(tracker().last_frame());
   try {
@@ -91,22 +80,19 @@ std::vector<Pair> WorldTracker<D, Real>::lead_to(const Taken& frame, std::option
       lead(Taken{});
       known.emplace();
     }
-    return symmetric_difference(*known, lead(frame));
+    check(symmetric_difference(*known, lead(frame)));
   } catch (...) {
-    undo();
+    try {
+      lead_back();
+    } catch (...) {
+      // The next update tries again.
+    }
     throw;
   }
+  way_back_.reset();
 }
 
-template <int D, typename Real>
-void WorldTracker<D, Real>::undo() noexcept {
-  try {
-    lead_back();
-  } catch (...) {
-    // The next update tries again.
-  }
-}
-
+/// Brings the tracker back if a lead_to() left it elsewhere, or leaves it there and throws.
 template <int D, typename Real>
 void WorldTracker<D, Real>::lead_back() {
   if (!way_back_) return;
@@ -145,10 +131,6 @@ std::vector<Pair> WorldTracker<D, Real>::lead(const Taken& to) {
   return symmetric_difference(events.begun, events.ended);
 }
 
-template struct TakenFrame<2, float>;
-template struct TakenFrame<2, double>;
-template struct TakenFrame<3, float>;
-template struct TakenFrame<3, double>;
 template class WorldTracker<2, float>;
 template class WorldTracker<2, double>;
 template class WorldTracker<3, float>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,9 +34,14 @@ struct TakenFrame {
   bool has_ignored = false;
 
   TakenFrame() = default;
-  explicit TakenFrame(const Frame<D, Real>& frame);
+  explicit TakenFrame(const Frame<D, Real>& frame)
+      : boxes(frame.boxes.begin(), frame.boxes.end()),
+        filters(frame.filters.begin(), frame.filters.end()),
+        has_ignored(frame.ignored != nullptr) {
+    if (has_ignored) ignored = *frame.ignored;
+  }
 
-  Frame<D, Real> frame() const noexcept;
+  Frame<D, Real> frame() const noexcept { return {boxes, {}, filters, has_ignored ? &ignored : nullptr, {}}; }
 };
 
 /// Follows the frames of a world, by an algorithm of the library or by a tracker of the caller's.
@@ -69,17 +75,11 @@ class WorldTracker {
   /// Replaces the tracker by one by another spec, with the same workers. Throws InvalidSpec.
   WorldTracker remade(const Spec& spec) const;
 
-  /// Leads the tracker to a frame and returns the pairs that hold there, sorted. `known` is the pairs that
-  /// hold in last_frame(), if they are known. If it throws, or if undo() is called before the next update,
-  /// the tracker goes back where it was: now or, where memory is too short for that, at the next update.
-  std::vector<Pair> lead_to(const Taken& frame, std::optional<std::vector<Pair>> known);
-  void undo() noexcept;
-
-  /// Ends a lead_to(): there is no way back.
-  void stay() noexcept { way_back_.reset(); }
-
-  /// Brings the tracker back after a lead_to() that was undone, or leaves it where it is and throws.
-  void lead_back();
+  /// Leads the tracker to a frame, and hands the pairs that hold there, sorted, to `check`. `known` is the
+  /// pairs that hold in last_frame(), if they are known. If anything throws, the tracker goes back where it
+  /// was: now or, where memory is too short for that, at the next update.
+  void lead_to(const Taken& frame, std::optional<std::vector<Pair>> known,
+               const std::function<void(const std::vector<Pair>&)>& check);
 
   /// Its own index, if it has one of the boxes that it took last and is not on a way back.
   const BoxIndex<D, Real>* box_index() const noexcept {
@@ -116,6 +116,7 @@ class WorldTracker {
   }
   Plain& tracker() noexcept { return const_cast<Plain&>(std::as_const(*this).tracker()); }
   void take(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
+  void lead_back();
   std::vector<Pair> lead(const Taken& to);
 
   bool is_own_;

@@ -13,7 +13,6 @@
 #include "broadside/pair.hpp"
 
 #include "world/byte_stream.hpp"
-#include "world/serializer.hpp"
 #include "world/snapshot_format.hpp"
 
 namespace broadside::fuzz {

@@ -25,14 +25,17 @@ TEST(CurrentPairs, LoseNoEventOfAnUpdateBeforeOneThatFails) {
   bool has_failed = true;
   for (std::uint64_t number = 0; has_failed; ++number) {
     CurrentPairs pairs(true);
-    pairs.add(earlier, {}, generations);
+    PairEvents events{earlier, {}};
+    pairs.take(events, generations, {});
+    events.begun = later;
     has_failed = false;
     try {
       const laws::FailingAllocation failing(number, laws::FailureKind::once);
-      pairs.add(later, {}, generations);
+      pairs.take(events, generations, {});
     } catch (const std::bad_alloc&) {
       has_failed = true;
     }
+    EXPECT_EQ(events.begun.size(), has_failed ? 1000u : 0u) << "allocation " << number;
     const auto current = pairs.pairs(generations);
     ASSERT_EQ(current.size(), pairs.size()) << "allocation " << number;
     ASSERT_EQ(current.size(), has_failed ? 1000u : 2000u) << "allocation " << number;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <random>
 #include <set>
-#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,26 +18,24 @@ namespace {
 class CurrentPairsTest : public testing::Test {
  protected:
   void add(const std::set<Pair>& toggled) {
-    std::vector<Pair> begun;
-    std::vector<Pair> ended;
-    for (const Pair pair : toggled) (expected_.contains(pair) ? ended : begun).push_back(pair);
-    for (const Pair pair : ended) expected_.erase(pair);
-    expected_.insert(begun.begin(), begun.end());
-    pairs_.add(begun, ended, generations_);
+    PairEvents events;
+    for (const Pair pair : toggled) (expected_.contains(pair) ? events.ended : events.begun).push_back(pair);
+    for (const Pair pair : events.ended) expected_.erase(pair);
+    expected_.insert(events.begun.begin(), events.begun.end());
+    pairs_.take(events, generations_, user_data_);
   }
 
   void check() {
     EXPECT_EQ(pairs_.size(), expected_.size());
     std::vector<HandlePair> handles;
-    for (const Pair pair : expected_)
-      handles.push_back({{index(pair.first), generations_[index(pair.first)]},
-                         {index(pair.second), generations_[index(pair.second)]}});
+    for (const Pair pair : expected_) handles.push_back(handles_of(pair, generations_));
     ASSERT_TRUE(std::ranges::equal(pairs_.pairs(generations_), handles));
   }
 
   CurrentPairs pairs_{true};
   std::set<Pair> expected_;
   std::vector<std::uint32_t> generations_ = std::vector<std::uint32_t>(100, 1);
+  SlotColumn<std::uint64_t> user_data_;
 };
 
 TEST_F(CurrentPairsTest, AgreesWithAPlainSet) {
@@ -80,20 +77,39 @@ TEST_F(CurrentPairsTest, TellsThePairsThatPersist) {
   const Pair fresh{BoxId{3}, BoxId{5}};
   add({old});
   add({fresh});
-  const std::vector<HandlePair> begun = {{{3, 1}, {5, 1}}};
   const std::vector<HandlePair> expected = {{{1, 1}, {2, 1}}};
-  EXPECT_TRUE(std::ranges::equal(pairs_.persisting(begun, generations_), expected));
+  EXPECT_TRUE(std::ranges::equal(pairs_.persisting(generations_), expected));
   add({});
-  EXPECT_TRUE(std::ranges::equal(pairs_.persisting({}, generations_), pairs_.pairs(generations_)));
+  EXPECT_TRUE(std::ranges::equal(pairs_.persisting(generations_), pairs_.pairs(generations_)));
+}
+
+TEST_F(CurrentPairsTest, GivesEventsTheHandlesAndUserDataOfTheirBoxes) {
+  add({{BoxId{1}, BoxId{2}}});
+  EXPECT_TRUE(pairs_.events().begun_data.empty());
+  user_data_.use(100);
+  user_data_.set(5, 50);
+  generations_[5] = 7;
+  add({{BoxId{1}, BoxId{2}}, {BoxId{3}, BoxId{5}}});
+  const Events events = pairs_.events();
+  ASSERT_EQ(events.begun.size(), 1u);
+  EXPECT_EQ(events.begun[0], (HandlePair{{3, 1}, {5, 7}}));
+  EXPECT_EQ(events.begun_data[0], (UserDataPair{0, 50}));
+  ASSERT_EQ(events.ended.size(), 1u);
+  EXPECT_EQ(events.ended[0], (HandlePair{{1, 1}, {2, 1}}));
 }
 
 TEST(CurrentPairs, CountsPairsThatItDoesNotKeep) {
   CurrentPairs pairs(false);
+  const std::vector<std::uint32_t> generations(3);
   const std::vector<Pair> some = {{BoxId{0}, BoxId{1}}, {BoxId{0}, BoxId{2}}};
-  pairs.add(some, {}, {});
-  pairs.add({}, std::span(some).first(1), {});
+  PairEvents events{some, {}};
+  pairs.take(events, generations, {});
+  EXPECT_TRUE(events.empty());
+  events.ended = {some[0]};
+  pairs.take(events, generations, {});
   EXPECT_EQ(pairs.size(), 1u);
-  EXPECT_EQ(pairs.bytes(), 0u);
+  pairs.shrink_to_fit(generations);
+  EXPECT_EQ(pairs.bytes(), sizeof(HandlePair)) << "one event";
 }
 
 }  // namespace

@@ -32,9 +32,9 @@ class PairRefinerTest : public testing::Test {
   void put(std::uint32_t slot, float x) { boxes.set(slot, {{x, 0}, {x + 1, 1}}, nullptr); }
 
   /// An update in which the tracker tells these events.
-  PairEvents update(PairRefiner<2, float>& refiner, PairEvents events) {
+  PairEvents update(PairRefiner& refiner, PairEvents events) {
     refiner.candidates() = std::move(events);
-    PairEvents& refined = refiner.refine(slots, boxes);
+    PairEvents& refined = refiner.refine(boxes, slots.generations());
     PairEvents told = refined;
     refined.clear();
     refiner.settle();
@@ -44,8 +44,8 @@ class PairRefinerTest : public testing::Test {
 
   SlotTable<2, float> slots{0};
   BoxTable<2, float> boxes{WorldOptions{.margin = 1}};
-  PairRefiner<2, float> by_boxes{true};
-  PairRefiner<2, float> by_predicate{false};
+  PairRefiner by_boxes{true};
+  PairRefiner by_predicate{false};
 };
 
 TEST_F(PairRefinerTest, LeavesTheTrackersEventsAsTheyAreWhereNothingIsRefined) {
@@ -108,7 +108,7 @@ TEST_F(PairRefinerTest, TellsNoEventTwiceAfterAPredicateThrew) {
   };
   by_predicate.swap_predicate(predicate);
   by_predicate.candidates() = {{ab, bc}, {}};
-  EXPECT_THROW(by_predicate.refine(slots, boxes), std::runtime_error);
+  EXPECT_THROW(by_predicate.refine(boxes, slots.generations()), std::runtime_error);
   EXPECT_EQ(by_predicate.state().fresh.size(), 2u);
   throws = false;
   // What the tracker told before counts; in the meantime one of its pairs has ended.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -22,8 +23,7 @@ Handle add(SlotTable<2, float>& slots) {
 }
 
 void remove(SlotTable<2, float>& slots, Handle handle) {
-  slots.reserve_removals(1);
-  slots.remove(handle.slot, unit);
+  slots.remove(std::span(&handle, 1), std::vector<Box2>(handle.slot + 1, unit));
 }
 
 TEST(SlotTable, KeepsARemovedBoxReadableForAnUpdateAndThenUsesItsSlotAgain) {
@@ -68,17 +68,18 @@ TEST(SlotTable, RetiresASlotWhoseGenerationsAreUsedUp) {
   EXPECT_EQ(add(slots).slot, 1u);
 }
 
-TEST(SlotTable, UndoesTheLastRemovals) {
+TEST(SlotTable, RemovesAllOrNone) {
   SlotTable<2, float> slots(0);
-  const Handle first = add(slots);
-  const Handle second = add(slots);
-  remove(slots, first);
-  remove(slots, second);
-  slots.undo_removals(1);
-  EXPECT_FALSE(slots.is_live(first));
-  EXPECT_TRUE(slots.is_live(second));
-  EXPECT_EQ(slots.live(), 1u);
+  std::vector<Handle> handles;
+  for (int i = 0; i < 3; ++i) handles.push_back(add(slots));
+  const std::vector<Box2> boxes(3, unit);
+  EXPECT_EQ(slots.remove(std::span(handles).first(1), boxes).size(), 1u);
+  EXPECT_THROW(slots.remove(std::vector<Handle>{handles[1], handles[2], handles[1]}, boxes), InvalidHandle);
+  EXPECT_THROW(slots.remove(std::vector<Handle>{handles[1], handles[0]}, boxes), InvalidHandle);
+  EXPECT_TRUE(slots.is_live(handles[1]));
+  EXPECT_EQ(slots.live(), 2u);
   EXPECT_EQ(slots.removed().size(), 1u);
+  EXPECT_EQ(slots.remove(std::span(handles).subspan(1), boxes).front().slot, 1u);
 }
 
 TEST(SlotTable, NeverIssuesAHandleOfADroppedSlotAgain) {

@@ -44,7 +44,7 @@ class SnapshotCodecTest : public testing::Test {
 };
 
 TEST_F(SnapshotCodecTest, ReadsWhatItWrote) {
-  const Codec::Decoded decoded = Codec::decode(encoded(), parts, tracker);
+  const auto decoded = Codec::decode(encoded(), parts, tracker);
   EXPECT_EQ(decoded.spec, "grid");
   EXPECT_EQ(decoded.parts->slots.live(), 2u);
   EXPECT_EQ(decoded.parts->user_data.get(1), 77u);
@@ -80,9 +80,9 @@ TEST_F(SnapshotCodecTest, RefusesBytesThatWereCutOrChanged) {
 }
 
 TEST_F(SnapshotCodecTest, RefusesPairsThatTheTrackerDoesNotFind) {
-  const Codec::Decoded decoded = Codec::decode(encoded(), parts, tracker);
-  EXPECT_NO_THROW(Codec::check_pairs(*decoded.parts, {}));
-  EXPECT_THROW(Codec::check_pairs(*decoded.parts, {{BoxId{0}, BoxId{1}}}), InvalidSnapshot);
+  const auto decoded = Codec::decode(encoded(), parts, tracker);
+  EXPECT_NO_THROW(decoded.check_pairs({}));
+  EXPECT_THROW(decoded.check_pairs({{BoxId{0}, BoxId{1}}}), InvalidSnapshot);
 }
 
 }  // namespace
