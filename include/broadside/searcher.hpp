@@ -55,8 +55,8 @@ struct SearchInput {
   std::size_t left_count = 0;
 
   /// The same boxes as doubles, if these decide: write only pairs that overlap as doubles. Boxes that do also
-  /// overlap as floats, since rounding keeps their order. Null if `boxes` decide, and for an algorithm without
-  /// Algorithm::tests_doubles.
+  /// overlap as floats, since rounding keeps their order. Null if `boxes` decide, and for an algorithm
+  /// without Algorithm::tests_doubles.
   const Box<D, double>* doubles = nullptr;
 
   /// Not null if the search may give up when it makes far more tests than its boxes and pairs account for.
