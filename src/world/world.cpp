@@ -40,6 +40,11 @@ void check_lengths(std::size_t found, const char* things, std::size_t count, con
 }  // namespace
 
 template <int D, typename Real>
+struct BROADSIDE_HIDDEN World<D, Real>::State final : world::WorldState<D, Real> {
+  using world::WorldState<D, Real>::WorldState;
+};
+
+template <int D, typename Real>
 World<D, Real>::World(const Spec& spec) : World(WorldOptions{.algorithm = spec}) {}
 
 template <int D, typename Real>

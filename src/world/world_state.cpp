@@ -1,4 +1,4 @@
-// World::State: what all parts of a world do together.
+// WorldState: what all parts of a world do together.
 #include "world/world_state.hpp"
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include "core/lean.hpp"
 #include "world/snapshot_codec.hpp"
 
-namespace broadside {
+namespace broadside::world {
 
 template <int D, typename Real>
-void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool with_user_data) {
+void WorldState<D, Real>::reserve(std::size_t count, bool with_filters, bool with_user_data) {
   const std::size_t added = parts.slots.reserve(count);
   const std::size_t size = parts.slots.size();
   parts.boxes.reserve(added, with_filters);
@@ -24,7 +24,7 @@ void World<D, Real>::State::reserve(std::size_t count, bool with_filters, bool w
 }
 
 template <int D, typename Real>
-Handle World<D, Real>::State::add(const Box<D, Real>& box, const BoxOptions& options) noexcept {
+Handle WorldState<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) noexcept {
   const Handle handle = parts.slots.add();
   if (handle.slot == parts.boxes.boxes().size()) {
     parts.boxes.append();
@@ -38,9 +38,9 @@ Handle World<D, Real>::State::add(const Box<D, Real>& box, const BoxOptions& opt
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::add(BoxView<D, Real> boxes, std::span<Handle> handles,
-                                std::span<const BoxOptions> options) {
-  const world::BoxTable<D, Real>& table = parts.boxes;
+void WorldState<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
+                              std::span<const BoxOptions> options) {
+  const BoxTable<D, Real>& table = parts.boxes;
   for (std::size_t i = 0; i < boxes.size(); ++i) table.check(boxes[i], i, "to be added, number", i);
   bool has_filters = false;
   bool has_user_data = false;
@@ -62,7 +62,7 @@ void World<D, Real>::State::add(BoxView<D, Real> boxes, std::span<Handle> handle
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::shift_origin(const Point<D, Real>& origin) {
+void WorldState<D, Real>::shift_origin(const Point<D, Real>& origin) {
   parts.boxes.reserve_changes(parts.slots.size());
   const auto shifted = [&origin](Box<D, Real> box) {
     for (int axis = 0; axis < D; ++axis) {
@@ -72,7 +72,7 @@ void World<D, Real>::State::shift_origin(const Point<D, Real>& origin) {
     return box;
   };
   for (std::uint32_t slot = 0; slot < parts.slots.size(); ++slot) {
-    if (parts.slots.state(slot) != world::SlotState::live) continue;
+    if (parts.slots.state(slot) != SlotState::live) continue;
     parts.boxes.reset(slot, shifted(parts.boxes.boxes()[slot]));
     query_index.mark(slot);
   }
@@ -81,7 +81,7 @@ void World<D, Real>::State::shift_origin(const Point<D, Real>& origin) {
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::settle() noexcept {
+void WorldState<D, Real>::settle() noexcept {
   parts.slots.recycle();
   parts.boxes.settle();
   parts.ignored.settle();
@@ -100,7 +100,7 @@ void World<D, Real>::State::settle() noexcept {
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::release() {
+void WorldState<D, Real>::release() {
   wants_release = false;
   if (parts.has_updated) tracker.renew(parts.frame());
   parts.current.shrink_to_fit(parts.slots.generations());
@@ -114,7 +114,7 @@ void World<D, Real>::State::release() {
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::join(const State& other, detail::Output<HandlePair>& pairs) {
+void WorldState<D, Real>::join(const WorldState& other, detail::Output<HandlePair>& pairs) {
   // The kept finder serves one reader at a time.
   const std::unique_lock lock(joining, std::try_to_lock);
   std::optional<Finder<D, Real>> another;
@@ -129,15 +129,15 @@ void World<D, Real>::State::join(const State& other, detail::Output<HandlePair>&
       return HandlePair{parts.slots.handle(pair.first), other.parts.slots.handle(pair.second)};
     });
   };
-  const world::BoxTable<D, Real>& left = parts.boxes;
-  const world::BoxTable<D, Real>& right = other.parts.boxes;
+  const BoxTable<D, Real>& left = parts.boxes;
+  const BoxTable<D, Real>& right = other.parts.boxes;
   finder->find_between(left.boxes(), right.boxes(), collect,
                        {left.filters().values(), right.filters().values()});
   std::ranges::sort(handles);
 }
 
 template <int D, typename Real>
-WorldStatistics World<D, Real>::State::statistics() const {
+WorldStatistics WorldState<D, Real>::statistics() const {
   WorldStatistics statistics;
   statistics.boxes = parts.slots.live();
   statistics.slots = parts.slots.size();
@@ -159,14 +159,14 @@ WorldStatistics World<D, Real>::State::statistics() const {
 }
 
 template <int D, typename Real>
-void World<D, Real>::State::restore(std::span<const std::byte> bytes) {
-  const auto decoded = world::SnapshotCodec<D, Real>::decode(bytes, parts, tracker);
-  world::WorldParts<D, Real>& restored = *decoded.parts;
+void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
+  const auto decoded = SnapshotCodec<D, Real>::decode(bytes, parts, tracker);
+  WorldParts<D, Real>& restored = *decoded.parts;
   query_index.mark_differences(parts.boxes.boxes(), parts.boxes.filters().values(), restored.boxes.boxes(),
                                restored.boxes.filters().values());
-  std::optional<world::WorldTracker<D, Real>> another;
+  std::optional<WorldTracker<D, Real>> another;
   if (decoded.spec != tracker.spec()) another.emplace(tracker.remade(decoded.spec));
-  world::WorldTracker<D, Real>& led = another ? *another : tracker;
+  WorldTracker<D, Real>& led = another ? *another : tracker;
   // A new tracker knows no pairs; those of a world that neither refines nor keeps any have to be found.
   std::optional<std::vector<Pair>> known;
   if (another)
@@ -174,7 +174,7 @@ void World<D, Real>::State::restore(std::span<const std::byte> bytes) {
   else if (parts.refiner.is_refining())
     known = parts.refiner.tracked({});
   else if (parts.current.keeps())
-    known = parts.refiner.tracked(world::slots_of(parts.current.pairs(parts.slots.generations())));
+    known = parts.refiner.tracked(slots_of(parts.current.pairs(parts.slots.generations())));
   led.lead_to(decoded.last_frame, std::move(known),
               [&decoded](const std::vector<Pair>& pairs) { decoded.check_pairs(pairs); });
   // Nothing below throws.
@@ -187,9 +187,9 @@ void World<D, Real>::State::restore(std::span<const std::byte> bytes) {
   wants_release = false;
 }
 
-template struct World<2, float>::State;
-template struct World<2, double>::State;
-template struct World<3, float>::State;
-template struct World<3, double>::State;
+template struct WorldState<2, float>;
+template struct WorldState<2, double>;
+template struct WorldState<3, float>;
+template struct WorldState<3, double>;
 
-}  // namespace broadside
+}  // namespace broadside::world

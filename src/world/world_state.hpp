@@ -1,4 +1,4 @@
-// World::State: the parts of a world, and what all of them do together.
+// WorldState: the parts of a world, and what all of them do together.
 #pragma once
 
 #include <cstddef>
@@ -56,13 +56,10 @@ struct WorldParts {
   }
 };
 
-}  // namespace broadside::world
-
-namespace broadside {
-
+/// What is behind a World.
 template <int D, typename Real>
-struct BROADSIDE_HIDDEN World<D, Real>::State {
-  State(world::WorldTracker<D, Real> its_tracker, const WorldOptions& options)
+struct WorldState {
+  WorldState(WorldTracker<D, Real> its_tracker, const WorldOptions& options)
       : parts(options), tracker(std::move(its_tracker)) {}
 
   /// Makes room for `count` calls of add(), with a first filter and first user data if there are such.
@@ -80,16 +77,16 @@ struct BROADSIDE_HIDDEN World<D, Real>::State {
   /// Gives back memory that is not needed. After an update, before anything else changes.
   void release();
 
-  void join(const State& other, detail::Output<HandlePair>& pairs);
+  void join(const WorldState& other, detail::Output<HandlePair>& pairs);
   WorldStatistics statistics() const;
   void restore(std::span<const std::byte> bytes);
 
-  world::WorldParts<D, Real> parts;
-  world::WorldTracker<D, Real> tracker;
-  world::QueryIndex<D, Real> query_index;
+  WorldParts<D, Real> parts;
+  WorldTracker<D, Real> tracker;
+  QueryIndex<D, Real> query_index;
   std::mutex joining;
   std::optional<Finder<D, Real>> joiner;  // none until worlds are joined
   bool wants_release = false;             // by the next update
 };
 
-}  // namespace broadside
+}  // namespace broadside::world

@@ -115,10 +115,10 @@ class SweepAndPruneFollower final : public Follower<D> {
 
   /// Of those of a few boxes that are present.
   void sample(const Change<D>& change) {
-    constexpr std::size_t max_sampled = 256;
-    const std::size_t tries = std::min(change.now.size(), 4 * max_sampled);
+    constexpr std::size_t max_sampled_moves = 256;
+    const std::size_t tries = std::min(change.now.size(), 4 * max_sampled_moves);
     sampled_.clear();
-    for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled; ++i) {
+    for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled_moves; ++i) {
       const std::size_t place = tries == change.now.size() ? i : core::sampled_place(i, change.now.size());
       if (is_present(change.now[place])) sampled_.push_back(change.now[place]);
     }
