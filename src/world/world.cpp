@@ -223,7 +223,7 @@ void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::
   const core::DefaultEnvironment environment;
   check_lengths(flags.size(), "flags", pairs.size(), "pairs");
   const std::span<const Box<D, Real>> boxes = state_->parts.boxes.boxes();
-  if (boxes.empty()) std::ranges::fill(flags, std::uint8_t{0});
+  if (boxes.empty()) std::fill(flags.begin(), flags.end(), std::uint8_t{0});
   std::array<Pair, 256> places;
   std::array<std::uint8_t, places.size()> are_live;
   for (std::size_t begin = 0; begin < pairs.size() && !boxes.empty(); begin += places.size()) {
