@@ -11,8 +11,15 @@
 namespace broadside::core {
 namespace {
 
+#if defined(__wasm__) && !defined(__wasm_atomics__)
+// There is one thread, and clang 14 does not always make a plain variable of a thread-local one by itself.
+#define BROADSIDE_THREAD_LOCAL
+#else
+#define BROADSIDE_THREAD_LOCAL thread_local
+#endif
+
 /// Of the library's caller, while a DefaultEnvironment has replaced it.
-thread_local constinit FloatControl callers_control = FloatControl::standard();
+BROADSIDE_THREAD_LOCAL constinit FloatControl callers_control = FloatControl::standard();
 
 }  // namespace
 
