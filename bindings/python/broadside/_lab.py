@@ -197,7 +197,8 @@ def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
     mode = os.stat(os.fsdecode(name)).st_mode
     if not stat.S_ISFIFO(mode):
         return name, None
-    with open(name, "rb") as pipe:
+    # Unbuffered, so that Python looks for Ctrl-C before each piece: a buffer is filled by several reads without a look between.
+    with open(name, "rb", buffering=0) as pipe:
         return name, _content_of(pipe)
 
 
