@@ -197,7 +197,7 @@ def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
     mode = os.stat(os.fsdecode(name)).st_mode
     if not stat.S_ISFIFO(mode):
         return name, None
-    # Unbuffered, so that Python looks for Ctrl-C before each piece: a buffer is filled by several reads without a look between.
+    # Unbuffered: a buffer is filled by several reads, and Python looks for Ctrl-C only before the first of them.
     with open(name, "rb", buffering=0) as pipe:
         return name, _content_of(pipe)
 

@@ -178,7 +178,7 @@ def test_waits_for_a_pipe_until_ctrl_c(tmp_path):
         with open(path, "wb") as writer:  # waits until it is opened for reading
             writer.write(b"min_x")
             writer.flush()
-            # Python does not see a signal that comes just before it waits, so who waits on presses Ctrl-C again.
+            # Python misses a signal that comes just before it begins to wait. A user then presses Ctrl-C again.
             for _ in range(20):
                 process.send_signal(signal.SIGINT)
                 try:
