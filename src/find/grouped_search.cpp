@@ -5,6 +5,9 @@
 #include <cmath>
 #include <memory>
 
+#include "broadside/algorithm.hpp"
+
+#include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"
 #include "core/sample.hpp"
 #include "kernels/observed_tests.hpp"
@@ -27,6 +30,9 @@ constexpr std::size_t boxes_per_lonely_box = 8;
 /// Several searches must promise to cost this many times less than one: boxes that are searched several times
 /// cost more where they overlap many others, which PlanCosts does not know.
 constexpr double min_gain = 2;
+
+/// All pairs of boxes are compared where they are no more than this number per box: any structure costs more.
+constexpr std::size_t compared_per_box = 128;
 
 bool is_lonely(const Filter& filter) {
   return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
@@ -98,6 +104,7 @@ template <int D>
 std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const SearchInput<D>& input,
                                                    const BoxFilters& filters, PairSink& pairs) {
   searches_ = 1;
+  has_compared_all_ = false;
   if (!is_grouped(input, filters)) return search_all(searcher, input, filters, pairs);
   searches_ = plan_.searches().size();
   std::optional<Statistics> sum = Statistics{};
@@ -180,13 +187,15 @@ std::optional<Statistics> GroupedSearch<D>::run(const PlannedSearch& planned, Se
   gather(input, plan_.others(planned));
   GroupSink sink(ids_, left_count, planned.test, filters, pairs);
   const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
+  has_compared_all_ = compares_all(left_count);
   const std::optional<Statistics> statistics =
-      searcher.search({.boxes = boxes_,
-                       .left_count = left_count,
-                       .doubles = input.doubles == nullptr ? nullptr : doubles_.data(),
-                       .successor = input.successor,
-                       .workers = input.workers},
-                      sink);
+      (has_compared_all_ ? *brute_force_ : searcher)
+          .search({.boxes = boxes_,
+                   .left_count = left_count,
+                   .doubles = input.doubles == nullptr ? nullptr : doubles_.data(),
+                   .successor = input.successor,
+                   .workers = input.workers},
+                  sink);
   if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
   sink.flush();
   return statistics;
@@ -201,6 +210,32 @@ void GroupedSearch<D>::gather(const SearchInput<D>& input, std::span<const std::
       ids_.push_back(place);
     }
   }
+}
+
+/// Whether the gathered boxes are searched by brute force, which is then at hand.
+template <int D>
+bool GroupedSearch<D>::compares_all(std::size_t left_count) {
+  const std::uint64_t boxes = boxes_.size();
+  const std::uint64_t compared =
+      left_count == 0 ? boxes * (boxes - 1) / 2 : left_count * (boxes - left_count);
+  if (compared > compared_per_box * boxes) return false;
+  if (!brute_force_) {
+    if (const Algorithm* const algorithm = find_algorithm("brute_force"))
+      brute_force_ =
+          algorithm::searcher<D>(*algorithm, algorithm::settings_of(*algorithm, {algorithm->name}));
+  }
+  return brute_force_ != nullptr;
+}
+
+template <int D>
+std::string GroupedSearch<D>::explanation(const Searcher<D>& searcher) const {
+  std::string text = has_compared_all_
+                         ? "brute_force, since comparing so few pairs of boxes costs less than any order"
+                         : searcher.explanation();
+  if (!text.empty() && searches_ > 1)
+    text += "; the last of " + std::to_string(searches_) +
+            " searches, each of boxes whose filters accept each other";
+  return text;
 }
 
 template class GroupedSearch<2>;

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,21 +22,25 @@ namespace broadside::find {
 
 /// Where filters reject few pairs, a pair is found and then tested. A sample of the boxes tells how many
 /// overlapping pairs they reject. Where these are many, boxes are grouped by filter, and FilterPlan says
-/// which groups are searched together.
+/// which groups are searched together. Those with so few pairs of boxes that any structure costs more are
+/// searched by brute force, whichever algorithm was asked for.
 ///
 /// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
 template <int D>
 class GroupedSearch {
  public:
   /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
-  /// sets, pairs within a set may be written too. Returns the sum of what the searches did; nothing if the
-  /// searcher does not count. A search that gives up calls the successor of `input`, which can only end the
-  /// whole: places then mean boxes of one group. Throws what the searcher and the sink throw.
+  /// sets, pairs within a set may be written too. Returns the sum of what the searches did; nothing if one of
+  /// them did not count. A search that gives up calls the successor of `input`, which can only end the whole:
+  /// places then mean boxes of one group. Throws what the searcher and the sink throw.
   std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
                                    const BoxFilters& filters, PairSink& pairs);
 
   /// How many searches the last one took.
   std::size_t searches() const noexcept { return searches_; }
+
+  /// As Searcher::explanation(), for the last search of `searcher`. Of several, that of the last one.
+  std::string explanation(const Searcher<D>& searcher) const;
 
  private:
   bool is_grouped(const SearchInput<D>& input, const BoxFilters& filters);
@@ -44,6 +50,7 @@ class GroupedSearch {
   std::optional<Statistics> run(const PlannedSearch& planned, Searcher<D>& searcher,
                                 const SearchInput<D>& input, const BoxFilters& filters, PairSink& pairs);
   void gather(const SearchInput<D>& input, std::span<const std::uint32_t> groups);
+  bool compares_all(std::size_t left_count);
 
   struct SampledBox {
     std::size_t place;
@@ -53,7 +60,9 @@ class GroupedSearch {
 
   FilterGroups groups_;
   FilterPlan plan_;
+  std::unique_ptr<Searcher<D>> brute_force_;  // null until it is needed, and in a build without it
   std::size_t searches_ = 0;
+  bool has_compared_all_ = false;  // whether the last one of several searches was brute force's
   std::vector<SampledBox> sample_;
   std::vector<std::pair<std::size_t, std::size_t>> rejected_;  // places of sampled boxes
   std::vector<FilterPlan::GroupPair> rejected_groups_;

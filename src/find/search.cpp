@@ -125,11 +125,7 @@ Search<D, Real>::Search(std::unique_ptr<Searcher<D>> searcher, bool tests_double
 
 template <int D, typename Real>
 std::string Search<D, Real>::explanation() const {
-  std::string text = searcher_->explanation();
-  if (!text.empty() && searches_ > 1)
-    text += "; the last of " + std::to_string(searches_) +
-            " searches, each of boxes whose filters accept each other";
-  return text;
+  return is_filtered_ ? groups_->explanation(*searcher_) : searcher_->explanation();
 }
 
 template <int D, typename Real>
@@ -200,14 +196,13 @@ std::optional<Statistics> Search<D, Real>::search_filtered(std::span<const Box<D
                                                            std::size_t left_count,
                                                            const SearchOptions<D>& options,
                                                            const BoxFilters& filters, PairSink& pairs) {
-  searches_ = 1;
+  is_filtered_ = false;
   if (options.filters.filters.empty() && options.filters.right_filters.empty())
     return search_present(*searcher_, boxes, left_count, options, pairs);
+  is_filtered_ = true;
   if (!groups_) groups_ = std::make_unique<GroupedSearch<D>>();
   FilteredSearcher<D> searcher(*groups_, *searcher_, filters);
-  const std::optional<Statistics> statistics = search_present(searcher, boxes, left_count, options, pairs);
-  searches_ = groups_->searches();
-  return statistics;
+  return search_present(searcher, boxes, left_count, options, pairs);
 }
 
 template <int D, typename Real>

@@ -59,7 +59,7 @@ class Search {
   std::optional<Statistics> find_within(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
                                         PairSink& pairs);
   std::optional<Statistics> nothing_found() noexcept {
-    searches_ = 1;
+    is_filtered_ = false;
     return Statistics{};
   }
   std::optional<Statistics> search_filtered(std::span<const Box<D, Real>> boxes, std::size_t left_count,
@@ -73,7 +73,7 @@ class Search {
   std::unique_ptr<Searcher<D>> searcher_;
   DoubleSearch<D> doubles_;
   std::unique_ptr<GroupedSearch<D>> groups_;  // null until boxes have filters
-  std::size_t searches_ = 1;                  // that the last call took
+  bool is_filtered_ = false;                  // whether boxes had filters in the last search
   std::vector<Box<D, Real>> present_;         // the boxes without the absent ones; unused if there are none
   std::vector<BoxId> ids_;                    // their places in the caller's array
 };

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "broadside/algorithm.hpp"
+#include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 
 #include "tests/support/boxes.hpp"
@@ -18,13 +20,12 @@
 namespace broadside::find {
 namespace {
 
-/// Compares all boxes. Writes pairs within a set too, and counts what it writes as hits.
+/// Compares all boxes. Writes pairs within a set too. Counts as tests the pairs that were asked for.
 template <int D>
 class AllPairs final : public Searcher<D> {
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     ++searches;
-    boxes += input.boxes.size();
     const std::size_t left = input.left_count;
     std::uint64_t hits = 0;
     for (std::size_t i = 0; i < input.boxes.size(); ++i) {
@@ -37,12 +38,11 @@ class AllPairs final : public Searcher<D> {
       }
     }
     if (!counts) return std::nullopt;
-    return Statistics{.tests = hits, .hits = hits};
+    return Statistics{.tests = hits, .references = input.boxes.size()};
   }
 
   bool counts = true;
   std::size_t searches = 0;
-  std::size_t boxes = 0;
 };
 
 template <int D>
@@ -117,9 +117,12 @@ template <int D>
 void finds_pairs_by_definition(std::size_t cases) {
   GroupedSearch<D> search;
   std::size_t grouped = 0;
+  std::size_t by_searcher = 0;
   for (std::uint64_t seed = 0; seed < cases; ++seed) {
     Rng rng(seed);
-    const std::size_t count = rng.one_in(4) ? rng.below(140) : 130 + rng.below(300);
+    const std::size_t count = rng.one_in(4)    ? rng.below(140)
+                              : rng.one_in(15) ? 1000 + rng.below(1000)
+                                               : 130 + rng.below(300);
     std::vector<Box<D>> boxes(count);
     const bool is_one_place = rng.one_in(3);
     for (Box<D>& box : boxes) box = is_one_place ? boxes_at_one_place<D>(1)[0] : any_box<D>(rng);
@@ -143,9 +146,13 @@ void finds_pairs_by_definition(std::size_t cases) {
     Found<D> found;
     find(found, search, input, of_boxes);
     ASSERT_EQ(found.pairs, pairs_by_definition(input, of_boxes)) << "seed " << seed;
-    grouped += search.searches() > 1 ? 1 : 0;
+    if (search.searches() == 1) continue;
+    ++grouped;
+    by_searcher += found.searcher.searches > 0 ? 1 : 0;
   }
   EXPECT_GT(grouped, cases / 10);
+  EXPECT_GT(by_searcher, 0U);
+  EXPECT_LT(by_searcher, grouped);
 }
 
 TEST(GroupedSearch, FindsThePairsByDefinitionIn2D) { finds_pairs_by_definition<2>(1000); }
@@ -175,8 +182,8 @@ void expect_no_rejected_pair(const std::vector<Filter>& filters, std::size_t sea
   Found<2> found;
   find(found, search, {.boxes = boxes}, BoxFilters(filters));
   EXPECT_EQ(found.pairs, pairs_by_definition<2>({.boxes = boxes}, BoxFilters(filters)));
-  EXPECT_EQ(found.statistics->hits, found.pairs.size());
-  EXPECT_EQ(found.searcher.searches, searches);
+  EXPECT_EQ(found.statistics->tests, found.pairs.size());
+  EXPECT_EQ(search.searches(), searches);
 }
 
 TEST(GroupedSearch, SearchesEachPositiveGroupByItself) {
@@ -215,7 +222,7 @@ TEST(GroupedSearch, LeavesOutBoxesThatMeetNone) {
   Found<2> found;
   find(found, search, {.boxes = boxes}, BoxFilters(filters));
   EXPECT_EQ(found.pairs.size(), 100u * 99 / 2);
-  EXPECT_EQ(found.searcher.boxes, 100);
+  EXPECT_EQ(found.statistics->references, 100);
 }
 
 TEST(GroupedSearch, SearchesLargeNegativeGroupsAgainstOthersOnly) {
@@ -246,7 +253,7 @@ TEST(GroupedSearch, SearchesAllAtOnceWhereNoRejectedBoxesOverlap) {
   Found<2> found;
   find(found, search, {.boxes = boxes}, BoxFilters(filters));
   EXPECT_EQ(found.searcher.searches, 1);
-  EXPECT_EQ(found.searcher.boxes, 2000);
+  EXPECT_EQ(found.statistics->references, 2000);
 }
 
 TEST(GroupedSearch, SearchesOnlyTheSidesThatAcceptEachOther) {
@@ -260,20 +267,45 @@ TEST(GroupedSearch, SearchesOnlyTheSidesThatAcceptEachOther) {
   Found<2> found;
   find(found, search, input, filters);
   EXPECT_EQ(found.pairs, pairs_by_definition(input, filters));
-  EXPECT_EQ(found.statistics->hits, 5u * 500);
-  EXPECT_EQ(found.searcher.boxes, 505);
+  EXPECT_EQ(found.statistics->tests, 5u * 500);
+  EXPECT_EQ(found.statistics->references, 505);
+}
+
+TEST(GroupedSearch, LeavesSearchesOfManyPairsToTheSearcher) {
+  std::vector<Filter> filters(2000, {.category = 2, .mask = 1});
+  for (int i = 0; i < 500; ++i) filters[4 * i] = {.category = 1, .mask = 2};
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  GroupedSearch<2> search;
+  Found<2> found;
+  find(found, search, {.boxes = boxes}, BoxFilters(filters));
+  EXPECT_EQ(found.pairs.size(), 500u * 1500);
+  EXPECT_EQ(found.searcher.searches, 1);
+}
+
+TEST(GroupedSearch, ComparesFewBoxesWithManyWhicheverTheAlgorithm) {
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(16'000);
+  std::vector<Filter> filters(boxes.size(), {.category = 2, .mask = 1});
+  filters[7] = {.category = 1, .mask = 2};
+  for (const Algorithm& algorithm : algorithms()) {
+    Finder<2> finder(algorithm.name);
+    PairCounter pairs;
+    const std::optional<Statistics> statistics = finder.find(boxes, pairs, {.filters = filters});
+    EXPECT_EQ(pairs.count(), 15'999) << algorithm.name;
+    EXPECT_EQ(statistics->tests, 15'999) << algorithm.name;
+    EXPECT_TRUE(finder.explanation().starts_with("brute_force")) << algorithm.name;
+  }
 }
 
 TEST(GroupedSearch, CountsNothingWhereTheSearcherDoesNot) {
-  std::vector<Filter> filters(400, {.category = 2, .mask = 1});
-  filters[0] = {};
+  std::vector<Filter> filters(2000, {.category = 2, .mask = 1});
+  for (int i = 0; i < 500; ++i) filters[4 * i] = {.category = 1, .mask = 2};
   const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
   GroupedSearch<2> search;
   Found<2> found;
   found.searcher.counts = false;
   find(found, search, {.boxes = boxes}, BoxFilters(filters));
   EXPECT_EQ(found.statistics, std::nullopt);
-  EXPECT_EQ(found.pairs.size(), 399);
+  EXPECT_EQ(found.pairs.size(), 500u * 1500);
 }
 
 TEST(GroupedSearch, PassesTheCheckpointBetweenSearches) {
