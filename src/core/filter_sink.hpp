@@ -1,10 +1,12 @@
-// FilterSink: a sink that passes pairs on to another one, changed or left out.
+// FilterSink: a sink that passes pairs on to another one, changed or left out. PassingSink: one by a
+// function.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "broadside/pair.hpp"
 
@@ -44,5 +46,30 @@ class FilterSink : public PairSink {
 
   PairSink* target_;
 };
+
+/// A filter by a function, as pass_on() takes it. Threads have a copy of the function each.
+template <typename Pass>
+class PassingSink final : public FilterSink {
+ public:
+  PassingSink(Pass pass, PairSink& target) : FilterSink(target), pass_(std::move(pass)) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<PassingSink>(pass_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override { pass_on(pairs, pass_); }
+
+  Pass pass_;
+};
+
+/// Calls search(sink) with a filter onto the caller's sink, and flushes the filter. Returns what the search
+/// returns.
+template <typename Sink, typename Search>
+auto search_through(Sink filter, const Search& search) {
+  const auto result = search(filter);
+  filter.flush();
+  return result;
+}
 
 }  // namespace broadside::core

@@ -37,15 +37,19 @@ class CallersSink final : public PairSink {
   std::unique_ptr<PairSink> owned_;
 };
 
-/// Calls search(sink) in the library's floating-point environment. If the caller's is another one, its sink
-/// is called in the caller's, and flushed. Returns what the search returns.
+/// Delivers the pairs of search(sink) to the caller's sink, in the caller's environment, and flushes it. What
+/// a failed search has left there is forgotten. Returns what the search returns.
 template <typename Search>
-auto in_default_environment(PairSink& pairs, const Search& search) {
-  const core::DefaultEnvironment environment;
-  if (!environment.is_foreign()) return search(pairs);
-  CallersSink sink(pairs);
+auto deliver(const core::DefaultEnvironment& environment, PairSink& pairs, const Search& search) {
   try {
+    if (!environment.is_foreign()) {
+      const auto result = search(pairs);
+      pairs.flush();
+      return result;
+    }
+    CallersSink sink(pairs);
     const auto result = search(sink);
+    sink.flush();
     const core::CallersEnvironment callers;
     pairs.flush();
     return result;

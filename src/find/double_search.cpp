@@ -7,9 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/filter_sink.hpp"
 #include "core/rounding.hpp"
-#include "kernels/last_test.hpp"
 #include "kernels/overlap_flags.hpp"
 
 namespace broadside::find {
@@ -21,50 +19,21 @@ constexpr std::size_t few_boxes = 256;
 /// Boxes that are rounded, looked at and hashed while a core's cache holds them.
 constexpr std::size_t boxes_at_once = 256;
 
-/// Passes on the pairs that overlap in double, for searchers that do not test doubles. The order stays.
-template <int D>
-class ExactSink final : public core::FilterSink {
- public:
-  ExactSink(std::span<const Box<D, double>> boxes, PairSink& target) : FilterSink(target), boxes_(boxes) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<ExactSink>(boxes_, target);
-  }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    while (!pairs.empty()) {
-      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
-      std::array<std::uint8_t, max_room> overlaps;
-      kernels::set_overlap_flags(boxes_, some, overlaps.data());
-      const std::uint8_t* next = overlaps.data();
-      pass_on(some, [&next](Pair pair, Pair& to) {
-        to = pair;
-        return *next++ != 0;
-      });
-      pairs = pairs.subspan(some.size());
-    }
-  }
-
-  std::span<const Box<D, double>> boxes_;
-};
-
 }  // namespace
 
 template <int D>
-std::optional<Statistics> DoubleSearch<D>::search(Searcher<D>& searcher,
-                                                  std::span<const Box<D, double>> boxes,
-                                                  std::size_t left_count, Successor<D>* successor,
-                                                  const Workers& workers, PairSink& pairs) {
-  const bool is_exact = round(boxes, left_count, workers);
-  const bool in_kernels = tests_doubles_ && boxes.size() <= kernels::touching_bit;
-  const Box<D, double>* const doubles = in_kernels && !is_exact ? boxes.data() : nullptr;
-  const SearchInput<D> input{floats_, left_count, doubles, successor, workers};
-  if (is_exact || in_kernels) return searcher.search(input, pairs);
-  ExactSink<D> in_double(boxes, pairs);
-  const std::optional<Statistics> statistics = searcher.search(input, in_double);
-  in_double.flush();
-  return statistics;
+void DoubleSearch<D>::ExactSink::consume(std::span<const Pair> pairs) {
+  while (!pairs.empty()) {
+    const std::span<const Pair> some = pairs.first(std::min(pairs.size(), PairSink::max_room));
+    std::array<std::uint8_t, PairSink::max_room> overlaps;
+    kernels::set_overlap_flags(boxes_, some, overlaps.data());
+    const std::uint8_t* next = overlaps.data();
+    FilterSink::pass_on(some, [&next](Pair pair, Pair& to) {
+      to = pair;
+      return *next++ != 0;
+    });
+    pairs = pairs.subspan(some.size());
+  }
 }
 
 /// Sets floats_. Returns whether coordinates that differ do so as floats.

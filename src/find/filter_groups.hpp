@@ -25,6 +25,9 @@ class BoxFilters {
              std::span<const BoxId> ids = {})
       : left_(left), right_(right), left_count_(left_count), ids_(ids) {}
 
+  /// Whether no box has a filter.
+  bool empty() const noexcept { return left_.empty() && right_.empty(); }
+
   const Filter& operator[](std::size_t place) const noexcept {
     const bool is_left = place < left_count_;
     const std::span<const Filter> filters = is_left ? left_ : right_;

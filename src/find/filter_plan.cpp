@@ -189,8 +189,11 @@ void FilterPlan::count_rejected(std::size_t a, std::size_t b) noexcept {
 
 void FilterPlan::plan_nodes(FilterTest test) {
   Nodes all = 0;
+  Nodes right = 0;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (target_of_[i] == i) all |= bit(i);
+    if (target_of_[i] != i) continue;
+    all |= bit(i);
+    if (nodes_[i].is_right) right |= bit(i);
   }
   stars_.clear();
   Nodes remaining = without_lonely(all);
@@ -205,7 +208,7 @@ void FilterPlan::plan_nodes(FilterTest test) {
       best = node;
     }
     if (greatest == 0) break;
-    if ((nodes_[best].meets & bit(best)) != 0) add_within(bit(best), test);
+    if ((nodes_[best].meets & bit(best)) != 0) add(bit(best), 0, test);
     remaining &= ~bit(best);
     const Nodes others = nodes_[best].meets & remaining;
     const auto same = std::ranges::find(stars_, others, &Star::others);
@@ -216,8 +219,8 @@ void FilterPlan::plan_nodes(FilterTest test) {
     remaining = without_lonely(remaining);
   }
   for (const Star& star : stars_) {
-    const bool is_right = nodes_[static_cast<std::size_t>(std::countr_zero(star.nodes))].is_right;
-    add_between(is_right ? star.others : star.nodes, is_right ? star.nodes : star.others, test);
+    const bool is_right = (star.nodes & right) != 0;
+    add(is_right ? star.others : star.nodes, is_right ? star.nodes : star.others, test);
   }
   while (remaining != 0) {
     Nodes part = 0;
@@ -227,15 +230,7 @@ void FilterPlan::plan_nodes(FilterTest test) {
       next |= nodes_[node].meets & remaining & ~part;
     }
     remaining &= ~part;
-    Nodes right = 0;
-    for (Nodes nodes = part; nodes != 0;) {
-      const std::size_t node = take_first(nodes);
-      if (nodes_[node].is_right) right |= bit(node);
-    }
-    if (are_two_sets_)
-      add_between(part & ~right, right, test);
-    else
-      add_within(part, test);
+    add(part & ~right, part & right, test);
   }
 }
 
@@ -277,27 +272,15 @@ double FilterPlan::boxes_of(Nodes nodes) const {
   return boxes;
 }
 
-void FilterPlan::add_within(Nodes nodes, FilterTest test) {
-  const std::size_t begin = members_.size();
-  bool has_rejects = false;
-  for (Nodes left = nodes; left != 0;) {
-    Nodes with = left;
-    const std::size_t node = take_first(left);
-    has_rejects |= (nodes_[node].rejects & nodes) != 0;
-    while (with != 0) cost_ += rejected_[node][take_first(with)];
-  }
-  cost_ += boxes_of(nodes) * PlanCosts::box + PlanCosts::search;
-  add_members(nodes);
-  searches_.push_back({begin, members_.size(), members_.size(), has_rejects ? test : FilterTest::none});
-}
-
-void FilterPlan::add_between(Nodes left, Nodes right, FilterTest test) {
+/// Adds a search between the two or, if there are none in `right`, within `left`.
+void FilterPlan::add(Nodes left, Nodes right, FilterTest test) {
   const std::size_t begin = members_.size();
   bool has_rejects = false;
   for (Nodes nodes = left; nodes != 0;) {
+    Nodes with = right != 0 ? right : nodes;
     const std::size_t node = take_first(nodes);
-    has_rejects |= (nodes_[node].rejects & right) != 0;
-    for (Nodes with = right; with != 0;) cost_ += rejected_[node][take_first(with)];
+    has_rejects |= (nodes_[node].rejects & (right != 0 ? right : left)) != 0;
+    while (with != 0) cost_ += rejected_[node][take_first(with)];
   }
   cost_ += boxes_of(left | right) * PlanCosts::box + PlanCosts::search;
   add_members(left);

@@ -98,8 +98,7 @@ class FilterPlan {
   double gain(Nodes remaining, std::size_t node) const;
   Nodes without_lonely(Nodes nodes) const;
   double boxes_of(Nodes nodes) const;
-  void add_within(Nodes nodes, FilterTest test);
-  void add_between(Nodes left, Nodes right, FilterTest test);
+  void add(Nodes left, Nodes right, FilterTest test);
   void add_members(Nodes nodes);
 
   bool are_two_sets_ = false;

@@ -37,19 +37,6 @@ void check_filters(const PairFilters& filters, std::size_t left, std::size_t rig
   check_filters(filters.right_filters, right, " right");
 }
 
-/// Runs a search that writes to `pairs`; what a failed one has left there is forgotten.
-template <typename SearchInto>
-std::optional<Statistics> deliver(PairSink& pairs, const SearchInto& search) {
-  try {
-    const std::optional<Statistics> statistics = search();
-    pairs.flush();
-    return statistics;
-  } catch (...) {
-    pairs.discard();
-    throw;
-  }
-}
-
 }  // namespace
 
 template <int D, typename Real>
@@ -59,37 +46,42 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
       : workers{.threads = threads}, search_(std::move(searcher), tests_doubles) {}
 
   std::optional<Statistics> find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {
+    const core::DefaultEnvironment environment;
     core::check_count(view.size());
     if (!filters.right_filters.empty())
       throw InvalidFrame("filters of a right set for a search in one set; expected none");
     check_filters(filters.filters, view.size(), "");
     const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
     const std::size_t absent = check(boxes);
-    return deliver(pairs, [&] { return search_.find(boxes, {filters, workers, nullptr, absent}, pairs); });
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
+      return search_.find(boxes, {filters, workers, nullptr, absent}, sink);
+    });
   }
 
   std::optional<Statistics> find_between(BoxView<D, Real> left_view, BoxView<D, Real> right_view,
                                          PairSink& pairs, const PairFilters& filters) {
+    const core::DefaultEnvironment environment;
     core::check_count(left_view.size() + right_view.size());
     check_filters(filters, left_view.size(), right_view.size());
     const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
     const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
     const std::size_t absent = check(left, right);
-    return deliver(pairs, [&] {
-      return search_.find_between(left, right, {filters, workers, nullptr, absent}, pairs);
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
+      return search_.find_between(left, right, {filters, workers, nullptr, absent}, sink);
     });
   }
 
   std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                         PairSink& pairs) {
+    const core::DefaultEnvironment environment;
     core::check_count(boxes.size());
     if (left_count > boxes.size()) {
       throw InvalidFrame(core::message({"a left set of ", left_count, " boxes in an array of ", boxes.size(),
                                         "; expected no more than there are"}));
     }
     const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
-    return deliver(pairs, [&] {
-      return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, pairs);
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
+      return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, sink);
     });
   }
 
@@ -164,7 +156,7 @@ Finder<D, Real>::Finder(const Spec& spec) : Finder(algorithm::require_algorithm(
 template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
   if (searcher == nullptr) throw std::invalid_argument("Finder was given a null searcher; expected one");
-  state_ = std::make_unique<State>(std::make_unique<find::CheckedSearcher<D>>(std::move(searcher)), false, 1);
+  state_ = std::make_unique<State>(find::checked<D>(std::move(searcher)), false, 1);
 }
 
 template <int D, typename Real>
@@ -177,22 +169,19 @@ Finder<D, Real>::~Finder() = default;
 template <int D, typename Real>
 std::optional<Statistics> Finder<D, Real>::find(BoxView<D, Real> boxes, PairSink& pairs,
                                                 const PairFilters& filters) {
-  return find::in_default_environment(pairs,
-                                      [&](PairSink& sink) { return state_->find(boxes, sink, filters); });
+  return state_->find(boxes, pairs, filters);
 }
 
 template <int D, typename Real>
 std::optional<Statistics> Finder<D, Real>::find_between(BoxView<D, Real> left, BoxView<D, Real> right,
                                                         PairSink& pairs, const PairFilters& filters) {
-  return find::in_default_environment(
-      pairs, [&](PairSink& sink) { return state_->find_between(left, right, sink, filters); });
+  return state_->find_between(left, right, pairs, filters);
 }
 
 template <int D, typename Real>
 std::optional<Statistics> Finder<D, Real>::find_across(std::span<const Box<D, Real>> boxes,
                                                        std::size_t left_count, PairSink& pairs) {
-  return find::in_default_environment(
-      pairs, [&](PairSink& sink) { return state_->find_across(boxes, left_count, sink); });
+  return state_->find_across(boxes, left_count, pairs);
 }
 
 template <int D, typename Real>

@@ -38,64 +38,35 @@ bool is_lonely(const Filter& filter) {
   return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
 }
 
-/// Passes on the pairs that filters let count.
-class AcceptingSink final : public core::FilterSink {
- public:
-  AcceptingSink(const BoxFilters& filters, PairSink& target) : FilterSink(target), filters_(filters) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<AcceptingSink>(filters_, target);
+/// Passes on the pairs that filters let count. `Filters` has a filter at each box's place.
+template <typename Filters>
+struct PassAccepted {
+  bool operator()(Pair pair, Pair& to) const {
+    to = pair;
+    return accepts(filters[pair.first], filters[pair.second]);
   }
 
- private:
-  void consume(std::span<const Pair> pairs) override {
-    if (filters_.array() != nullptr)
-      pass_accepted(pairs, filters_.array());
-    else
-      pass_accepted(pairs, filters_);
-  }
-
-  template <typename Filters>
-  void pass_accepted(std::span<const Pair> pairs, const Filters& filters) {
-    pass_on(pairs, [&filters](Pair pair, Pair& to) {
-      to = pair;
-      return accepts(filters[pair.first], filters[pair.second]);
-    });
-  }
-
-  BoxFilters filters_;
+  Filters filters;
 };
 
 /// Passes on the pairs of one search under the ids of its boxes, if the test lets them.
-class GroupSink final : public core::FilterSink {
- public:
-  GroupSink(std::span<const BoxId> ids, std::size_t left_count, FilterTest test, const BoxFilters& filters,
-            PairSink& target)
-      : FilterSink(target), ids_(ids), left_count_(left_count), test_(test), filters_(filters) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<GroupSink>(ids_, left_count_, test_, filters_, target);
-  }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    pass_on(pairs, [this](Pair pair, Pair& to) {
-      const BoxId a = ids_[index(pair.first)];
-      const BoxId b = ids_[index(pair.second)];
-      to = a < b ? Pair{a, b} : Pair{b, a};
-      return (left_count_ == 0 || (index(pair.first) < left_count_ && index(pair.second) >= left_count_)) &&
-             (test_ == FilterTest::none || counts(filters_[to.first], filters_[to.second]));
-    });
+struct PassOfGroups {
+  bool operator()(Pair pair, Pair& to) const {
+    const BoxId a = ids[index(pair.first)];
+    const BoxId b = ids[index(pair.second)];
+    to = a < b ? Pair{a, b} : Pair{b, a};
+    return (left_count == 0 || (index(pair.first) < left_count && index(pair.second) >= left_count)) &&
+           (test == FilterTest::none || counts(filters[to.first], filters[to.second]));
   }
 
   bool counts(const Filter& a, const Filter& b) const {
-    return accepts(a, b) && detail::bits_accept(a, b) == (test_ == FilterTest::by_bits);
+    return accepts(a, b) && detail::bits_accept(a, b) == (test == FilterTest::by_bits);
   }
 
-  std::span<const BoxId> ids_;
-  std::size_t left_count_;
-  FilterTest test_;
-  BoxFilters filters_;
+  std::span<const BoxId> ids;
+  std::size_t left_count;
+  FilterTest test;
+  const BoxFilters& filters;
 };
 
 }  // namespace
@@ -169,10 +140,12 @@ bool GroupedSearch<D>::sample(const SearchInput<D>& input, const BoxFilters& fil
 template <int D>
 std::optional<Statistics> GroupedSearch<D>::search_all(Searcher<D>& searcher, const SearchInput<D>& input,
                                                        const BoxFilters& filters, PairSink& pairs) {
-  AcceptingSink accepted(filters, pairs);
-  const std::optional<Statistics> statistics = searcher.search(input, accepted);
-  accepted.flush();
-  return statistics;
+  const auto search_accepted = [&](auto accepted) {
+    return core::search_through(core::PassingSink(accepted, pairs),
+                                [&](PairSink& sink) { return searcher.search(input, sink); });
+  };
+  return filters.array() != nullptr ? search_accepted(PassAccepted<const Filter*>{filters.array()})
+                                    : search_accepted(PassAccepted<BoxFilters>{filters});
 }
 
 template <int D>
@@ -185,20 +158,19 @@ std::optional<Statistics> GroupedSearch<D>::run(const PlannedSearch& planned, Se
   gather(input, plan_.groups(planned));
   const std::size_t left_count = planned.middle == planned.end ? 0 : boxes_.size();
   gather(input, plan_.others(planned));
-  GroupSink sink(ids_, left_count, planned.test, filters, pairs);
-  const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
+  const SearchInput<D> of_groups{.boxes = boxes_,
+                                 .left_count = left_count,
+                                 .doubles = input.doubles == nullptr ? nullptr : doubles_.data(),
+                                 .successor = input.successor,
+                                 .workers = input.workers};
   has_compared_all_ = compares_all(left_count);
-  const std::optional<Statistics> statistics =
-      (has_compared_all_ ? *brute_force_ : searcher)
-          .search({.boxes = boxes_,
-                   .left_count = left_count,
-                   .doubles = input.doubles == nullptr ? nullptr : doubles_.data(),
-                   .successor = input.successor,
-                   .workers = input.workers},
-                  sink);
-  if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
-  sink.flush();
-  return statistics;
+  const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
+  return core::search_through(
+      core::PassingSink(PassOfGroups{ids_, left_count, planned.test, filters}, pairs), [&](PairSink& sink) {
+        const auto statistics = (has_compared_all_ ? *brute_force_ : searcher).search(of_groups, sink);
+        if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
+        return statistics;
+      });
 }
 
 template <int D>

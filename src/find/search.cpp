@@ -16,92 +16,35 @@ namespace {
 
 /// Passes pairs on under other ids; between two sets, only pairs of a box of each. Within a set the ids
 /// ascend with the places they stand for, so that its pairs stay ordered.
-class RenamingSink final : public core::FilterSink {
- public:
-  RenamingSink(std::span<const BoxId> ids, std::size_t left_count, PairSink& target)
-      : FilterSink(target), ids_(ids), left_count_(left_count) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<RenamingSink>(ids_, left_count_, target);
+struct Rename {
+  bool operator()(Pair pair, Pair& to) const {
+    to = {ids[index(pair.first)], ids[index(pair.second)]};
+    return left_count == 0 || (index(pair.first) < left_count && index(pair.second) >= left_count);
   }
 
- private:
-  void consume(std::span<const Pair> pairs) override {
-    pass_on(pairs, [this](Pair pair, Pair& to) {
-      to = {ids_[index(pair.first)], ids_[index(pair.second)]};
-      return left_count_ == 0 || (index(pair.first) < left_count_ && index(pair.second) >= left_count_);
-    });
-  }
-
-  std::span<const BoxId> ids_;
-  std::size_t left_count_;
+  std::span<const BoxId> ids;
+  std::size_t left_count;
 };
 
 /// Passes on pairs between the boxes before place `left_count` and the others, as places in those two sets.
-class CrossingSink final : public core::FilterSink {
- public:
-  CrossingSink(std::size_t left_count, PairSink& target)
-      : FilterSink(target), left_count_(static_cast<std::uint32_t>(left_count)) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<CrossingSink>(left_count_, target);
+struct PassBetween {
+  bool operator()(Pair pair, Pair& to) const {
+    to = {pair.first, BoxId{index(pair.second) - left_count}};
+    return index(pair.first) < left_count && index(pair.second) >= left_count;
   }
 
- private:
-  void consume(std::span<const Pair> pairs) override {
-    pass_on(pairs, [this](Pair pair, Pair& to) {
-      to = {pair.first, BoxId{index(pair.second) - left_count_}};
-      return index(pair.first) < left_count_ && index(pair.second) >= left_count_;
-    });
-  }
-
-  std::uint32_t left_count_;
+  std::uint32_t left_count;
 };
 
 /// Passes on the pairs that are not ignored.
-class IgnoringSink final : public core::FilterSink {
- public:
-  IgnoringSink(const core::PairSet& ignored, PairSink& target) : FilterSink(target), ignored_(&ignored) {}
-
-  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<IgnoringSink>(*ignored_, target);
+struct PassNotIgnored {
+  bool operator()(Pair pair, Pair& to) const {
+    to = pair;
+    return !ignored->contains(pair);
   }
 
- private:
-  void consume(std::span<const Pair> pairs) override {
-    pass_on(pairs, [this](Pair pair, Pair& to) {
-      to = pair;
-      return !ignored_->contains(pair);
-    });
-  }
-
-  const core::PairSet* ignored_;
+  const core::PairSet* ignored;
 };
-
-/// A searcher behind filters.
-template <int D>
-class FilteredSearcher final : public Searcher<D> {
- public:
-  FilteredSearcher(GroupedSearch<D>& groups, Searcher<D>& searcher, const BoxFilters& filters)
-      : groups_(&groups), searcher_(&searcher), filters_(&filters) {}
-
-  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    return groups_->search(*searcher_, input, *filters_, pairs);
-  }
-
- private:
-  GroupedSearch<D>* groups_;
-  Searcher<D>* searcher_;
-  const BoxFilters* filters_;
-};
-
-/// Calls search(sink) with a filter, and flushes the filter.
-template <typename Sink, typename SearchInto>
-std::optional<Statistics> through(Sink sink, const SearchInto& search) {
-  const std::optional<Statistics> statistics = search(sink);
-  sink.flush();
-  return statistics;
-}
 
 template <int D, typename Real>
 std::size_t count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers) {
@@ -133,8 +76,8 @@ std::optional<Statistics> Search<D, Real>::find(std::span<const Box<D, Real>> bo
                                                 const SearchOptions<D>& options, PairSink& pairs) {
   const core::PairSet* const ignored = core::PairSet::of(options.filters.ignored);
   if (ignored == nullptr) return find_within(boxes, options, pairs);
-  return through(IgnoringSink(*ignored, pairs),
-                 [&](PairSink& sink) { return find_within(boxes, options, sink); });
+  return core::search_through(core::PassingSink(PassNotIgnored{ignored}, pairs),
+                              [&](PairSink& sink) { return find_within(boxes, options, sink); });
 }
 
 template <int D, typename Real>
@@ -142,14 +85,14 @@ std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Re
                                                        const SearchOptions<D>& options, PairSink& pairs) {
   const std::span<const Filter> filters = options.filters.filters;
   const std::size_t absent = options.absent ? *options.absent : count_absent(boxes, options.workers);
-  if (absent == 0) return search_filtered(boxes, 0, options, BoxFilters(filters), pairs);
+  if (absent == 0) return search_present(boxes, 0, options, BoxFilters(filters), pairs);
   present_.clear();
   ids_.clear();
   take_present(boxes);
   const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
-  return through(RenamingSink(ids_, 0, pairs), [&](PairSink& renamed) {
+  return core::search_through(core::PassingSink(Rename{ids_, 0}, pairs), [&](PairSink& renamed) {
     const std::optional<Statistics> statistics =
-        search_filtered(present_, 0, options, BoxFilters(filters, ids_), renamed);
+        search_present(present_, 0, options, BoxFilters(filters, ids_), renamed);
     if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
     return statistics;
   });
@@ -172,8 +115,8 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   take_present(right);
   if (left_count == 0 || left_count == present_.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
-  return through(RenamingSink(ids_, left_count, pairs), [&](PairSink& renamed) {
-    return search_filtered(present_, left_count, options, filters, renamed);
+  return core::search_through(core::PassingSink(Rename{ids_, left_count}, pairs), [&](PairSink& renamed) {
+    return search_present(present_, left_count, options, filters, renamed);
   });
 }
 
@@ -185,37 +128,34 @@ std::optional<Statistics> Search<D, Real>::find_across(std::span<const Box<D, Re
     return find_between(boxes.first(left_count), boxes.subspan(left_count), options, pairs);
   if (left_count == 0 || left_count == boxes.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count);
-  return through(CrossingSink(left_count, pairs), [&](PairSink& crossing) {
-    return search_filtered(boxes, left_count, options, filters, crossing);
-  });
+  return core::search_through(
+      core::PassingSink(PassBetween{static_cast<std::uint32_t>(left_count)}, pairs),
+      [&](PairSink& crossing) { return search_present(boxes, left_count, options, filters, crossing); });
 }
 
-/// Searches boxes that are all present, in groups if there are filters.
+/// Searches boxes that are all present.
 template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::search_filtered(std::span<const Box<D, Real>> boxes,
-                                                           std::size_t left_count,
-                                                           const SearchOptions<D>& options,
-                                                           const BoxFilters& filters, PairSink& pairs) {
-  is_filtered_ = false;
-  if (options.filters.filters.empty() && options.filters.right_filters.empty())
-    return search_present(*searcher_, boxes, left_count, options, pairs);
-  is_filtered_ = true;
-  if (!groups_) groups_ = std::make_unique<GroupedSearch<D>>();
-  FilteredSearcher<D> searcher(*groups_, *searcher_, filters);
-  return search_present(searcher, boxes, left_count, options, pairs);
-}
-
-template <int D, typename Real>
-std::optional<Statistics> Search<D, Real>::search_present(Searcher<D>& searcher,
-                                                          std::span<const Box<D, Real>> boxes,
+std::optional<Statistics> Search<D, Real>::search_present(std::span<const Box<D, Real>> boxes,
                                                           std::size_t left_count,
-                                                          const SearchOptions<D>& options, PairSink& pairs) {
-  if constexpr (std::is_same_v<Real, float>) {
-    const SearchInput<D> input{boxes, left_count, nullptr, options.successor, options.workers};
-    return searcher.search(input, pairs);
-  } else {
-    return doubles_.search(searcher, boxes, left_count, options.successor, options.workers, pairs);
-  }
+                                                          const SearchOptions<D>& options,
+                                                          const BoxFilters& filters, PairSink& pairs) {
+  const auto search_floats = [&](const SearchInput<D>& input, PairSink& sink) {
+    return search_in_groups(input, filters, sink);
+  };
+  if constexpr (std::is_same_v<Real, float>)
+    return search_floats({boxes, left_count, nullptr, options.successor, options.workers}, pairs);
+  else
+    return doubles_.search(boxes, left_count, options.successor, options.workers, pairs, search_floats);
+}
+
+/// Searches boxes of floats that are all present, in groups if there are filters.
+template <int D, typename Real>
+std::optional<Statistics> Search<D, Real>::search_in_groups(const SearchInput<D>& input,
+                                                            const BoxFilters& filters, PairSink& pairs) {
+  is_filtered_ = !filters.empty();
+  if (!is_filtered_) return searcher_->search(input, pairs);
+  if (!groups_) groups_ = std::make_unique<GroupedSearch<D>>();
+  return groups_->search(*searcher_, input, filters, pairs);
 }
 
 /// Appends the present ones of `boxes` to present_ and their places to ids_.

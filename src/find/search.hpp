@@ -62,12 +62,11 @@ class Search {
     is_filtered_ = false;
     return Statistics{};
   }
-  std::optional<Statistics> search_filtered(std::span<const Box<D, Real>> boxes, std::size_t left_count,
-                                            const SearchOptions<D>& options, const BoxFilters& filters,
-                                            PairSink& pairs);
-  std::optional<Statistics> search_present(Searcher<D>& searcher, std::span<const Box<D, Real>> boxes,
-                                           std::size_t left_count, const SearchOptions<D>& options,
+  std::optional<Statistics> search_present(std::span<const Box<D, Real>> boxes, std::size_t left_count,
+                                           const SearchOptions<D>& options, const BoxFilters& filters,
                                            PairSink& pairs);
+  std::optional<Statistics> search_in_groups(const SearchInput<D>& input, const BoxFilters& filters,
+                                             PairSink& pairs);
   void take_present(std::span<const Box<D, Real>> boxes);
 
   std::unique_ptr<Searcher<D>> searcher_;

@@ -140,7 +140,7 @@ Tracker<D, Real>::Tracker(std::unique_ptr<Searcher<D>> searcher) {
   if (!searcher) throw std::invalid_argument("Tracker was given a null searcher; expected a searcher");
   track::TrackerPlan<D> plan;
   plan.update = Update::rebuild;
-  plan.searcher = std::make_unique<find::CheckedSearcher<D>>(std::move(searcher));
+  plan.searcher = find::checked<D>(std::move(searcher));
   plan.explains = false;
   state_ = std::make_unique<State>(std::move(plan), 1);
 }

@@ -23,37 +23,26 @@ class SegmentSuccessor final : public Successor<D> {
 
   void finish(const IsMissing& is_missing) override {
     if (!join_) join_ = std::make_unique<SegmentJoin<D>>();
-    MissingSink missing(is_missing, input_.boxes, pairs_);
     Checkpoint checkpoint(input_.workers.checkpoint);
-    work_ = join_->join(input_.boxes, input_.left_count, input_.doubles, checkpoint, missing);
-    missing.flush();
+    work_ = core::search_through(
+        core::PassingSink(PassMissing{is_missing, input_.boxes}, pairs_), [&](PairSink& missing) {
+          return join_->join(input_.boxes, input_.left_count, input_.doubles, checkpoint, missing);
+        });
   }
 
   /// What finish() did; empty if the search did not give up.
   const std::optional<Statistics>& work() const noexcept { return work_; }
 
  private:
-  /// Passes on the pairs that a search did not write before it gave up.
-  class MissingSink final : public core::FilterSink {
-   public:
-    MissingSink(const IsMissing& is_missing, std::span<const Box<D>> boxes, PairSink& target)
-        : FilterSink(target), is_missing_(is_missing), boxes_(boxes) {}
-
-    std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-      return std::make_unique<MissingSink>(is_missing_, boxes_, target);
+  /// Passes on the pairs that the search did not write before it gave up.
+  struct PassMissing {
+    bool operator()(Pair pair, Pair& to) const {
+      to = pair;
+      return is_missing(boxes[index(pair.first)], pair.first, boxes[index(pair.second)], pair.second);
     }
 
-   private:
-    void consume(std::span<const Pair> pairs) override {
-      for (const Pair pair : pairs) {
-        const Box<D>& first = boxes_[index(pair.first)];
-        const Box<D>& second = boxes_[index(pair.second)];
-        if (is_missing_(first, pair.first, second, pair.second)) target().add(pair.first, pair.second);
-      }
-    }
-
-    const IsMissing& is_missing_;
-    std::span<const Box<D>> boxes_;
+    const IsMissing& is_missing;
+    std::span<const Box<D>> boxes;
   };
 
   const SearchInput<D>& input_;
