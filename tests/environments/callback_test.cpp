@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "broadside/debug/outline.hpp"
+#include "broadside/debug/shadow.hpp"
 #include "broadside/error.hpp"
 #include "broadside/find_pairs.hpp"
 #include "broadside/finder.hpp"
+#include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
 
 #include "environment.hpp"
@@ -111,8 +113,21 @@ TEST_P(CallBack, OfASinkIsInTheCallersEnvironment) {
     finder.find_across(boxes, 1500, sink);
     Tracker<2> tracker("grid");
     tracker.update({.boxes = boxes, .changed = {}}, sink, sink);
+    ShadowTracker<2> shadow("grid");
+    shadow.update({.boxes = boxes, .changed = {}}, sink, sink);
     EXPECT_TRUE(witness.is_content());
   }
+}
+
+TEST_P(CallBack, KeepsWhatASinkHoldsWhereInputIsRefused) {
+  std::vector<Box2> boxes = stair(2);
+  boxes[1].min[0] = 100;
+  const InEnvironment in(GetParam());
+  PairCounter sink;
+  sink.add(BoxId{0}, BoxId{1});
+  EXPECT_THROW(Finder<2>("grid").find(boxes, sink), InvalidInput);
+  sink.flush();
+  EXPECT_EQ(sink.count(), 1U);
 }
 
 TEST_P(CallBack, OfASinkByThreadsIsInTheCallersEnvironment) {
