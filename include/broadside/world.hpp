@@ -1,8 +1,7 @@
-// World: for game and physics engines. Boxes are added, moved and removed by stable handles, and each update
-// reports the pairs that began and ended.
+// World: boxes with stable handles, for game and physics engines. Each update reports the pairs that began
+// and ended.
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -28,8 +26,8 @@
 
 namespace broadside {
 
-/// Names one box of a world for as long as it lives. A slot is used again, under another generation; one
-/// whose generations are used up is not, so that no handle ever names a second box.
+/// Names one box of a world, as long as it lives. A slot is used again under a new generation, until its
+/// generations are used up: no handle ever names a second box.
 struct Handle {
   std::uint32_t slot = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t generation = 0;
@@ -37,7 +35,7 @@ struct Handle {
   friend constexpr auto operator<=>(const Handle&, const Handle&) = default;
 };
 
-/// Two boxes of a world; first.slot < second.slot. Where two worlds are joined, a box of each.
+/// Two boxes of a world, with first.slot < second.slot; or, in a join of two worlds, a box of each.
 struct HandlePair {
   Handle first;
   Handle second;
@@ -45,7 +43,7 @@ struct HandlePair {
   friend constexpr auto operator<=>(const HandlePair&, const HandlePair&) = default;
 };
 
-/// The user data of a pair's boxes.
+/// The user data of the two boxes of a pair.
 struct UserDataPair {
   std::uint64_t first;
   std::uint64_t second;
@@ -53,20 +51,19 @@ struct UserDataPair {
   friend constexpr bool operator==(const UserDataPair&, const UserDataPair&) = default;
 };
 
-/// What one update brought, sorted by slots. Valid until the next update of the world it came from.
+/// The events of an update, sorted by slots. Valid until the next update of the same world.
 struct Events {
   std::span<const HandlePair> begun;
   std::span<const HandlePair> ended;
 
-  /// The user data of these pairs' boxes, one for each; empty in a world whose boxes never had any.
+  /// The user data of the boxes, for each pair; empty if no box of the world ever had any.
   std::span<const UserDataPair> begun_data{};
   std::span<const UserDataPair> ended_data{};
 };
 
 namespace detail {
-/// Every bit of the handle changes about half the bits of the result: the finaliser of SplitMix64 (Steele,
-/// Lea and Flood 2014). Without it the low bits would be the slot's alone, whatever the generation. `seed`
-/// sets what is hashed before the handle.
+/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): every bit of the handle changes about half the
+/// bits of the result. `seed` is the hash of what precedes the handle.
 constexpr std::uint64_t hash(const Handle& handle, std::uint64_t seed = 0) noexcept {
   std::uint64_t bits = seed ^ (std::uint64_t{handle.generation} << 32 | handle.slot);
   bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
@@ -77,7 +74,7 @@ constexpr std::uint64_t hash(const Handle& handle, std::uint64_t seed = 0) noexc
 
 }  // namespace broadside
 
-/// Handles and pairs of them as keys of std::unordered_map and std::unordered_set.
+/// Handles and pairs of handles can be keys of std::unordered_map and std::unordered_set.
 template <>
 struct std::hash<broadside::Handle> {
   std::size_t operator()(const broadside::Handle& handle) const noexcept {
@@ -95,97 +92,96 @@ struct std::hash<broadside::HandlePair> {
 
 namespace broadside {
 
-/// What comes with a box when it is added.
+/// Settings of a box that is added.
 struct BoxOptions {
   Filter filter{};              ///< which boxes it may pair with, and whether it is static
-  std::uint64_t user_data = 0;  ///< the caller's; the world only keeps it
+  std::uint64_t user_data = 0;  ///< yours; the world only keeps it
 };
 
-/// Which boxes make the pairs of a world: the boxes themselves, or the enlarged ones that it keeps around
-/// them.
+/// Which boxes make the pairs of a world: the boxes themselves, or the enlarged ones around them.
 enum class WorldEvents : std::uint8_t { exact, enlarged };
 
-/// How a world works.
+/// Settings of a world.
 struct WorldOptions {
   /// The algorithm that finds the pairs, such as "grid:cell=2.5" or GridOptions{.cell = 2.5}.
   Spec algorithm{};
 
-  /// Whether the world knows its current pairs: pairs() and persisting(). Without them it saves 16 bytes a
-  /// pair and some ten nanoseconds an event, and a predicate can only be set before the first update.
+  /// Whether the world keeps its current pairs, for pairs() and persisting(). Without them it saves 16 bytes
+  /// a pair and some ten nanoseconds an event, and a predicate can only be set before the first update.
   bool keep_pairs = true;
 
-  /// How far a box is enlarged on every side: by `margin`, or by its longest side times `relative_margin`, or
-  /// by the lesser of the two where both are greater than 0. Where either is, or `predicted_frames`, the
-  /// tracker sees enlarged boxes, and a new one only when the box has left it, or has become far smaller. The
-  /// enlarged boxes are part of the world: of its snapshots, too.
+  /// How far a box is enlarged on each side: by `margin`, by `relative_margin` times its longest side, or by
+  /// the smaller of the two if both are above 0. If one of them or `predicted_frames` is, the tracker sees
+  /// enlarged boxes. A box gets a new one only when it has left the old one or become far smaller. Enlarged
+  /// boxes are part of the world and of its snapshots.
   double margin = 0;
   double relative_margin = 0;
 
-  /// For how many frames ahead an enlarged box also covers the way of its box, where move() is given a
-  /// velocity.
+  /// The number of frames of motion that an enlarged box covers if move() is given a velocity.
   double predicted_frames = 0;
 
-  /// Which boxes make the pairs that update() and pairs() tell, and that a predicate is asked about.
+  /// Which boxes make the pairs of update() and pairs(), which a predicate is asked about.
   ///
-  /// `exact`: pairs begin and end where the boxes themselves do, exactly and in the same update, whatever the
+  /// `exact`: a pair begins and ends in the update in which the boxes themselves meet and part, whatever the
   /// margin. Each pair of enlarged boxes takes some 50 bytes, and is tested when one of its boxes moves.
   ///
-  /// `enlarged`: pairs begin where enlarged boxes meet and end where they part, as in engines, which test
-  /// the pairs closely anyway: among bodies that tremble no pair begins and ends again and again, and a move
-  /// within the enlarged box costs a comparison and a store. overlaps() tells which pairs' boxes overlap.
+  /// `enlarged`: a pair begins when the enlarged boxes meet, and ends when they part. Engines test the pairs
+  /// closely anyway. Pairs of bodies that tremble do not begin and end again and again, and a move within the
+  /// enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
   WorldEvents events = WorldEvents::exact;
 
-  /// The generation of the first handles. Worlds that begin far apart refuse each other's handles.
+  /// The generation of the first handles. Worlds with first generations far apart refuse each other's
+  /// handles.
   std::uint32_t first_generation = 0;
 
-  /// What add() and move() do about invalid boxes: they throw, or take them in as absent ones, which pair
-  /// with nothing until they are moved to valid ones, and which quarantined() names.
+  /// What add() and move() do with invalid boxes: refuse them, or take them as absent boxes, which are in no
+  /// pair until they are moved to valid ones. quarantined() lists these.
   BadInput bad_input = BadInput::reject;
 
-  /// Whether brute force runs beside the tracker: update() then throws a DivergenceOf<D, Real> where the two
-  /// first differ. For looking for faults; n^2 / 2 tests an update. See ShadowTracker.
+  /// Whether brute force checks the tracker: update() throws a DivergenceOf<D, Real> when the two first
+  /// differ. For debugging; n^2 / 2 tests an update. See ShadowTracker.
   bool shadow = false;
 };
 
-/// Whether two boxes that overlap and accept each other by their filters count as a pair;
+/// Whether two boxes that overlap, and accept each other by their filters, count as a pair;
 /// first.slot < second.slot.
 using PairPredicate = std::function<bool(Handle first, Handle second)>;
 
-/// The bytes a world holds, by purpose; what it has reserved counts.
+/// The bytes that a world has reserved, by purpose.
 struct WorldBytes {
-  std::size_t boxes = 0;    ///< boxes, also enlarged ones and those removed that can still be read
+  std::size_t boxes = 0;    ///< boxes, enlarged boxes, and removed boxes that can still be read
   std::size_t slots = 0;    ///< generations and states of slots, user data, lists of what changed
   std::size_t filters = 0;  ///< filters and ignored pairs
-  std::size_t pairs = 0;    ///< current pairs and events; those of enlarged boxes and a predicate's answers
-  std::size_t tracker = 0;  ///< what the tracker says: its copies of boxes and filters, and its structure
-  std::size_t queries = 0;  ///< the index that queries are asked of, where it is not the tracker's
+  std::size_t pairs = 0;    ///< current pairs, events, pairs of enlarged boxes, a predicate's answers
+  std::size_t tracker = 0;  ///< the tracker's copies of boxes and filters, and its structure
+  std::size_t queries = 0;  ///< the index for queries, unless it is the tracker's
 
   [[nodiscard]] std::size_t total() const noexcept {
     return boxes + slots + filters + pairs + tracker + queries;
   }
 };
 
-/// What World::statistics() tells.
+/// What World::statistics() returns.
 struct WorldStatistics {
-  std::size_t boxes = 0;  ///< in the world
-  std::size_t slots = 0;  ///< that there are, used or free
-  std::size_t pairs = 0;  ///< that hold since the last update
-  std::size_t begun = 0;  ///< events of the last update
-  std::size_t ended = 0;
+  std::size_t boxes = 0;           ///< in the world
+  std::size_t slots = 0;           ///< used and free
+  std::size_t pairs = 0;           ///< that hold since the last update
+  std::size_t begun = 0;           ///< events of the last update
+  std::size_t ended = 0;           ///< likewise
   std::size_t enlarged_pairs = 0;  ///< pairs of enlarged boxes, which boxes or a predicate decide about
-  std::size_t ignored_pairs = 0;   ///< that ignore() was called for
+  std::size_t ignored_pairs = 0;   ///< by ignore()
 
-  /// What the tracker counted in the last update: tests, hits (the other tests are false positives),
-  /// references, cells or nodes. Empty where it does not count.
+  /// What the tracker counted in the last update, if it counts: tests, hits (the other tests are false
+  /// positives), references, cells or nodes.
   std::optional<Statistics> tracker;
 
-  /// What the tracker chose for the last update and why; empty where it is not one that chooses.
+  /// What the tracker chose for the last update and why; empty if it does not choose.
   std::string explanation;
 
   WorldBytes bytes;
 };
 
-/// A box that a ray or a cast box meets, and the parameter at which it does so first.
+/// A box that a ray or a cast box hits, and the parameter at which it does so first.
 template <typename Real>
 struct HandleHit {
   Handle handle;
@@ -194,7 +190,7 @@ struct HandleHit {
   friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
 };
 
-/// A box and the square of its distance from a point.
+/// A box, and the square of its distance from a point.
 template <typename Real>
 struct HandleNeighbour {
   Handle handle;
@@ -203,101 +199,101 @@ struct HandleNeighbour {
   friend constexpr bool operator==(const HandleNeighbour&, const HandleNeighbour&) = default;
 };
 
-/// A set of boxes that changes, and its overlapping pairs.
+/// A set of boxes that changes, and its overlapping pairs. Coordinates are floats or doubles.
 ///
-/// Of boxes of floats or of doubles. What is done to boxes and filters shows its effect on pairs at the next
-/// update(). One thread at a time; between updates, while nothing is changed, several may call the const
-/// members. A call that throws has changed nothing, and a failed update can be tried again. A world that was
-/// moved from may only be assigned to or destroyed.
+/// Changes of boxes and filters take effect on the pairs at the next update(). Use a world from one thread at
+/// a time; between changes, several may call const members. A call that throws has changed nothing, and a
+/// failed update can be tried again. A world that was moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC World {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A world whose pairs are found by one of the library's algorithms. Throws InvalidSpec, and
-  /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite.
+  /// A world that finds its pairs by an algorithm of the library. Throws InvalidSpec, and
+  /// std::invalid_argument if a margin or `predicted_frames` is negative or not finite, or if `events` is
+  /// `enlarged` and all of these are 0.
   explicit World(const Spec& spec = {});
   explicit World(const WorldOptions& options);
 
-  /// A world over a tracker of the caller's, which no frame was handed to; options.algorithm is not used.
+  /// A world over a tracker of yours that has taken no frame yet. options.algorithm is not used.
   explicit World(Tracker<D, Real> tracker, const WorldOptions& options = {});
 
   World(World&& other) noexcept;
   World& operator=(World&& other) noexcept;
   ~World();
 
-  /// Adds a box and names it. O(1). Throws InvalidInput if the box has a NaN or min > max.
+  /// Adds a box. O(1). Throws InvalidInput if it has a NaN or min > max.
   Handle add(const Box<D, Real>& box, const BoxOptions& options = {});
 
   /// Replaces a box. O(1). Throws InvalidHandle if it is not in the world, InvalidInput as add() does.
   ///
-  /// `velocity` is how far the box is expected to go in a frame, for WorldOptions::predicted_frames; throws
-  /// InvalidInput if a coordinate of it is not finite, std::logic_error where no frames are predicted.
+  /// `velocity` is the expected motion per frame, for WorldOptions::predicted_frames. Throws InvalidInput if
+  /// a coordinate of it is not finite, std::logic_error if the world predicts no frames.
   void move(Handle handle, const Box<D, Real>& box) { move_to(handle, box, nullptr); }
   void move(Handle handle, const Box<D, Real>& box, const Point<D, Real>& velocity) {
     move_to(handle, box, &velocity);
   }
 
-  /// Takes a box out, and forgets what was ignored of it. O(1). Its pairs end at the next update. Throws
-  /// InvalidHandle if it is not in the world.
+  /// Removes a box and its ignored pairs. O(1). Its pairs end at the next update. Throws InvalidHandle if it
+  /// is not in the world.
   void remove(Handle handle) { remove(std::span<const Handle>(&handle, 1)); }
 
-  /// The same for many at once: all of them or, if one is wrong, none. `handles` takes the names of the
-  /// boxes; `options` and `velocities` are one for each box, or none. Adding a million boxes to an empty
-  /// world is one build at the next update. Throws std::invalid_argument if the lengths differ; of a handle
-  /// given twice, the last move counts and the second removal is refused.
+  /// The same for many boxes: for all of them or, if one is refused, for none. `handles` receives the handles
+  /// of the boxes; `options` and `velocities` have one element for each box, or none. A million boxes added
+  /// to an empty world are one build at the next update. If a handle is given twice, its last move counts,
+  /// and its second removal is refused. Throws std::invalid_argument if the lengths differ.
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options = {});
   void move(std::span<const Handle> handles, BoxView<D, Real> boxes,
             std::span<const Point<D, Real>> velocities = {});
   void remove(std::span<const Handle> handles);
 
-  /// Makes `origin` the new origin: subtracts it from all coordinates. O(slots), and the next update has
-  /// everything changed. Pairs that rounding makes or parts begin or end there. Throws
-  /// std::invalid_argument if a coordinate of `origin` is not finite.
+  /// Subtracts `origin` from all coordinates. O(slots). The next update treats all boxes as changed; pairs
+  /// that rounding joins or separates begin or end in it. Throws std::invalid_argument if a coordinate of
+  /// `origin` is not finite.
   void shift_origin(const Point<D, Real>& origin);
 
-  /// Replaces a box's filter. O(1), but the first one other than the standard one makes the next update take
-  /// all boxes for changed. Throws InvalidHandle.
+  /// Replaces a box's filter. O(1). A world's first filter other than the standard one makes the next update
+  /// treat all boxes as changed. Throws InvalidHandle.
   void set_filter(Handle handle, const Filter& filter);
 
-  /// Lets two boxes never count as a pair, as those that a joint connects, or lets them again; what was so
-  /// already stays so. Forgotten when one of the boxes is removed. O(1), some 100 bytes a pair. Throws
-  /// InvalidHandle, and std::invalid_argument for a box with itself.
+  /// Ignores a pair, such as two bodies that a joint connects: it does not count until unignore() is called
+  /// or one of its boxes is removed. O(1), some 100 bytes a pair. Throws InvalidHandle, and
+  /// std::invalid_argument for a box with itself.
   void ignore(Handle a, Handle b);
   void unignore(Handle a, Handle b);
   [[nodiscard]] bool is_ignored(Handle a, Handle b) const;
 
-  /// Has update() ask `predicate` about each pair before it begins, in the order of the slots, and in this
-  /// thread; from the next update on, and then about all current pairs as well. It may read the world and
-  /// must not change it; what it throws is thrown by update(). An empty one lets all pairs count. Without
-  /// `keep_pairs` it must be set before the first update, else std::logic_error is thrown. Some 50 bytes for
-  /// each pair of boxes that overlap.
+  /// Makes update() ask `predicate` about each pair before it begins: in the order of the slots, and in the
+  /// calling thread. The next update also asks about all current pairs. The predicate may read the world and
+  /// must not change it; update() throws what it throws. An empty predicate accepts all pairs. Takes some 50
+  /// bytes for each pair of boxes that overlap. Throws std::logic_error after the first update of a world
+  /// without `keep_pairs`.
   void set_predicate(PairPredicate predicate);
 
-  /// Has the next update ask the predicate again: about the pairs of one box, or about all. Without a
-  /// predicate nothing happens; set_filter() needs no such call. Throws InvalidHandle.
+  /// Makes the next update ask the predicate again, about the pairs of one box or about all. No effect
+  /// without a predicate. set_filter() needs no such call. Throws InvalidHandle.
   void refilter(Handle handle);
   void refilter();
 
-  /// Brings the pairs up to date. Cost: the tracker's, O(changed) for the boxes, and some ten nanoseconds an
-  /// event; never O(boxes) or O(pairs), but that memory no longer needed is given back now and then.
+  /// Brings the pairs up to date. Cost: the tracker's, O(changed boxes), and some ten nanoseconds an event.
+  /// It is never O(boxes) or O(pairs), except when memory that is no longer needed is given back.
   Events update();
 
-  /// The pairs that hold since the last update, sorted by slots, and those of them that did not begin in it.
-  /// Valid until the next update. O(events since it was last asked), and one pass over the pairs if there
-  /// were any. Throws std::logic_error in a world without `keep_pairs`.
+  /// The pairs that hold since the last update, sorted by slots; and those of them that did not begin in it.
+  /// Valid until the next update. O(events since the last call), and one pass over the pairs if there were
+  /// any. Throws std::logic_error in a world without `keep_pairs`.
   [[nodiscard]] std::span<const HandlePair> pairs() const;
   [[nodiscard]] std::span<const HandlePair> persisting() const;
 
-  /// Sets each flag to 1 if the pair's boxes themselves overlap, as they are now, else to 0; a pair with a
-  /// box that is not in the world does not. Filters and ignored pairs count for nothing. Some nanoseconds a
-  /// pair. Throws std::invalid_argument if the lengths differ.
+  /// Sets each flag to 1 if both boxes of the pair are in the world and overlap as they are now, else to 0.
+  /// Filters and ignored pairs play no part. Some nanoseconds a pair. Throws std::invalid_argument if the
+  /// lengths differ.
   void overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const;
 
-  /// Puts into `pairs` those of a box of this world and an overlapping one of `other`, if their filters
-  /// accept each other, sorted by slots; of the boxes as they are now, without margin and predicate. Found
-  /// by this world's algorithm, or by the standard one where the tracker is the caller's. Cost: one search
-  /// between two sets, whose memory is kept for the next join.
+  /// Finds the pairs of a box of this world and a box of `other` that overlap as they are now and accept each
+  /// other by their filters, sorted by slots. Margins and predicates play no part. Uses the world's
+  /// algorithm, or the standard one if the tracker is yours. Cost: one search between two sets; its memory is
+  /// kept for the next join.
   BROADSIDE_HIDDEN void join(const World& other, std::vector<HandlePair>& pairs) const {
     detail::OutputTo output(pairs);
     join_into(other, output);
@@ -306,14 +302,14 @@ class BROADSIDE_PUBLIC World {
   using QueryOptions = broadside::QueryOptions<Handle>;
   using NearestOptions = broadside::NearestOptions<Handle, Real>;
 
-  /// Queries, about the boxes as they are now, without margin, ignored pairs and predicate: see BoxIndex,
-  /// whose costs and exceptions they have. `function` takes a Handle, or a Handle and its t_enter; the search
-  /// ends when it returns false. If `except` is a handle that is not in the world, no box is left out. Rays
-  /// and cast boxes are Ray and BoxCast.
+  /// Queries about the boxes as they are now, with the costs and exceptions of BoxIndex. Margins, ignored
+  /// pairs and predicates play no part. `function` takes a Handle, or a Handle and its t_enter, and ends the
+  /// search by returning false. `except` has no effect if it is not in the world. Rays and cast boxes are Ray
+  /// and BoxCast.
   ///
-  /// Where the algorithm's own index has the boxes as they are now (`bvh` while it follows them, after an
-  /// update, and does not enlarge them), the queries use it. Otherwise the first query builds an index, which
-  /// follows the boxes from then on, and each query updates it with the changes since the last one.
+  /// If the algorithm has an index of these boxes, as `bvh` has after an update of boxes that are not
+  /// enlarged, queries use it. Otherwise the first query builds one, and each later query updates it with the
+  /// changes since the query before.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
     return box_index().overlapping(box, [&](BoxId id) { return function(handle_of(id)); },
@@ -337,8 +333,8 @@ class BROADSIDE_PUBLIC World {
     return HandleHit<Real>{handle_of(hit->box), hit->t_enter};
   }
 
-  /// The `count` nearest boxes, or all if there are fewer, as BoxIndex::nearest() finds them: ordered by
-  /// distance and then by slot. In a new vector, or in `found`, which is cleared first.
+  /// Finds the `count` nearest boxes, or all if there are fewer, ordered by distance and then by slot: see
+  /// BoxIndex::nearest(). Returns them, or puts them into `found`, which is cleared first.
   BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<HandleNeighbour<Real>> nearest(
       const Point<D, Real>& point, std::size_t count, const NearestOptions& options = {}) const {
     std::vector<HandleNeighbour<Real>> found;
@@ -355,28 +351,28 @@ class BROADSIDE_PUBLIC World {
     box_index().nearest(point, count, add, {options.filter, slot_of(options.except), options.max_distance});
   }
 
-  /// What the queries ask, brought up to date; ids are slots, whose handles handle_of() gives. Valid until
-  /// the world changes.
+  /// The index that queries use, brought up to date; valid until the world changes. Its ids are slots:
+  /// handle_of() gives their handles.
   [[nodiscard]] const BoxIndex<D, Real>& box_index() const;
   [[nodiscard]] Handle handle_of(BoxId slot) const noexcept;
 
-  /// Whether the box is in the world: added and not removed.
+  /// Whether the box is in the world.
   [[nodiscard]] bool contains(Handle handle) const noexcept;
 
-  /// The box as it was last set. A removed one stays readable until the update after the one that reported
-  /// its removal, so that the code that handles its ended pairs can look at it; so do its filter and user
-  /// data. The reference holds until the next add(), remove() or update(). Throws InvalidHandle.
+  /// The box as it was last set. A removed box, its filter and its user data can be read until the update
+  /// after the one that reports its removal, by code that handles its ended pairs. The reference is valid
+  /// until the next add(), remove() or update(). Throws InvalidHandle.
   [[nodiscard]] const Box<D, Real>& box(Handle handle) const;
 
-  /// The enlarged box that the tracker sees; the box itself where boxes are not enlarged. Throws
+  /// The enlarged box that the tracker sees, or the box itself if boxes are not enlarged. Throws
   /// InvalidHandle if it is not in the world.
   [[nodiscard]] const Box<D, Real>& enlarged_box(Handle handle) const;
   [[nodiscard]] Filter filter(Handle handle) const;
-  std::uint64_t user_data(Handle handle) const;
+  [[nodiscard]] std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);
 
-  /// The boxes whose values were invalid when they were last set, by slot: where WorldOptions::bad_input is
-  /// to quarantine them. box() gives the absent box for them. O(slots).
+  /// The boxes that were invalid when they were last set, by slot, if WorldOptions::bad_input is to
+  /// quarantine them. box() gives the absent box for them. O(slots).
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
     std::vector<Handle> handles;
     detail::OutputTo output(handles);
@@ -387,21 +383,20 @@ class BROADSIDE_PUBLIC World {
   /// The number of boxes in the world.
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /// The number of slots, free ones among them: the slot of each handle of a box in the world is below it, so
-  /// that arrays of your own by slot need no more places.
+  /// The number of slots, used and free; the size for arrays of yours by slot.
   [[nodiscard]] std::size_t slots() const noexcept;
 
-  /// What the world holds and what the last update did. O(1), but for what the tracker says of itself.
+  /// What the world holds, and what the last update did. O(1), except for the tracker's explanation.
   [[nodiscard]] WorldStatistics statistics() const;
 
-  /// Gives memory back that the boxes there are do not need. It costs one build; update() does it by itself
-  /// when some three quarters of the slots are gone. A tracker of the caller's keeps what it has.
+  /// Gives back memory that the boxes in the world do not need. Costs one build. update() does it by itself
+  /// when some three quarters of the slots are gone. A tracker of yours keeps what it has.
   void shrink_to_fit();
 
-  /// The world as bytes: all that its future depends on but the predicate, the workers, a tracker of the
-  /// caller's and the options bad_input, shadow and first_generation, which stay those of the world that
-  /// restores. At any time, also between changes and the update that tells of them. O(slots + pairs).
-  /// docs/snapshot-format.md describes the bytes, which are the same on every machine.
+  /// The world as bytes, at any time, also between changes and their update. They hold all that its future
+  /// depends on, except the predicate, the workers, a tracker of yours, and the options bad_input, shadow and
+  /// first_generation: a world that restores them keeps its own. O(slots + pairs). The bytes are the same on
+  /// every machine: see docs/snapshot-format.md.
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
     std::vector<std::byte> bytes;
     detail::OutputTo output(bytes);
@@ -409,13 +404,13 @@ class BROADSIDE_PUBLIC World {
     return bytes;
   }
 
-  /// Makes the world what it was when the snapshot was taken, of this world or of another one; from then on,
-  /// the same calls bring the same handles, events and pairs. Spans and references handed out end. Throws
-  /// InvalidSnapshot, and changes nothing, if the bytes are not a whole snapshot of the same dimension, type
-  /// of coordinate and version, or if just one of the two worlds has a predicate.
+  /// Makes the world what it was when the snapshot was taken, of this world or of another one. From then on,
+  /// the same calls give the same handles, events and pairs. Spans and references become invalid. Throws
+  /// InvalidSnapshot, and changes nothing, if the bytes are not a whole snapshot of a known version and of
+  /// the same dimension and type of coordinate, or if only one of the two worlds has a predicate.
   ///
-  /// Cost: O(slots + pairs) for reading, and the tracker's for an update from the boxes it has now to those
-  /// it had then: little for a rollback of few frames, and one build where the worlds have nothing in common.
+  /// Cost: O(slots + pairs), and the tracker's for an update from the current boxes to those of the snapshot:
+  /// little for a rollback of a few frames, one build if the worlds have nothing in common.
   void restore(std::span<const std::byte> snapshot);
 
   /// The threads of update(): one, unless the spec or set_workers() says otherwise.

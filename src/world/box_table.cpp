@@ -181,11 +181,6 @@ void BoxTable<D, Real>::restore(std::vector<Box<D, Real>> boxes, std::vector<Box
 }
 
 template <int D, typename Real>
-void BoxTable<D, Real>::restore_filters(std::vector<Filter> filters) noexcept {
-  filters_.restore(std::move(filters));
-}
-
-template <int D, typename Real>
 void BoxTable<D, Real>::restore_changes(std::vector<BoxId> changed, std::vector<BoxId> moved) {
   changed_ = std::move(changed);
   moved_ = std::move(moved);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "broadside/box.hpp"
@@ -112,7 +113,7 @@ class BoxTable {
 
   /// Takes the boxes of a snapshot, which have been checked: first the arrays, then the lists.
   void restore(std::vector<Box<D, Real>> boxes, std::vector<Box<D, Real>> enlarged);
-  void restore_filters(std::vector<Filter> filters) noexcept;
+  void restore_filters(std::vector<Filter> filters) noexcept { filters_.restore(std::move(filters)); }
   void restore_changes(std::vector<BoxId> changed, std::vector<BoxId> moved);
 
  private:

@@ -48,7 +48,7 @@ void PairRefiner::ask_again(std::uint32_t slot, std::size_t slots) {
   if (!has_predicate()) return;
   if (asked_marks_.size() < slots) asked_marks_.resize(slots);
   if (asked_marks_[slot] != 0) return;
-  state_.asked_slots.push_back(slot);
+  state_.asked_slots.push_back(BoxId{slot});
   asked_marks_[slot] = 1;
 }
 
@@ -112,7 +112,7 @@ void PairRefiner::review_changes(const BoxTable<D, Real>& boxes) {
   if (by_boxes_) {
     for (const BoxId id : boxes.changed()) graph.for_each_of(id, review_once);
   }
-  for (const std::uint32_t slot : state_.asked_slots) graph.for_each_of(BoxId{slot}, review_once);
+  for (const BoxId id : state_.asked_slots) graph.for_each_of(id, review_once);
 }
 
 template <int D, typename Real>
@@ -175,7 +175,7 @@ void PairRefiner::tell() {
 }
 
 void PairRefiner::settle() noexcept {
-  for (const std::uint32_t slot : state_.asked_slots) asked_marks_[slot] = 0;
+  for (const BoxId id : state_.asked_slots) asked_marks_[index(id)] = 0;
   state_.asked_slots.clear();
   state_.asks_about_all = false;
   if (state_.is_refining && !has_predicate() && !by_boxes_) {
@@ -217,7 +217,7 @@ std::vector<Pair> PairRefiner::held_edges() const {
 void PairRefiner::restore(RefinerState state, std::size_t slots) {
   state_ = std::move(state);
   asked_marks_.assign(state_.asked_slots.empty() ? 0 : slots, 0);
-  for (const std::uint32_t slot : state_.asked_slots) asked_marks_[slot] = 1;
+  for (const BoxId id : state_.asked_slots) asked_marks_[index(id)] = 1;
 }
 
 template PairEvents& PairRefiner::refine(const BoxTable<2, float>&, Generations);

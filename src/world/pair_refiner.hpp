@@ -27,11 +27,11 @@ inline constexpr std::uint8_t edge_holds = edge_overlaps | edge_accepted;
 struct RefinerState {
   bool is_refining = false;  ///< whether the tracker's pairs are candidates; else they are the world's
   bool asks_about_all = false;
-  std::vector<std::uint32_t> asked_slots{};  ///< slots to ask the predicate about again
-  PairGraph graph{};                         ///< the candidates, if it is refining
-  PairEvents candidates{};                   ///< the tracker's events that no step has taken yet
-  PairEvents refined{};                      ///< events that are refined and not delivered
-  std::vector<Pair> fresh{};                 ///< candidates that are new in the graph
+  std::vector<BoxId> asked_slots{};  ///< slots to ask the predicate about again
+  PairGraph graph{};                 ///< the candidates, if it is refining
+  PairEvents candidates{};           ///< the tracker's events that no step has taken yet
+  PairEvents refined{};              ///< events that are refined and not delivered
+  std::vector<Pair> fresh{};         ///< candidates that are new in the graph
 };
 
 /// If a world enlarges boxes and reports exact pairs, or if it has a predicate, the pairs of its tracker are

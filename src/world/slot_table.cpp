@@ -7,7 +7,6 @@
 
 #include "broadside/error.hpp"
 
-#include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/message.hpp"
 
@@ -147,16 +146,6 @@ void SlotTable<D, Real>::shrink_to_fit() {
   max_slots_ = size();
   free_.shrink_to(size());
   core::shrink(generations_, places_, states_, removed_, reported_);
-}
-
-template <int D, typename Real>
-std::size_t SlotTable<D, Real>::bytes() const noexcept {
-  return core::bytes_of(generations_, places_, states_) + free_.bytes();
-}
-
-template <int D, typename Real>
-std::size_t SlotTable<D, Real>::removed_bytes() const noexcept {
-  return core::bytes_of(removed_, reported_);
 }
 
 template <int D, typename Real>

@@ -10,6 +10,7 @@
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
+#include "core/grow.hpp"
 #include "world/slot_set.hpp"
 
 namespace broadside::world {
@@ -132,8 +133,10 @@ class SlotTable {
   void shrink_to_fit();
 
   /// The bytes of slots, and of removed boxes.
-  std::size_t bytes() const noexcept;
-  std::size_t removed_bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return core::bytes_of(generations_, places_, states_) + free_.bytes();
+  }
+  std::size_t removed_bytes() const noexcept { return core::bytes_of(removed_, reported_); }
 
   /// Takes the slots of a snapshot, which has been checked.
   void restore(std::uint32_t first_generation, std::vector<std::uint32_t> generations,

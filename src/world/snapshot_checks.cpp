@@ -12,21 +12,13 @@ namespace {
 
 using Pairs = std::vector<Pair>;
 
-/// Throws InvalidSnapshot for the first of `pairs` that is among `others`; both sorted.
-void expect_apart(const Pairs& pairs, const Pairs& others, const char* what) {
-  auto other = others.begin();
-  for (const Pair pair : pairs) {
-    other = std::lower_bound(other, others.end(), pair);
-    if (other != others.end() && *other == pair) refuse(pair, what);
+/// Throws InvalidSnapshot unless what began is among the sorted `pairs`, and what ended is not.
+void expect_led_to(const Pairs& pairs, const PairEvents& events, const char* if_begun, const char* if_ended) {
+  for (const Pair pair : events.begun) {
+    if (!std::ranges::binary_search(pairs, pair)) refuse(pair, if_begun);
   }
-}
-
-/// Throws InvalidSnapshot for the first of `pairs` that is not among `others`; both sorted.
-void expect_within(const Pairs& pairs, const Pairs& others, const char* what) {
-  auto other = others.begin();
-  for (const Pair pair : pairs) {
-    other = std::lower_bound(other, others.end(), pair);
-    if (other == others.end() || *other != pair) refuse(pair, what);
+  for (const Pair pair : events.ended) {
+    if (std::ranges::binary_search(pairs, pair)) refuse(pair, if_ended);
   }
 }
 
@@ -126,16 +118,15 @@ void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
 template <int D, typename Real>
 void DecodedSnapshot<D, Real>::check_pairs(const Pairs& tracked) const {
   const RefinerState& refiner = parts->refiner.state();
-  const PairEvents& candidates = refiner.candidates;
-  expect_within(candidates.begun, tracked, "is a candidate that began; expected the tracker to have it");
-  expect_apart(candidates.ended, tracked, "is a candidate that ended; expected the tracker not to have it");
-  const Pairs known = candidates.undone(tracked);
+  expect_led_to(tracked, refiner.candidates, "is a candidate that began; expected the tracker to have it",
+                "is a candidate that ended; expected the tracker not to have it");
+  const Pairs known = refiner.candidates.undone(tracked);
   Pairs held = known;
   if (refiner.is_refining) {
     expect(parts->refiner.edges() == known, "its pairs to refine are not those of its boxes");
     held = parts->refiner.held_edges();
-    expect_within(refiner.refined.begun, held, "began when refined; expected it to hold");
-    expect_apart(refiner.refined.ended, held, "ended when refined; expected it not to hold");
+    expect_led_to(held, refiner.refined, "began when refined; expected it to hold",
+                  "ended when refined; expected it not to hold");
   }
   // The pairs that a failed update refined are not among the pairs yet.
   const Pairs told = refiner.refined.undone(held);
@@ -148,10 +139,10 @@ void DecodedSnapshot<D, Real>::check_pairs(const Pairs& tracked) const {
     expect(slots_of(parts->current.pairs(parts->slots.generations())) == told,
            "its pairs are not those of its boxes");
   }
-  expect_within(slots_of(parts->current.events().begun), told,
-                "began with the last update; expected it to hold");
-  expect_apart(slots_of(parts->current.events().ended), told,
-               "ended with the last update; expected it not to hold");
+  const Events last = parts->current.events();
+  expect_led_to(told, {slots_of(last.begun), slots_of(last.ended)},
+                "began with the last update; expected it to hold",
+                "ended with the last update; expected it not to hold");
 }
 
 template struct DecodedSnapshot<2, float>;

@@ -124,7 +124,7 @@ void SnapshotCodec<D, Real>::encode(const Parts& parts, const Tracker& tracker,
   out.put(parts.slots.first_generation());
   out.put(std::uint64_t{parts.current.size()});
   put_slots(out, parts);
-  put_list<std::uint32_t>(out, refiner.asked_slots);
+  put_list<BoxId>(out, refiner.asked_slots);
   put_list<Pair>(out, sorted(parts.ignored.pairs()));
   put_list(out, parts.ignored.changed());
   put_last_frame(out, tracker.last_frame(), parts.frame());

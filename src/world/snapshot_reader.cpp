@@ -166,18 +166,16 @@ std::vector<RemovedBox<D, Real>> SnapshotReader<D, Real>::read_removed(const std
 
 /// A list of slots that are paired, each once.
 template <int D, typename Real>
-template <typename Place>
-std::vector<Place> SnapshotReader<D, Real>::read_marked(const char* things) {
+std::vector<BoxId> SnapshotReader<D, Real>::read_marked(const char* things) {
   const SlotTable<D, Real>& slots = decoded_.parts->slots;
-  std::vector<Place> list = get_list<Place>(in_, things);
+  std::vector<BoxId> list = get_list<BoxId>(in_, things);
   std::vector<bool> is_listed(slots.size());
-  for (const Place place : list) {
-    const auto slot = static_cast<std::uint32_t>(place);
-    expect_place(slot, slots.size(), "slot");
-    expect(slots.is_paired(slot),
+  for (const BoxId id : list) {
+    expect_place(index(id), slots.size(), "slot");
+    expect(slots.is_paired(index(id)),
            "a slot is listed as changed and has no box, nor had one since the last update");
-    expect(!is_listed[slot], "a slot is listed twice");
-    is_listed[slot] = true;
+    expect(!is_listed[index(id)], "a slot is listed twice");
+    is_listed[index(id)] = true;
   }
   return list;
 }
@@ -185,15 +183,15 @@ std::vector<Place> SnapshotReader<D, Real>::read_marked(const char* things) {
 template <int D, typename Real>
 void SnapshotReader<D, Real>::read_changes() {
   Parts& parts = *decoded_.parts;
-  auto changed = read_marked<BoxId>("changed boxes");
-  auto moved = read_marked<BoxId>("moved boxes");
+  auto changed = read_marked("changed boxes");
+  auto moved = read_marked("moved boxes");
   expect(parts.boxes.enlarges() || moved.empty(), "it has no margin and boxes that left theirs");
   parts.boxes.restore_changes(std::move(changed), std::move(moved));
   for (const BoxId id : parts.boxes.moved())
     expect(parts.boxes.is_changed(index(id)), "a box left its enlarged one and did not change");
   for (const RemovedBox<D, Real>& old : parts.slots.removed())
     expect(parts.boxes.is_changed(old.slot), "a box was removed and did not change");
-  refiner_.asked_slots = read_marked<std::uint32_t>("boxes to be asked about");
+  refiner_.asked_slots = read_marked("boxes to be asked about");
   expect(refiner_.is_refining || (refiner_.asked_slots.empty() && !refiner_.asks_about_all),
          "it refines no pairs and asks about some");
 }

@@ -38,8 +38,7 @@ class SnapshotReader {
   void read_pairs(std::size_t pair_count);
   void read_edges();
   std::vector<Pair> read_paired(const char* things);
-  template <typename Place>
-  std::vector<Place> read_marked(const char* things);
+  std::vector<BoxId> read_marked(const char* things);
 
   ByteReader& in_;
   Decoded& decoded_;

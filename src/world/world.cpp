@@ -3,16 +3,13 @@
 #include "broadside/world.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "core/float_environment.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
-#include "kernels/overlap_flags.hpp"
 #include "world/snapshot_codec.hpp"
 #include "world/world_state.hpp"
 
@@ -199,7 +196,17 @@ Events World<D, Real>::update() {
   parts.has_updated = true;
   world::PairEvents& events = parts.refiner.refine(parts.boxes, parts.slots.generations());
   parts.current.take(events, parts.slots.generations(), parts.user_data);
-  state_->settle();
+  // Nothing below throws.
+  parts.update_failed = false;
+  parts.slots.recycle();
+  parts.boxes.settle();
+  parts.ignored.settle();
+  parts.refiner.settle();
+  if (parts.slots.trim()) {
+    parts.boxes.shorten(parts.slots.size());
+    parts.user_data.shorten(parts.slots.size());
+  }
+  state_->release_if_due();
   return parts.current.events();
 }
 
@@ -222,19 +229,7 @@ template <int D, typename Real>
 void World<D, Real>::overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const {
   const core::DefaultEnvironment environment;
   check_lengths(flags.size(), "flags", pairs.size(), "pairs");
-  const std::span<const Box<D, Real>> boxes = state_->parts.boxes.boxes();
-  if (boxes.empty()) std::fill(flags.begin(), flags.end(), std::uint8_t{0});
-  std::array<Pair, 256> places;
-  std::array<std::uint8_t, places.size()> are_live;
-  for (std::size_t begin = 0; begin < pairs.size() && !boxes.empty(); begin += places.size()) {
-    const auto some = pairs.subspan(begin, std::min(places.size(), pairs.size() - begin));
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      are_live[i] = contains(some[i].first) && contains(some[i].second);
-      places[i] = are_live[i] != 0 ? world::slots_of(some[i]) : Pair{};
-    }
-    kernels::set_overlap_flags(boxes, std::span<const Pair>(places).first(some.size()), &flags[begin]);
-    for (std::size_t i = 0; i < some.size(); ++i) flags[begin + i] &= are_live[i];
-  }
+  state_->set_overlap_flags(pairs, flags);
 }
 
 template <int D, typename Real>

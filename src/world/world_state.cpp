@@ -1,11 +1,13 @@
-// WorldState: what all parts of a world do together.
+// WorldState: calls that concern several parts of a world and are longer than a few lines.
 #include "world/world_state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <utility>
 
 #include "core/lean.hpp"
+#include "kernels/overlap_flags.hpp"
 #include "world/snapshot_codec.hpp"
 
 namespace broadside::world {
@@ -81,16 +83,7 @@ void WorldState<D, Real>::shift_origin(const Point<D, Real>& origin) {
 }
 
 template <int D, typename Real>
-void WorldState<D, Real>::settle() noexcept {
-  parts.slots.recycle();
-  parts.boxes.settle();
-  parts.ignored.settle();
-  parts.refiner.settle();
-  parts.update_failed = false;
-  if (parts.slots.trim()) {
-    parts.boxes.shorten(parts.slots.size());
-    parts.user_data.shorten(parts.slots.size());
-  }
+void WorldState<D, Real>::release_if_due() noexcept {
   if (!wants_release && !parts.slots.is_mostly_gone()) return;
   try {
     release();
@@ -111,6 +104,24 @@ void WorldState<D, Real>::release() {
   parts.user_data.shrink_to_fit();
   parts.ignored.shrink_to_fit();
   parts.refiner.shrink_to_fit();
+}
+
+template <int D, typename Real>
+void WorldState<D, Real>::set_overlap_flags(std::span<const HandlePair> pairs,
+                                            std::span<std::uint8_t> flags) const {
+  const std::span<const Box<D, Real>> boxes = parts.boxes.boxes();
+  if (boxes.empty()) std::fill(flags.begin(), flags.end(), std::uint8_t{0});
+  std::array<Pair, 256> places;
+  std::array<std::uint8_t, places.size()> are_live;
+  for (std::size_t begin = 0; begin < pairs.size() && !boxes.empty(); begin += places.size()) {
+    const auto some = pairs.subspan(begin, std::min(places.size(), pairs.size() - begin));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      are_live[i] = parts.slots.is_live(some[i].first) && parts.slots.is_live(some[i].second);
+      places[i] = are_live[i] != 0 ? slots_of(some[i]) : Pair{};
+    }
+    kernels::set_overlap_flags(boxes, std::span<const Pair>(places).first(some.size()), &flags[begin]);
+    for (std::size_t i = 0; i < some.size(); ++i) flags[begin + i] &= are_live[i];
+  }
 }
 
 template <int D, typename Real>

@@ -1,4 +1,4 @@
-// WorldState: the parts of a world, and what all of them do together.
+// WorldState: the parts of a world.
 #pragma once
 
 #include <cstddef>
@@ -56,7 +56,8 @@ struct WorldParts {
   }
 };
 
-/// What is behind a World.
+/// All that a world holds. Members do what World's of the same name
+/// say, after its checks.
 template <int D, typename Real>
 struct WorldState {
   WorldState(WorldTracker<D, Real> its_tracker, const WorldOptions& options)
@@ -71,12 +72,12 @@ struct WorldState {
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options);
   void shift_origin(const Point<D, Real>& origin);
 
-  /// Ends an update: nothing has changed since.
-  void settle() noexcept;
-
-  /// Gives back memory that is not needed. After an update, before anything else changes.
+  /// Gives back memory that is not needed, after an update and before anything else changes: always, or if it
+  /// is due.
   void release();
+  void release_if_due() noexcept;
 
+  void set_overlap_flags(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const;
   void join(const WorldState& other, detail::Output<HandlePair>& pairs);
   WorldStatistics statistics() const;
   void restore(std::span<const std::byte> bytes);
