@@ -12,7 +12,6 @@
 // is chosen anew with all below it, where theirs keeps the larger child's planes. A node is not split where
 // one side would be empty. Boxes are not enlarged by a margin: all pairs must be exact.
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>

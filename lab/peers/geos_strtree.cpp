@@ -1,7 +1,6 @@
 // GEOS's STRtree, which GIS programs use, and a query for each box.
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 

@@ -1,6 +1,5 @@
 // Brute force as section II of paper.md has it: Algorithm 1 over all boxes. What was mended, and why, is in
 // docs/paper/errata.md.
-#include <memory>
 #include <vector>
 
 #include "broadside/searcher.hpp"

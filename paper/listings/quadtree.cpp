@@ -1,5 +1,4 @@
 // The paper's quadtree as an algorithm: its searcher, its outline, and its description.
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,6 +1,5 @@
 // The paper's sweep and prune as an algorithm: its searcher, its outline, and its description.
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "broadside/debug/outline.hpp"

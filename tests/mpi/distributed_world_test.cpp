@@ -3,7 +3,6 @@
 #include "broadside/distributed_world.hpp"
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 // others wait for its pairs. program_test.cpp looks at what they say.
 #include <csignal>
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>

@@ -1,6 +1,5 @@
 // Brute force: every box against every later one. Section II of the paper; the reference for all others.
 #include <algorithm>
-#include <memory>
 
 #include "broadside/algorithm.hpp"
 

@@ -4,7 +4,6 @@
 // The builder is in packer.cpp, the join in kernels/bvh_join.cpp.
 #include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>

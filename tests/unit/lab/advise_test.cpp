@@ -2,7 +2,6 @@
 #include "lab/advise/advise.hpp"
 
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
