@@ -23,11 +23,11 @@ inline double root(double value, int degree) {
 
 /// Buckets of equal width for the coordinates on one axis.
 struct Buckets {
-  Buckets(float least, float greatest, std::size_t max_buckets) : low(least) {
+  Buckets(float least, float greatest, std::size_t max_count) : low(least) {
     const float width = greatest - least;
-    if (!(width > 0) || max_buckets < 2) return;
-    scale = static_cast<float>(max_buckets) / width;
-    count = static_cast<std::uint32_t>(max_buckets);
+    if (!(width > 0) || max_count < 2) return;
+    scale = static_cast<float>(max_count) / width;
+    count = static_cast<std::uint32_t>(max_count);
     if (!std::isfinite(scale)) scale = std::numeric_limits<float>::max();
   }
 
