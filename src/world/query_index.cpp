@@ -8,48 +8,44 @@
 namespace broadside::world {
 
 template <int D, typename Real>
-const BoxIndex<D, Real>& QueryIndex<D, Real>::updated(std::span<const Box<D, Real>> boxes,
-                                                      std::span<const Filter> filters) {
+const BoxIndex<D, Real>& QueryIndex<D, Real>::updated(const BoxTable<D, Real>& table) {
   if (!is_current_.load(std::memory_order_acquire)) {
     const std::lock_guard lock(updating_);
-    if (!is_current_.load(std::memory_order_relaxed)) update(boxes, filters);
+    if (!is_current_.load(std::memory_order_relaxed)) update(table);
   }
   return *index_;
 }
 
 template <int D, typename Real>
-void QueryIndex<D, Real>::update(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters) {
+void QueryIndex<D, Real>::update(const BoxTable<D, Real>& table) {
+  const std::size_t slots = table.boxes().size();
   if (index_ == nullptr) {
-    make_room(boxes.size());
+    make_room(slots);
     index_ = std::make_unique<BoxIndex<D, Real>>();
   }
   // Slots that are gone need not be listed; slots that came and went in between must not be listed.
   std::erase_if(marked_, [&](BoxId slot) {
-    const bool is_gone = index(slot) >= boxes.size();
+    const bool is_gone = index(slot) >= slots;
     if (is_gone) is_marked_[index(slot)] = 0;
     return is_gone;
   });
-  index_->update({.boxes = boxes, .changed = marked_, .filters = filters});
+  index_->update({.boxes = table.boxes(), .changed = marked_, .filters = table.filters().values()});
   for (const BoxId slot : marked_) is_marked_[index(slot)] = 0;
   marked_.clear();
   is_current_.store(true, std::memory_order_release);
 }
 
 template <int D, typename Real>
-void QueryIndex<D, Real>::mark_differences(std::span<const Box<D, Real>> boxes,
-                                           std::span<const Filter> filters,
-                                           std::span<const Box<D, Real>> new_boxes,
-                                           std::span<const Filter> new_filters) {
+void QueryIndex<D, Real>::mark_differences(const BoxTable<D, Real>& old, const BoxTable<D, Real>& now) {
   if (index_ == nullptr) return;
-  reserve(new_boxes.size());
+  const std::size_t old_slots = old.boxes().size();
+  const std::size_t new_slots = now.boxes().size();
+  reserve(new_slots);
   // Slots that are gone are not marked, and yet the next query must not find them.
-  if (new_boxes.size() < boxes.size()) is_current_.store(false, std::memory_order_relaxed);
-  const auto filter_of = [](std::span<const Filter> some, std::uint32_t slot) {
-    return some.empty() ? Filter{} : some[slot];
-  };
-  for (std::uint32_t slot = 0; slot < new_boxes.size(); ++slot) {
-    const bool is_same = slot < boxes.size() && boxes[slot] == new_boxes[slot] &&
-                         filter_of(filters, slot) == filter_of(new_filters, slot);
+  if (new_slots < old_slots) is_current_.store(false, std::memory_order_relaxed);
+  for (std::uint32_t slot = 0; slot < new_slots; ++slot) {
+    const bool is_same = slot < old_slots && old.boxes()[slot] == now.boxes()[slot] &&
+                         old.filters().get(slot) == now.filters().get(slot);
     if (!is_same) mark(slot);
   }
 }

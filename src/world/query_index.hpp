@@ -15,6 +15,8 @@
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
+#include "world/box_table.hpp"
+
 namespace broadside::world {
 
 /// The first query that needs the index builds it. From then on QueryIndex lists the slots that changed since
@@ -47,12 +49,11 @@ class QueryIndex {
 
   /// The index of a world's boxes and filters, by slot, brought up to date. Several threads may call it at
   /// once.
-  const BoxIndex<D, Real>& updated(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters);
+  const BoxIndex<D, Real>& updated(const BoxTable<D, Real>& table);
 
-  /// Lists the slots in which the boxes and filters that the index follows differ from others, which take
-  /// their place. Either filters may be none. O(slots).
-  void mark_differences(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters,
-                        std::span<const Box<D, Real>> new_boxes, std::span<const Filter> new_filters);
+  /// Lists the slots in which one table of a world's boxes differs from another that takes its place.
+  /// O(slots).
+  void mark_differences(const BoxTable<D, Real>& old, const BoxTable<D, Real>& now);
 
   /// Drops the index if a rebuild costs about as much as an update, because `slots` slots are there and
   /// queries have not used it for long. The next query builds it anew.
@@ -67,7 +68,7 @@ class QueryIndex {
 
  private:
   void make_room(std::size_t count);
-  void update(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters);
+  void update(const BoxTable<D, Real>& table);
 
   std::unique_ptr<BoxIndex<D, Real>> index_;  // null until a query needs it
   std::vector<BoxId> marked_;

@@ -244,7 +244,7 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
   if (!boxes.enlarges() && boxes.changed().empty()) {
     if (const BoxIndex<D, Real>* const trackers = state_->tracker.box_index()) return *trackers;
   }
-  return state_->query_index.updated(boxes.boxes(), boxes.filters().values());
+  return state_->query_index.updated(boxes);
 }
 
 template <int D, typename Real>

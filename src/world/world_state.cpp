@@ -173,8 +173,7 @@ template <int D, typename Real>
 void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
   const auto decoded = SnapshotCodec<D, Real>::decode(bytes, parts, tracker);
   WorldParts<D, Real>& restored = *decoded.parts;
-  query_index.mark_differences(parts.boxes.boxes(), parts.boxes.filters().values(), restored.boxes.boxes(),
-                               restored.boxes.filters().values());
+  query_index.mark_differences(parts.boxes, restored.boxes);
   std::optional<WorldTracker<D, Real>> another;
   if (decoded.spec != tracker.spec()) another.emplace(tracker.remade(decoded.spec));
   WorldTracker<D, Real>& led = another ? *another : tracker;

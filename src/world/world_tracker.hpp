@@ -50,16 +50,15 @@ class WorldTracker {
  public:
   using Taken = TakenFrame<D, Real>;
 
-  /// A tracker by options.algorithm, or the caller's. Where options.shadow is set, brute force runs beside
-  /// it. Throws InvalidSpec.
+  /// A tracker by options.algorithm, or the caller's; with options.shadow brute force checks it. Throws
+  /// InvalidSpec.
   explicit WorldTracker(const WorldOptions& options);
   WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options);
 
   /// Whether it is by options.algorithm, so that another one can be made.
   bool is_own() const noexcept { return is_own_; }
 
-  /// What it is made by: the canonical spec, the same for equivalent ones; the standard one where the tracker
-  /// is the caller's.
+  /// The canonical spec, the same for equivalent ones; the standard one if the tracker is the caller's.
   const Spec& spec() const noexcept { return spec_; }
 
   /// Takes the next frame and appends its events; if it throws, none.
@@ -72,7 +71,7 @@ class WorldTracker {
   /// it needs.
   void renew(const Frame<D, Real>& frame);
 
-  /// Replaces the tracker by one by another spec, with the same workers. Throws InvalidSpec.
+  /// Another one by `spec`, which has taken no frame, with the same workers. Throws InvalidSpec.
   WorldTracker remade(const Spec& spec) const;
 
   /// Leads the tracker to a frame, and hands the pairs that hold there, sorted, to `check`. `known` is the

@@ -2,6 +2,7 @@
 #include "world/query_index.hpp"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,10 +12,18 @@ namespace {
 
 Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
 
+BoxTable<2, float> table_of(std::vector<Box2> boxes, std::vector<Filter> filters = {}) {
+  BoxTable<2, float> table{WorldOptions{}};
+  table.restore(std::move(boxes), {});
+  if (!filters.empty()) table.restore_filters(std::move(filters));
+  return table;
+}
+
 std::size_t found(QueryIndex<2, float>& index, const std::vector<Box2>& boxes, const Box2& where,
                   const std::vector<Filter>& filters = {}, const Filter* filter = nullptr) {
   std::size_t count = 0;
-  index.updated(boxes, filters).overlapping(where, [&count](BoxId) { ++count; }, {.filter = filter});
+  index.updated(table_of(boxes, filters))
+      .overlapping(where, [&count](BoxId) { ++count; }, {.filter = filter});
   return count;
 }
 
@@ -47,7 +56,7 @@ TEST(QueryIndex, FindsNoBoxOfASlotThatIsGone) {
   const std::vector<Box2> boxes = {at(0), at(0), at(0)};
   found(index, boxes, at(0));
   const std::vector<Box2> fewer = {at(0)};
-  index.mark_differences(boxes, {}, fewer, {});
+  index.mark_differences(table_of(boxes), table_of(fewer));
   EXPECT_EQ(found(index, fewer, at(0)), 1u);
 }
 
@@ -57,7 +66,7 @@ TEST(QueryIndex, SeesFiltersThatDiffer) {
   const Filter filter;
   EXPECT_EQ(found(index, boxes, at(0), {}, &filter), 2u);
   const std::vector<Filter> filters = {{.mask = 0}, {}};
-  index.mark_differences(boxes, {}, boxes, filters);
+  index.mark_differences(table_of(boxes), table_of(boxes, filters));
   EXPECT_EQ(found(index, boxes, at(0), filters, &filter), 1u);
 }
 
