@@ -13,6 +13,7 @@
 #include "lab/measure/reference.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
+#include "lab/platform/machine.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -67,6 +68,7 @@ class Runner {
         entries_(with_threads(catalogue.select(options.algorithms), options.threads)) {}
 
   Comparison run() {
+    comparison_.load_before = platform::load();
     for (const CaseRequest& request : options_.plan) resolve(request);
     try {
       for (std::size_t i = 0; i < scenes_.size(); ++i) {
@@ -79,6 +81,7 @@ class Runner {
       comparison_.stopped = true;
     }
     comparison_.processor_share = share_.value();
+    comparison_.load_after = platform::load();
     return std::move(comparison_);
   }
 
@@ -120,7 +123,7 @@ class Runner {
       comparison_.not_compared.push_back({request, thrown.what()});
       return;
     }
-    const Benchmark benchmark{entries_, catalogue_.algorithms(), options_.effort, watch};
+    const Benchmark benchmark{entries_, catalogue_.algorithms(), options_.effort, watch, options_.taking};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
                                     : CaseResult{of, measure_track<D>(of, inputs, benchmark)});
@@ -158,7 +161,8 @@ class Runner {
       of.drift = request.drift;
       of.teleport = request.teleport;
     }
-    const std::size_t seeds = named.scene.fixed_seed ? 1 : seeds_for(of.boxes, of.mode);
+    const std::size_t wanted = options_.seeds > 0 ? options_.seeds : seeds_for(of.boxes, of.mode);
+    const std::size_t seeds = named.scene.fixed_seed ? 1 : wanted;
     for (std::size_t i = 1; i < seeds; ++i) make(options_.seed + i);
   }
 

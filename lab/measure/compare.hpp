@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,10 @@ struct CompareOptions {
   std::vector<std::size_t> threads = {1};  ///< that algorithms search with, as with_threads() takes them
   std::vector<CaseRequest> plan = quick_plan();
   std::uint64_t seed = 1;  ///< of a scene's first input; the others count up from it
+  std::size_t seeds = 0;   ///< in rotation, where the scene has several; 0: by the number of boxes
   FindScene find = [](std::string_view text) { return find_scene(text); };
   Effort effort{};
+  Taking taking{};
   Watch watch{};
   std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nothing is called
 };
@@ -36,9 +39,11 @@ struct NotCompared {
 struct Comparison {
   std::vector<CaseResult> cases;
   std::vector<NotCompared> not_compared;
-  std::vector<std::string> warnings;  ///< of files that were read in part, each once
-  bool stopped = false;               ///< by the watch; the case that was going on is left out
-  double processor_share = 1;         ///< as ProcessorShare has it, of the whole run
+  std::vector<std::string> warnings;    ///< of files that were read in part, each once
+  bool stopped = false;                 ///< by the watch; the case that was going on is left out
+  double processor_share = 1;           ///< as ProcessorShare has it, of the whole run
+  std::optional<double> load_before{};  ///< processes that ran or waited, over the last minute; empty where
+  std::optional<double> load_after{};   ///< the system does not tell, or several runs were merged
 
   /// Whether something was measured and nothing broke the law.
   bool all_verified() const;

@@ -16,7 +16,7 @@
 #include "lab/measure/memory.hpp"
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
-#include "lab/peers/tear_down.hpp"
+#include "lab/measure/seen_algorithm.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -41,27 +41,13 @@ struct ExpectedPairs {
   std::string fault;        // of the reference itself
 };
 
-/// A finder, and what tears down the structure that a peer's searcher leaves; null where nothing does.
-template <int D, typename Real>
-struct TornDownFinder {
-  Finder<D, Real> finder;
-  peers::TearDown* structure = nullptr;
-
-  static TornDownFinder of(const Entry& entry) {
-    if (entry.algorithm->kind != AlgorithmKind::peer) return {Finder<D, Real>(*entry.algorithm, entry.spec)};
-    const Settings settings(entry.spec, entry.algorithm->tunables);
-    std::unique_ptr<Searcher<D>> searcher = entry.algorithm->in<D>().searcher(settings);
-    auto* const structure = dynamic_cast<peers::TearDown*>(searcher.get());
-    return {Finder<D, Real>(std::move(searcher)), structure};
-  }
-};
-
 /// An algorithm that takes part.
 template <int D, typename Real>
 struct FindParticipant {
   const Entry* entry;
   Measurement* measurement;
-  std::optional<TornDownFinder<D, Real>> kept{};
+  std::unique_ptr<SeenAlgorithm> seen{};
+  std::optional<Finder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
   std::size_t most_rounds = no_limit;
 };
@@ -79,7 +65,7 @@ class FindCase {
     for (const Entry& entry : benchmark_.entries) measurements_.push_back(measurement_of(entry));
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       if (is_eligible(benchmark_.entries[i], measurements_[i]))
-        participants_.push_back({&benchmark_.entries[i], &measurements_[i]});
+        participants_.push_back({&benchmark_.entries[i], &measurements_[i], seen(benchmark_.entries[i])});
     }
     for (FindParticipant<D, Real>& participant : participants_) warm_up(participant);
     has_floor_ =
@@ -110,13 +96,14 @@ class FindCase {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
       for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
-      auto kept = TornDownFinder<D, Real>::of(entry);
-      benchmark_.watch.ask_within(kept.finder);
-      const double first = call(kept, some);
+      const auto tried = seen(entry);
+      Finder<D, Real> finder(tried->algorithm(), entry.spec);
+      benchmark_.watch.ask_within(finder);
+      const double first = call(finder, *tried, some);
       // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
       // call takes memory.
       constexpr double is_short_ms = 50;
-      return (first < is_short_ms ? std::min(first, call(kept, some)) : first) / 1e3;
+      return (first < is_short_ms ? std::min(first, call(finder, *tried, some)) : first) / 1e3;
     };
     attempt(measurement, [&]() -> std::string {
       benchmark_.watch.at(measurement.algorithm + ", making the reference");
@@ -126,6 +113,15 @@ class FindCase {
       return {};
     });
     return measurement.reason.empty();
+  }
+
+  std::unique_ptr<SeenAlgorithm> seen(const Entry& entry) const {
+    return std::make_unique<SeenAlgorithm>(*entry.algorithm, SeenAlgorithm::Sees::searchers,
+                                           benchmark_.taking.phases);
+  }
+
+  void make_finder(FindParticipant<D, Real>& participant) const {
+    participant.finder.emplace(participant.seen->algorithm(), participant.entry->spec);
   }
 
   /// Writes to the memory for `pairs` pairs, so that no timed call has page faults there.
@@ -141,18 +137,20 @@ class FindCase {
     benchmark_.watch.at(measurement.algorithm + ", checking");
     measurement.evidence = Evidence{expectation(*participant.entry->algorithm, 0).reference.is_definition()};
     participant.compared.resize(inputs_.size());
+    measurement.statistics_by_seed.resize(inputs_.size());
     measurement.outcome = Outcome::verified;
     attempt(measurement, [&] {
       const AllocationMeter meter;
-      auto& kept = participant.kept.emplace(TornDownFinder<D, Real>::of(*participant.entry));
-      benchmark_.watch.ask_within(kept.finder);
-      const double first = call(kept, boxes_of(0));
-      benchmark_.watch.ask_within(kept.finder, first >= least_asking_ms);
+      make_finder(participant);
+      benchmark_.watch.ask_within(*participant.finder);
+      const double first = call(participant, 0);
+      benchmark_.watch.ask_within(*participant.finder, first >= least_asking_ms);
       count_memory(measurement, *participant.entry->algorithm, meter.read());
       measurement.pairs = pairs_.size();
       measurement.pair_hash = hash_of(pairs_);
       measurement.statistics = statistics_;
-      measurement.explanation = explanation_of(*participant.entry->algorithm, kept.finder.explanation());
+      measurement.explanation =
+          explanation_of(*participant.entry->algorithm, participant.finder->explanation());
       return check(participant, 0);
     });
   }
@@ -190,7 +188,11 @@ class FindCase {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
     attempt(measurement, [&] {
-      measurement.samples_ms.push_back(call(*participant.kept, boxes_of(input)));
+      if (benchmark_.taking.made_anew) make_finder(participant);
+      measurement.samples_ms.push_back(call(participant, input));
+      if (const paper::Phases* const phases = participant.seen->phases())
+        measurement.phases.push_back(*phases);
+      measurement.statistics_by_seed[input] = statistics_;
       return check(participant, input);
     });
   }
@@ -205,15 +207,19 @@ class FindCase {
   }
 
   /// Times one search, in milliseconds. Sets pairs_ and statistics_.
-  double call(TornDownFinder<D, Real>& kept, std::span<const Box<D, Real>> boxes) {
+  double call(Finder<D, Real>& finder, const SeenAlgorithm& seen, std::span<const Box<D, Real>> boxes) {
     pairs_.clear();
     PairCollector collector(pairs_);
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
-    statistics_ = kept.finder.find(boxes, collector);
+    statistics_ = finder.find(boxes, collector);
     const double milliseconds = watch.milliseconds();
-    if (kept.structure != nullptr) kept.structure->tear_down();
+    if (seen.structure() != nullptr) seen.structure()->tear_down();
     return milliseconds;
+  }
+
+  double call(FindParticipant<D, Real>& participant, std::size_t input) {
+    return call(*participant.finder, *participant.seen, boxes_of(input));
   }
 
   /// The fault of pairs_; empty if there is none.

@@ -11,6 +11,8 @@
 
 #include "broadside/algorithm.hpp"
 
+#include "paper/listings/phases.hpp"
+
 namespace broadside::lab {
 
 /// Whether all pairs are found from nothing, or followed from frame to frame.
@@ -18,6 +20,7 @@ enum class Mode { find, track };
 
 /// What algorithms were compared on.
 struct Case {
+  std::string name{};                                           ///< in a list of cases; empty elsewhere
   std::string scene;                                            ///< as a spec, or the path of a file
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of the scene, the standard ones too
   std::vector<std::uint64_t> seeds;
@@ -28,6 +31,12 @@ struct Case {
   std::optional<double> drift{};  ///< how a scene that does not move by itself was set moving, as in
   std::optional<double> teleport{};  ///< SceneRequest; empty for others
   Mode mode = Mode::find;
+};
+
+/// What is taken of a case beyond times, counts and memory.
+struct Taking {
+  bool phases = false;     ///< where the time of each call or frame of a listing goes
+  bool made_anew = false;  ///< each timed search is by a new searcher, which is made before the clock starts
 };
 
 /// The outcome of an algorithm in a case.
@@ -94,6 +103,8 @@ struct Measurement {
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
   std::optional<Statistics> statistics;
+  std::vector<std::optional<Statistics>> statistics_by_seed{};  ///< of each seed that was measured
+  std::vector<paper::Phases> phases{};      ///< of each sample; empty where they were not asked for
   std::string explanation{};                ///< of an algorithm that chooses: what it chose, and why; of a
                                             ///< peer: what its build costs it
   std::optional<std::uint64_t> own_bytes;   ///< what the algorithm holds between calls

@@ -16,6 +16,7 @@
 #include "lab/measure/memory.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/measure/samples.hpp"
+#include "lab/measure/seen_algorithm.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -32,13 +33,14 @@ template <int D, typename Real>
 struct TrackParticipant {
   const Entry* entry;
   Measurement* measurement;
+  std::unique_ptr<SeenAlgorithm> seen{};
   std::optional<Tracker<D, Real>> tracker{};  // of this pass
   const ExpectedEvents* expected = nullptr;   // of this pass
   EventHasher hasher{};
-  std::vector<double> frames_ms{};  // of this pass
-  std::vector<double> builds_ms{};  // the first frames of all timed passes
-  std::uint64_t tests = 0;
-  std::uint64_t references = 0;
+  std::vector<double> frames_ms{};      // of this pass
+  std::vector<double> builds_ms{};      // the first frames of all timed passes
+  std::vector<paper::Phases> phases{};  // of this pass
+  std::optional<Statistics> counts{};   // the sum of this pass, but for the first frame
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
   std::size_t most_rounds = no_limit;
@@ -70,7 +72,10 @@ class TrackCase {
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       measurements_[i].samples_a_round = inputs_[0].steps.size();
       if (is_eligible(benchmark_.entries[i], measurements_[i]))
-        participants_.push_back({&benchmark_.entries[i], &measurements_[i]});
+        participants_.push_back(
+            {&benchmark_.entries[i], &measurements_[i],
+             std::make_unique<SeenAlgorithm>(*benchmark_.entries[i].algorithm, SeenAlgorithm::Sees::followers,
+                                             benchmark_.taking.phases)});
     }
     warm_up();
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
@@ -165,6 +170,8 @@ class TrackCase {
       Measurement& measurement = *participant.measurement;
       measurement.samples_ms.insert(measurement.samples_ms.end(), participant.frames_ms.begin(),
                                     participant.frames_ms.end());
+      measurement.phases.insert(measurement.phases.end(), participant.phases.begin(),
+                                participant.phases.end());
       measurement.build_ms = median(participant.builds_ms);
     }
     if (round > 0) return true;
@@ -186,6 +193,8 @@ class TrackCase {
       participant.expected = &expectation(participant, input);
       participant.tracker.reset();
       participant.frames_ms.clear();
+      participant.phases.clear();
+      participant.counts.reset();
     }
     for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
       if (frame > 0) apply(history.steps[frame - 1], boxes);
@@ -200,6 +209,9 @@ class TrackCase {
             attempt(*participant.measurement, [&] { return take(participant, now, frame, counts_memory); });
       }
     }
+    for (TrackParticipant<D, Real>& participant : participants_) {
+      if (participant.plays) note_statistics(participant, input);
+    }
   }
 
   /// One frame of one participant; returns the fault of its events.
@@ -210,7 +222,7 @@ class TrackCase {
     touch(std::max(expected.frames[frame].begun.size(), expected.frames[frame].ended.size()));
     const auto make_and_update = [&] {
       if (!participant.tracker) {
-        participant.tracker.emplace(*participant.entry->algorithm, participant.entry->spec);
+        participant.tracker.emplace(participant.seen->algorithm(), participant.entry->spec);
         benchmark_.watch.ask_within(*participant.tracker, counts_memory || participant.is_long);
       }
       return update(*participant.tracker, now);
@@ -218,7 +230,8 @@ class TrackCase {
     const double milliseconds = counts_memory ? counted(participant, make_and_update) : make_and_update();
     participant.is_long |= milliseconds >= least_asking_ms;
     (frame > 0 ? participant.frames_ms : participant.builds_ms).push_back(milliseconds);
-    if (counts_memory) note(participant, frame);
+    if (counts_memory) note(participant);
+    if (frame > 0) note_frame(participant);
     return difference<D, Real>(events_, expected.frames[frame], participant.measurement->algorithm, frame,
                                now.boxes);
   }
@@ -245,16 +258,31 @@ class TrackCase {
     return milliseconds;
   }
 
-  /// Notes what is counted while warming up.
-  void note(TrackParticipant<D, Real>& participant, std::size_t frame) {
+  /// Notes which events there are while warming up.
+  void note(TrackParticipant<D, Real>& participant) {
     participant.hasher.add(events_);
     participant.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
-    if (frame == 0 || !statistics_) return;
-    participant.tests += statistics_->tests;
-    participant.references += statistics_->references;
-    participant.measurement->statistics =
-        Statistics{participant.tests / frame, participant.references / frame};
+  }
+
+  /// Notes the phases and counts of one frame after the first.
+  void note_frame(TrackParticipant<D, Real>& participant) {
+    if (const paper::Phases* const phases = participant.seen->phases()) participant.phases.push_back(*phases);
+    if (!statistics_) return;
+    if (!participant.counts) participant.counts.emplace();
+    participant.counts->tests += statistics_->tests;
+    participant.counts->references += statistics_->references;
+  }
+
+  /// Notes the counts of a mean frame of the pass that has ended.
+  void note_statistics(TrackParticipant<D, Real>& participant, std::size_t input) {
+    if (!participant.counts) return;
+    const std::size_t frames = inputs_[input].steps.size();
+    const Statistics mean{participant.counts->tests / frames, participant.counts->references / frames};
+    std::vector<std::optional<Statistics>>& all = participant.measurement->statistics_by_seed;
+    all.resize(inputs_.size());
+    all[input] = mean;
+    if (input == 0) participant.measurement->statistics = mean;
   }
 
   /// What the participant must report on the input; computed when first asked for.

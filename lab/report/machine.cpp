@@ -10,8 +10,6 @@
 
 #include "broadside/version.hpp"
 
-#include "lab/platform/machine.hpp"
-
 namespace broadside::lab {
 namespace {
 
@@ -29,6 +27,8 @@ void read(const Json& json, const char* key, Value& value) {
 Machine this_machine() {
   Machine machine;
   machine.cpu = platform::processor_name();
+  machine.clock_mhz = platform::clock_mhz();
+  machine.caches = platform::caches();
   machine.cores = std::thread::hardware_concurrency();
   machine.memory_bytes = platform::memory_bytes();
   machine.os = platform::system_name();
@@ -53,7 +53,11 @@ std::string today() {
 Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json json_of(const Machine& machine) {
+  Json caches = Json::object();
+  for (const platform::Cache& cache : machine.caches) caches[cache.name] = cache.bytes;
   return {{"cpu", or_null(machine.cpu)},
+          {"clock_mhz", machine.clock_mhz > 0 ? Json(machine.clock_mhz) : Json()},
+          {"caches", std::move(caches)},
           {"cores", machine.cores == 0 ? Json() : Json(machine.cores)},
           {"memory_bytes", machine.memory_bytes == 0 ? Json() : Json(machine.memory_bytes)},
           {"os", or_null(machine.os)}};
@@ -70,6 +74,11 @@ Json json_of(const Build& build) {
 Machine read_machine(const Json& json) {
   Machine machine;
   read(json, "cpu", machine.cpu);
+  read(json, "clock_mhz", machine.clock_mhz);
+  if (json.is_object() && json.contains("caches")) {
+    for (const auto& [name, bytes] : json["caches"].items())
+      machine.caches.push_back({name, bytes.get<std::uint64_t>()});
+  }
   read(json, "cores", machine.cores);
   read(json, "memory_bytes", machine.memory_bytes);
   read(json, "os", machine.os);

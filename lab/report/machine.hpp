@@ -4,14 +4,19 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "lab/platform/machine.hpp"
 
 namespace broadside::lab {
 
 /// The machine that this program runs on; empty or 0 where the system does not tell.
 struct Machine {
   std::string cpu;
+  double clock_mhz = 0;
+  std::vector<platform::Cache> caches{};
   unsigned cores = 0;  ///< that this process may use
   std::uint64_t memory_bytes = 0;
   std::string os;

@@ -62,7 +62,8 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
   const Algorithm& algorithm = *find_algorithm(parsed.name);
   std::unique_ptr<Follower<D>> follower =
       algorithm.in<D>().followers.front().make(Settings(parsed, algorithm.tunables));
-  const auto& coherent = dynamic_cast<const paper::CoherentFollower<D>&>(*follower);
+  auto& coherent = dynamic_cast<paper::CoherentFollower<D>&>(*follower);
+  coherent.record_phases();
   Tracker<D> tracker(std::move(follower));
   std::vector<Box<D>> boxes = history.boxes;
   FrameEvents events;
@@ -77,7 +78,7 @@ void play(const std::string& spec, const History<D>& history, const std::vector<
     const std::optional<Statistics> statistics =
         tracker.update({boxes, history.steps[i].changed}, begun, ended);
     cost.frame.all.push_back(watch.milliseconds());
-    const paper::UpdateParts& parts = coherent.parts();
+    const paper::Phases& parts = coherent.phases();
     cost.detecting.all.push_back(parts.detecting_ms);
     cost.mending.all.push_back(parts.mending_ms);
     cost.searching.all.push_back(parts.searching_ms);

@@ -27,8 +27,8 @@ struct MendingCost {
   FrameTimes mending{};    ///< the structure alone: mended, or built anew
   FrameTimes searching{};
   FrameTimes frame{};     ///< the whole update, the comparison with the pairs before in it
-  double moved = 0;       ///< entries moved, a mover (UpdateParts::moved)
-  double visited = 0;     ///< likewise (UpdateParts::visited)
+  double moved = 0;       ///< entries moved, a mover (Phases::moved)
+  double visited = 0;     ///< likewise (Phases::visited)
   double references = 0;  ///< a box
   double movers = 0;      ///< boxes that change
 

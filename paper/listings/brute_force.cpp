@@ -18,6 +18,7 @@ class BruteForce final : public ListingSearcher<D> {
   Statistics search_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     e_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) e_.push_back(BoxId(i));
+    this->end_phase(&Phases::adding_ms);
     Statistics statistics{.references = e_.size()};
     algorithm_1_brute_force(e_, checkpoint, [&](BoxId a, BoxId b) {
       ++statistics.tests;

@@ -2,25 +2,12 @@
 #include "paper/listings/coherent_follower.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "broadside/sinks.hpp"
 
 namespace broadside::paper {
 namespace {
-
-/// The milliseconds since the last call.
-class Lap {
- public:
-  double operator()() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 template <int D>
 std::size_t count_present(std::span<const Box<D>> boxes) {
@@ -60,7 +47,7 @@ template <int D>
 void CoherentFollower<D>::build_anew(std::span<const Box<D>> boxes) {
   boxes_.assign(boxes.begin(), boxes.end());
   built_for_ = present_ = count_present(boxes);
-  parts_.built = true;
+  counts().built = true;
   build();
 }
 
@@ -75,21 +62,19 @@ std::optional<Statistics> CoherentFollower<D>::follow(const Change<D>& change, P
     return statistics;
   };
   checkpoint_.emplace(change.workers.checkpoint);
-  parts_ = {};
   if (change.rebuild) {  // the events start from the frame before, and nothing of it was kept
     build_anew(change.before);
     search_into(pairs_);
-    parts_ = {};
   }
-  Lap lap;
+  begin_phases();
   boxes_.resize(change.now.size(), absent_box<D>());
   find_movers(change);
-  parts_.movers = movers_.size();
-  parts_.detecting_ms = lap();
+  counts().movers = movers_.size();
+  end_phase(&Phases::detecting_ms);
   if (change.rebuild || present_ > 2 * built_for_ || !mend(movers_, change.now)) build_anew(change.now);
-  parts_.mending_ms = lap();
+  end_phase(&Phases::mending_ms);
   const Statistics statistics = search_into(found_);
-  parts_.searching_ms = lap();
+  end_phase(&Phases::searching_ms);
   for (const std::vector<Pair>* const pairs : {&found_, &pairs_}) {
     for (const Pair pair : *pairs) {
       if ((change.flags[index(pair.first)] | change.flags[index(pair.second)]) != 0)
@@ -97,7 +82,7 @@ std::optional<Statistics> CoherentFollower<D>::follow(const Change<D>& change, P
     }
   }
   std::swap(pairs_, found_);
-  parts_.comparing_ms = lap();
+  end_phase(&Phases::comparing_ms);
   return statistics;
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,23 +12,13 @@
 #include "broadside/executor.hpp"
 #include "broadside/follower.hpp"
 
+#include "paper/listings/phases.hpp"
+
 namespace broadside::paper {
 
 /// VI-A: how a follower knows which boxes changed: each has a flag, or each is compared with its previous
 /// state.
 enum class Detection { flag, compare };
-
-/// Where the time of one frame went, and what mending the structure came to.
-struct UpdateParts {
-  double detecting_ms = 0;
-  double mending_ms = 0;  ///< or building anew
-  double searching_ms = 0;
-  double comparing_ms = 0;    ///< the pairs of the two frames
-  std::size_t movers = 0;     ///< boxes that changed
-  std::uint64_t visited = 0;  ///< entries, cells or nodes looked at to find a mover's places, old and new
-  std::uint64_t moved = 0;    ///< entries written: references put in or taken out, places of an order moved
-  bool built = false;         ///< the structure was built anew, whatever `update` says
-};
 
 /// The tunable `detect`.
 Tunable detect_tunable();
@@ -39,13 +28,10 @@ Tunable detect_tunable();
 /// The structure is built anew where `update` says so, after a failed frame, where the boxes have become
 /// more than twice as many as it was built for, and where mend() asks for it.
 template <int D>
-class CoherentFollower : public Follower<D> {
+class CoherentFollower : public Follower<D>, public Phased {
  public:
   std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) final;
   std::size_t bytes() const noexcept final;
-
-  /// Of the last frame.
-  const UpdateParts& parts() const noexcept { return parts_; }
 
  protected:
   explicit CoherentFollower(const Settings& settings);
@@ -57,9 +43,6 @@ class CoherentFollower : public Follower<D> {
 
   /// How many boxes of this frame are present.
   std::size_t present() const noexcept { return present_; }
-
-  /// Where mending is counted.
-  UpdateParts& work() noexcept { return parts_; }
 
   /// To be told of tests, and of the entries that mending looks at or moves.
   Checkpoint& checkpoint() noexcept { return *checkpoint_; }
@@ -87,8 +70,7 @@ class CoherentFollower : public Follower<D> {
   std::vector<Pair> pairs_;  // those that overlapped in the frame before
   std::vector<Pair> found_;
   std::size_t present_ = 0;
-  std::size_t built_for_ = 0;  // boxes present when the structure was built
-  UpdateParts parts_;
+  std::size_t built_for_ = 0;             // boxes present when the structure was built
   std::optional<Checkpoint> checkpoint_;  // of this frame
 };
 

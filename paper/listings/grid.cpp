@@ -33,7 +33,9 @@ class Grid final : public ListingSearcher<2> {
     Statistics statistics;
     if (!boxes.empty()) {
       grid_.initialize(boxes);
+      end_phase(&Phases::initializing_ms);
       grid_.algorithm_3_spanning_add_element(boxes);
+      end_phase(&Phases::adding_ms);
       grid_.algorithm_4_spi(boxes, pairs, checkpoint, statistics);
     }
     return statistics;

@@ -59,7 +59,7 @@ class GridListingFollower final : public CoherentFollower<2> {
     grid_.algorithm_3_spanning_add_element(boxes());
     references_ = 0;
     for (const std::vector<BoxId>& cell : grid_.cells()) references_ += static_cast<double>(cell.size());
-    work().moved += static_cast<std::uint64_t>(references_);
+    counts().moved += static_cast<std::uint64_t>(references_);
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box2> now) override {
@@ -90,9 +90,9 @@ class GridListingFollower final : public CoherentFollower<2> {
     is_mover_.assign(boxes().size(), 0);
     for (const BoxId id : movers) is_mover_[index(id)] = 1;
     for (std::vector<BoxId>& cell : grid_.cells()) {
-      work().visited += cell.size() + 1;
+      counts().visited += cell.size() + 1;
       const auto gone = std::erase_if(cell, [this](BoxId id) { return is_mover_[index(id)] != 0; });
-      work().moved += gone;
+      counts().moved += gone;
       references_ -= static_cast<double>(gone);
     }
   }
@@ -156,18 +156,18 @@ class GridListingFollower final : public CoherentFollower<2> {
     std::vector<BoxId>& cell = grid_.g(column, row);
     const auto place = std::ranges::find(cell, id);
     const auto looked_at = static_cast<std::uint64_t>(place - cell.begin()) + 1;
-    work().visited += looked_at;
+    counts().visited += looked_at;
     checkpoint().count(looked_at);
     *place = cell.back();
     cell.pop_back();
-    ++work().moved;
+    ++counts().moved;
     --references_;
   }
 
   void insert(BoxId id, std::size_t column, std::size_t row) {
     grid_.g(column, row).push_back(id);
-    ++work().visited;
-    ++work().moved;
+    ++counts().visited;
+    ++counts().moved;
     ++references_;
   }
 

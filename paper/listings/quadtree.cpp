@@ -23,14 +23,16 @@ class Quadtree final : public ListingSearcher<2> {
 
   /// Calls use(tree, root) with the tree over the boxes.
   template <typename Use>
-  void fill(std::span<const Box2> boxes, Checkpoint& checkpoint, Use use) const {
+  void fill(std::span<const Box2> boxes, Checkpoint& checkpoint, Use use) {
     const World world = world_settings_.around(boxes);
     QuadTree tree{.boxes = boxes,
                   .count_max = capacity_,
                   .depth_max = choose_depth(boxes, world),
                   .checkpoint = &checkpoint};
     QuadTreeNode root(tree, world);
+    end_phase(&Phases::initializing_ms);
     for (std::size_t i = 0; i < boxes.size(); ++i) root.algorithm_7_add_element(BoxId(i));
+    end_phase(&Phases::adding_ms);
     use(tree, root);
   }
 

@@ -76,13 +76,13 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
         reposition(id, to);
       }
     }
-    work().visited += tree_.visits;
+    counts().visited += tree_.visits;
     return true;
   }
 
   void reposition(BoxId id, const Box2& to) {
     std::vector<QuadTreeNode*>& leaves = tree_.leaves[index(id)];
-    work().visited += leaves.size();
+    counts().visited += leaves.size();
     if (leaves.size() == 1 && leaves.front()->region().holds(to)) {
       leaves.front()->split_if_full();
       return;
@@ -127,7 +127,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     QuadTreeNode* node = &leaf;
     if (from_ == ReinsertFrom::siblings) {
       if (leaf.parent() != nullptr) node = leaf.parent();
-      ++work().visited;
+      ++counts().visited;
       if (!node->region().holds(to)) {
         remove_everywhere(id);
         insert(*root_, id);
@@ -138,30 +138,30 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     }
     const std::size_t had = tree_.leaves[index(id)].size();
     node->add_where_missing(id);
-    work().moved += tree_.leaves[index(id)].size() - had;
+    counts().moved += tree_.leaves[index(id)].size() - had;
     return true;
   }
 
   /// The least node from `node` upwards that holds the box.
   QuadTreeNode* holder(QuadTreeNode* node, const Box2& to) {
-    for (; node->parent() != nullptr && !node->region().holds(to); node = node->parent()) ++work().visited;
+    for (; node->parent() != nullptr && !node->region().holds(to); node = node->parent()) ++counts().visited;
     return node;
   }
 
   void insert(QuadTreeNode& node, BoxId id) {
     node.algorithm_7_add_element(id);
-    work().moved += tree_.leaves[index(id)].size();
+    counts().moved += tree_.leaves[index(id)].size();
   }
 
   void remove(QuadTreeNode& leaf, BoxId id) {
     leaf.remove(id);
     std::erase(tree_.leaves[index(id)], &leaf);
-    ++work().moved;
+    ++counts().moved;
   }
 
   void remove_everywhere(BoxId id) {
     for (QuadTreeNode* const leaf : tree_.leaves[index(id)]) leaf->remove(id);
-    work().moved += tree_.leaves[index(id)].size();
+    counts().moved += tree_.leaves[index(id)].size();
     tree_.leaves[index(id)].clear();
   }
 

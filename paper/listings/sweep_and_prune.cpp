@@ -19,6 +19,7 @@ class SweepAndPrune final : public ListingSearcher<D> {
  private:
   Statistics search_listed(std::span<const Box<D>> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
     SweepListing<D>::sort(boxes, e_);
+    this->end_phase(&Phases::adding_ms);
     return listing_.algorithm_5_sweep(boxes, e_.size(), pairs, checkpoint,
                                       [next = e_.begin()]() mutable { return (next++)->id; });
   }

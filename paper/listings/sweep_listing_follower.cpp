@@ -40,7 +40,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
  private:
   void build() override {
     SweepListing<D>::sort(this->boxes(), e_);
-    this->work().moved += e_.size();
+    this->counts().moved += e_.size();
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) override {
@@ -54,7 +54,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
       sort_by_insertion();
     } else {
       std::make_heap(e_.begin(), e_.end(), is_later);
-      this->work().visited += e_.size();
+      this->counts().visited += e_.size();
     }
     return true;
   }
@@ -90,7 +90,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
       this->boxes()[index(id)] = now[index(id)];
       if (is_new) e_.push_back({now[index(id)].min[0], id});
     }
-    this->work().visited += e_.size();
+    this->counts().visited += e_.size();
     std::erase_if(e_, [&](const SweepEntry& entry) { return !is_present(now[index(entry.id)]); });
     for (SweepEntry& entry : e_) {
       if (changed_[index(entry.id)] != 0) entry.min_x = now[index(entry.id)].min[0];
@@ -103,15 +103,15 @@ class SweepListingFollower final : public CoherentFollower<D> {
       std::size_t place = i;
       for (; place > 0 && entry < e_[place - 1]; --place) e_[place] = e_[place - 1];
       e_[place] = entry;
-      this->work().moved += i - place;
+      this->counts().moved += i - place;
       this->checkpoint().count(i - place);
     }
-    this->work().visited += e_.size();
+    this->counts().visited += e_.size();
   }
 
   /// Takes the box from its place and puts it into the new one; those between the two give way (erratum T8).
   void reinsert(BoxId id, const Box<D>& now) {
-    const std::uint64_t moved_before = this->work().moved;
+    const std::uint64_t moved_before = this->counts().moved;
     Box<D>& before = this->boxes()[index(id)];
     if (is_present(before) && is_present(now)) {
       const auto from = place_of({before.min[0], id});
@@ -119,28 +119,28 @@ class SweepListingFollower final : public CoherentFollower<D> {
       *from = {now.min[0], id};
       if (to > from) {
         std::rotate(from, from + 1, to);
-        this->work().moved += static_cast<std::uint64_t>(to - from);
+        this->counts().moved += static_cast<std::uint64_t>(to - from);
       } else {
         std::rotate(to, from, from + 1);
-        this->work().moved += static_cast<std::uint64_t>(from - to) + 1;
+        this->counts().moved += static_cast<std::uint64_t>(from - to) + 1;
       }
     } else if (is_present(before)) {
       const auto from = place_of({before.min[0], id});
-      this->work().moved += static_cast<std::uint64_t>(e_.end() - from);
+      this->counts().moved += static_cast<std::uint64_t>(e_.end() - from);
       e_.erase(from);
     } else if (is_present(now)) {
       const auto to = place_of({now.min[0], id});
-      this->work().moved += static_cast<std::uint64_t>(e_.end() - to) + 1;
+      this->counts().moved += static_cast<std::uint64_t>(e_.end() - to) + 1;
       e_.insert(to, {now.min[0], id});
     }
     before = now;
-    this->checkpoint().count(this->work().moved - moved_before);
+    this->checkpoint().count(this->counts().moved - moved_before);
   }
 
   /// The first entry that is not before `wanted`; counts comparisons as visits.
   std::vector<SweepEntry>::iterator place_of(const SweepEntry& wanted) {
     return std::lower_bound(e_.begin(), e_.end(), wanted, [this](const SweepEntry& a, const SweepEntry& b) {
-      ++this->work().visited;
+      ++this->counts().visited;
       return a < b;
     });
   }

@@ -1,6 +1,8 @@
 // The machine, by POSIX and the files of Linux.
 #include "lab/platform/machine.hpp"
 
+#include <array>
+#include <cstdlib>
 #include <fstream>
 
 #include <sys/utsname.h>
@@ -23,6 +25,50 @@ std::string field(const char* file, const std::string& name, char separator) {
 }
 
 }  // namespace
+
+namespace {
+
+/// The number at the beginning of a file, 0 if there is none; `unit` is what follows it.
+double number_in(const std::string& file, char* unit = nullptr) {
+  std::ifstream text(file);
+  double number = 0;
+  if (!(text >> number)) return 0;
+  if (unit != nullptr) text >> *unit;
+  return number;
+}
+
+/// "L1d" of level 1 and type Data.
+std::string cache_name(const std::string& folder) {
+  std::string type;
+  std::ifstream(folder + "type") >> type;
+  const std::string name = "L" + std::to_string(static_cast<int>(number_in(folder + "level")));
+  return type == "Data" ? name + "d" : type == "Instruction" ? name + "i" : name;
+}
+
+}  // namespace
+
+double clock_mhz() {
+  const double highest = number_in("/sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq") / 1e3;
+  if (highest > 0) return highest;
+  return std::strtod(field("/proc/cpuinfo", "cpu MHz", ':').c_str(), nullptr);
+}
+
+std::vector<Cache> caches() {
+  std::vector<Cache> found;
+  for (int i = 0;; ++i) {
+    const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
+    char unit = ' ';
+    const double size = number_in(folder + "size", &unit);
+    if (!(size > 0)) return found;
+    const double bytes = size * (unit == 'K' ? 1 << 10 : unit == 'M' ? 1 << 20 : 1);
+    found.push_back({cache_name(folder), static_cast<std::uint64_t>(bytes)});
+  }
+}
+
+std::optional<double> load() {
+  std::array<double, 1> average{};
+  return getloadavg(average.data(), 1) == 1 ? std::optional(average[0]) : std::nullopt;
+}
 
 std::string processor_name() { return field("/proc/cpuinfo", "model name", ':'); }
 

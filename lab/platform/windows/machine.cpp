@@ -37,6 +37,19 @@ std::string system_name() {
                      registered(key, L"CurrentBuildNumber"));
 }
 
+double clock_mhz() {
+  DWORD mhz = 0;
+  DWORD bytes = sizeof(mhz);
+  const LSTATUS status =
+      RegGetValueW(HKEY_LOCAL_MACHINE, LR"(HARDWARE\DESCRIPTION\System\CentralProcessor\0)", L"~MHz",
+                   RRF_RT_REG_DWORD, nullptr, &mhz, &bytes);
+  return status == ERROR_SUCCESS ? static_cast<double>(mhz) : 0;
+}
+
+std::vector<Cache> caches() { return {}; }
+
+std::optional<double> load() { return std::nullopt; }
+
 std::uint64_t memory_bytes() {
   MEMORYSTATUSEX status{};
   status.dwLength = sizeof(status);

@@ -71,20 +71,20 @@ class Followed {
   Followed(const std::string& spec, std::vector<Box2> boxes)
       : Followed(coherent_follower(Spec(spec)), std::move(boxes)) {}
 
-  UpdateParts move(std::size_t box, const Box2& to) {
+  Phases move(std::size_t box, const Box2& to) {
     boxes_[box] = to;
     const BoxId changed{static_cast<std::uint32_t>(box)};
     return update({&changed, 1});
   }
 
-  UpdateParts shift(const std::vector<BoxId>& some, float by) {
+  Phases shift(const std::vector<BoxId>& some, float by) {
     for (const BoxId id : some) {
       for (float* const x : {&boxes_[index(id)].min[0], &boxes_[index(id)].max[0]}) *x += by;
     }
     return update(some);
   }
 
-  UpdateParts add(const std::vector<Box2>& more) {
+  Phases add(const std::vector<Box2>& more) {
     std::vector<BoxId> added;
     for (const Box2& box : more) {
       added.push_back(BoxId(boxes_.size()));
@@ -93,7 +93,7 @@ class Followed {
     return update(added);
   }
 
-  UpdateParts rest() { return update({}); }
+  Phases rest() { return update({}); }
   std::size_t tests() const { return statistics_->tests; }
   std::size_t references() const { return statistics_->references; }
 
@@ -103,11 +103,11 @@ class Followed {
     update({});
   }
 
-  UpdateParts update(std::span<const BoxId> changed) {
+  Phases update(std::span<const BoxId> changed) {
     PairCounter begun;
     PairCounter ended;
     statistics_ = tracker_.update({boxes_, changed}, begun, ended);
-    return follower_->parts();
+    return follower_->phases();
   }
 
   const CoherentFollower<2>* follower_;  // the tracker's
@@ -202,7 +202,7 @@ TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
   std::vector<Box2> boxes;
   for (std::size_t i = 1; i <= 1000; ++i)
     boxes.push_back({{static_cast<float>(i), 0}, {static_cast<float>(i), 1}});
-  const UpdateParts parts =
+  const Phases parts =
       Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
   EXPECT_LE(parts.visited, 20U);
   EXPECT_EQ(parts.moved, 1000U);
@@ -227,7 +227,7 @@ TEST(ErratumT11, AStructureIsBuiltAnewWhereItIsOutgrown) {
 TEST(ErratumT19, AReferenceIsLookedForAmongTheOthersOfItsCell) {
   std::vector<Box2> boxes;
   for (const float x : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 100.0F}) boxes.push_back({{x, x}, {x, x}});
-  const UpdateParts parts =
+  const Phases parts =
       Followed("paper_grid:cell=10:update=reinsert", boxes).move(4, {{55, 55}, {55, 55}});
   EXPECT_EQ(parts.visited, 5U + 1U);
 }
