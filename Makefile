@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures paper paper-results published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures experiments paper paper-results published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
@@ -27,6 +27,15 @@ paper: program ## Make the paper (Markdown, PDF, HTML) and what README quotes fr
 	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json paper/templates docs/paper \
 	  README.md docs/results.md
 	scripts/print_paper
+	test ! -d tools/paper/results || $(debian_python) -m tools.paper print
+
+# The runs are kept one by one: a run that was cut off goes on where it ended. Debian's Python has the packages.
+RUNS := 3
+debian_python := $(firstword $(wildcard /usr/bin/python3) python3)
+
+experiments: program ## Measure the paper's experiments in RUNS=3 runs and judge them: build/experiments/
+	$(debian_python) -m tools.paper run --runs $(RUNS)
+	$(debian_python) -m tools.paper judge
 
 paper-results: program ## Measure what the paper quotes, on this machine: half an hour
 	mkdir -p build/paper $(results)
@@ -159,7 +168,7 @@ clean: ## Remove everything that was built or fetched
 PEERS := yes
 compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
-paper: setup_options := --paper
+paper experiments: setup_options := --paper
 
 deb: setup_options := --deb
 

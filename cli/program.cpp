@@ -64,6 +64,7 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
       {"compare", broadside::cli::add_compare(program, catalogue, given)},
       {"advise", broadside::cli::add_advise(program, catalogue, given)},
       {"experiment", broadside::cli::add_experiment(program, catalogue, given)},
+      {"measure", broadside::cli::add_measure(program, catalogue, given)},
       {"pairs", broadside::cli::add_pairs(program, catalogue)},
       {"info", broadside::cli::add_info(program)},
       {"verify", broadside::cli::add_verify(program, catalogue)},
@@ -77,7 +78,9 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
                          fmt::format("Shows this help, or a verb's: {} help pairs. With --man, as a page of "
                                      "the manual.",
                                      broadside::cli::program_name()));
-  for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
+  // A verb without a group is not shown: it is for programs.
+  for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; }))
+    verb->group(verb->get_group().empty() ? "" : "Verbs");
   if (const std::optional<std::string> text = broadside::cli::parse(program, arguments)) {
     broadside::cli::print(*text);
     return Exit::fine;

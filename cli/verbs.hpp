@@ -24,6 +24,7 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
 Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
 Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
                     std::span<const std::string> arguments);
+Verb add_measure(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
 Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue);
 Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue);
 Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue);

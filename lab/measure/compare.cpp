@@ -123,7 +123,9 @@ class Runner {
       comparison_.not_compared.push_back({request, thrown.what()});
       return;
     }
-    const Benchmark benchmark{entries_, catalogue_.algorithms(), options_.effort, watch, options_.taking};
+    Effort effort = options_.effort;
+    if (!options_.taking.times) effort.least_rounds = effort.most_rounds = effort.slow_rounds = inputs.size();
+    const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.taking};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
                                     : CaseResult{of, measure_track<D>(of, inputs, benchmark)});

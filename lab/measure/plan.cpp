@@ -88,11 +88,11 @@ std::vector<Value> or_standard(std::vector<Value> values, std::initializer_list<
   return values.empty() ? std::vector<Value>(standard) : std::move(values);
 }
 
+}  // namespace
+
 bool moves_by_itself(const Scene& scene, int dimension) {
   return dimension == 2 ? bool(scene.history_2d) : bool(scene.history_3d);
 }
-
-}  // namespace
 
 std::vector<CaseRequest> quick_plan() { return plan_from(quick_parts()); }
 

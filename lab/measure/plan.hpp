@@ -26,6 +26,9 @@ struct CaseRequest {
   bool operator==(const CaseRequest&) const = default;
 };
 
+/// Whether the scene moves by itself in that dimension.
+bool moves_by_itself(const Scene& scene, int dimension);
+
 /// The cases of `make compare`: four and a half minutes on two cores, with all algorithms.
 std::vector<CaseRequest> quick_plan();
 

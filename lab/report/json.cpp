@@ -29,6 +29,32 @@ Json json_of(const std::optional<PairedRatio>& ratio) {
           {"of_ms", ratio->of_ms}};
 }
 
+/// A count of each seed that was measured; null for the others.
+Json by_seed(const Measurement& measurement, std::uint64_t Statistics::*count) {
+  Json counts = Json::array();
+  for (const std::optional<Statistics>& statistics : measurement.statistics_by_seed)
+    counts.push_back(statistics ? Json(*statistics.*count) : Json());
+  return counts;
+}
+
+/// A list for each phase, with a value for each sample.
+Json phases_json(const std::vector<paper::Phases>& phases) {
+  Json json;
+  for (const paper::Phases& sample : phases) {
+    json["initializing_ms"].push_back(sample.initializing_ms);
+    json["adding_ms"].push_back(sample.adding_ms);
+    json["detecting_ms"].push_back(sample.detecting_ms);
+    json["mending_ms"].push_back(sample.mending_ms);
+    json["searching_ms"].push_back(sample.searching_ms);
+    json["comparing_ms"].push_back(sample.comparing_ms);
+    json["movers"].push_back(sample.movers);
+    json["visited"].push_back(sample.visited);
+    json["moved"].push_back(sample.moved);
+    json["built"].push_back(sample.built);
+  }
+  return json;
+}
+
 Json measurement_json(const CaseResult& result, const Measurement& measurement, Samples kept) {
   const Case& of = result.of;
   const std::vector<double>& samples = measurement.samples_ms;
@@ -38,6 +64,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement, 
   Json parameters = Json::object();
   for (const auto& [name, value] : of.parameters) parameters[name] = value;
   Json json;
+  if (!of.name.empty()) json["case"] = of.name;
   json["scene"] = of.scene;
   json["scene_parameters"] = std::move(parameters);
   json["seeds"] = of.seeds;
@@ -82,6 +109,11 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement, 
   json["floor_ms"] = result.floor_ms.empty() ? Json() : Json(median(result.floor_ms));
   json["tests"] = statistics ? Json(statistics->tests) : Json();
   json["references"] = statistics ? Json(statistics->references) : Json();
+  if (!of.name.empty()) {
+    json["tests_by_seed"] = by_seed(measurement, &Statistics::tests);
+    json["references_by_seed"] = by_seed(measurement, &Statistics::references);
+  }
+  if (!measurement.phases.empty() && kept == Samples::keep) json["phases"] = phases_json(measurement.phases);
   json["explanation"] = or_null(measurement.explanation);
   json["own_bytes"] = or_null(measurement.own_bytes);
   json["peak_bytes"] = or_null(measurement.peak_bytes);
@@ -98,6 +130,9 @@ std::string fields_of(const Results& results, Samples samples) {
   text += fmt::format("\"command\": {},\n\"stopped\": {},\n\"processor_share\": {},\n\"busy\": {},\n",
                       json_text(results.command), comparison.stopped, json_text(comparison.processor_share),
                       is_busy(comparison.processor_share));
+  if (comparison.load_before && comparison.load_after)
+    text += fmt::format("\"load_before\": {},\n\"load_after\": {},\n", json_text(*comparison.load_before),
+                        json_text(*comparison.load_after));
   if (results.processes.size() > 1) {
     Json processes = Json::array();
     for (const ProcessRun& process : results.processes)

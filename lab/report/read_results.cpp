@@ -1,6 +1,5 @@
 // Reads what a comparison wrote as JSON, by the schema "broadside.results/2".
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,7 +11,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/input.hpp"
-#include "lab/formats/json_check.hpp"
+#include "lab/formats/json_place.hpp"
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/report/results.hpp"
 
@@ -20,73 +19,7 @@ namespace broadside::lab {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A value and its place in a file, by which errors call it.
-class Place {
- public:
-  Place(const Json& value, std::string place) : value_(&value), place_(std::move(place)) {}
-
-  [[noreturn]] void refuse(std::string_view expected) const {
-    throw FileError(fmt::format("{} is {}; expected {}", place_, shown_json(json_text(*value_)), expected));
-  }
-
-  bool is_null() const { return value_->is_null(); }
-  const Json& json() const { return *value_; }
-
-  bool has(const char* name) const { return value_->is_object() && value_->contains(name); }
-
-  Place at(const char* name) const {
-    if (!has(name)) throw FileError(fmt::format("{} has no '{}'; expected one", place_, name));
-    return {(*value_)[name], fmt::format("{}: {}", place_, name)};
-  }
-
-  std::vector<Place> list() const {
-    if (!value_->is_array()) refuse("a list");
-    std::vector<Place> places;
-    for (const Json& value : *value_)
-      places.emplace_back(value, fmt::format("{} {}", place_, places.size() + 1));
-    return places;
-  }
-
-  std::string text() const {
-    if (!value_->is_string()) refuse("a text");
-    return value_->get<std::string>();
-  }
-  std::string text_or_empty() const { return is_null() ? "" : text(); }
-
-  bool truth() const {
-    if (!value_->is_boolean()) refuse("true or false");
-    return value_->get<bool>();
-  }
-
-  double number() const {
-    if (!value_->is_number() || !(value_->get<double>() >= 0)) refuse("a number of at least 0");
-    return value_->get<double>();
-  }
-
-  std::uint64_t count() const {
-    if (!value_->is_number_unsigned()) refuse("a whole number of at least 0");
-    return value_->get<std::uint64_t>();
-  }
-
-  std::uint64_t hash() const {
-    const std::string digits = text();
-    std::uint64_t hash = 0;
-    const char* const end = digits.data() + digits.size();
-    const auto [rest, error] = std::from_chars(digits.data(), end, hash, 16);
-    if (error != std::errc() || rest != end || digits.size() != 16) refuse("16 hexadecimal digits");
-    return hash;
-  }
-
-  template <typename Value>
-  std::optional<Value> or_empty(Value (Place::*read)() const) const {
-    return is_null() ? std::nullopt : std::optional<Value>((this->*read)());
-  }
-
- private:
-  const Json* value_;
-  std::string place_;
-};
+using Place = JsonPlace;
 
 Case read_case(const Place& place) {
   Case of;
@@ -215,9 +148,7 @@ Results read_machine_results(const Place& place) {
 
 std::vector<Results> read_results(const std::string& path) {
   Input input(path);
-  const std::string_view bytes = input.bytes();
-  check_json(bytes, 0, bytes.size(), input.name());
-  const Json json = Json::parse(bytes);
+  const Json json = parse_json(input.bytes(), input.name());
   const Place root(json, input.name());
   if (const Place schema = root.at("schema"); schema.text() != "broadside.results/2")
     schema.refuse("\"broadside.results/2\", as compare --json writes it");

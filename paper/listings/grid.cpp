@@ -20,13 +20,9 @@
 namespace broadside::paper {
 namespace {
 
-GridListing listing_of(const Settings& settings) {
-  return {WorldSettings(settings), settings.optional_number("cell").value_or(0)};
-}
-
 class Grid final : public ListingSearcher<2> {
  public:
-  explicit Grid(const Settings& settings) : grid_(listing_of(settings)) {}
+  explicit Grid(const Settings& settings) : grid_(settings) {}
 
  private:
   Statistics search_listed(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint) override {
@@ -63,7 +59,7 @@ constexpr std::size_t most_drawn = 1 << 16;
 
 /// Every cell or, of very many, the ones that hold a box.
 Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Settings& settings) {
-  GridListing listing = listing_of(settings);
+  GridListing listing(settings);
   listing.initialize(boxes);
   const std::size_t columns = listing.columns();
   const std::size_t rows = listing.rows();
@@ -100,6 +96,11 @@ Algorithm grid() {
       .min = std::numeric_limits<float>::min(),
       .max = std::numeric_limits<float>::max(),
   }};
+  tunables.push_back({.name = "limit",
+                      .summary = "what limits the cells and the references: memory, or nothing, as printed",
+                      .default_value = "memory",
+                      .type = Tunable::Type::choice,
+                      .choices = {"memory", "none"}});
   for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
   tunables.push_back(
       {.name = "update",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
@@ -40,6 +41,11 @@ double choose_size(std::span<const Box2> boxes, const World& world) {
 
 }  // namespace
 
+GridListing::GridListing(const Settings& settings)
+    : world_settings_(settings),
+      cell_(settings.optional_number("cell").value_or(0)),
+      is_limited_(settings.text("limit") == "memory") {}
+
 void GridListing::initialize(std::span<const Box2> boxes) {
   world_ = world_settings_.around(boxes);
   algorithm_2_init(boxes, world_.width, world_.height, cell_ > 0 ? cell_ : choose_size(boxes, world_));
@@ -53,7 +59,8 @@ void GridListing::algorithm_2_init(std::span<const Box2> boxes, double width, do
     y_grids_ = std::max(1.0, std::ceil(height / by));
   };
   divide(size);
-  while (is_too_large(boxes)) divide(2 * size_);             // Errata 2c and 3i
+  while (is_too_large(boxes)) divide(2 * size_);  // Errata 2c and 3i
+  if (!(x_grids_ * y_grids_ <= static_cast<double>(g_.max_size()))) throw std::bad_alloc();
   g_.resize(static_cast<std::size_t>(x_grids_ * y_grids_));  // Erratum 2a
   for (std::vector<BoxId>& cell : g_) cell.clear();
 }
@@ -104,12 +111,14 @@ std::size_t GridListing::bytes() const noexcept {
 }
 
 bool GridListing::may_hold(double references, std::size_t boxes) const {
+  if (!is_limited_) return true;
   const auto count = static_cast<double>(boxes);
   return references <= (cell_ == 0 ? most_auto_references(count) : most_references(count));
 }
 
 /// Whether the grid of this size has more cells, or would hold more references, than it may.
 bool GridListing::is_too_large(std::span<const Box2> boxes) const {
+  if (!is_limited_) return false;
   const double count = count_present(boxes);
   if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? most_auto_cells(count) : most_cells(count)))
     return true;

@@ -24,8 +24,8 @@ struct CellRange {
 /// Cells with references to the boxes that are in them.
 class GridListing {
  public:
-  /// `cell` is the side of a cell, or 0 if the boxes are to choose it.
-  GridListing(const WorldSettings& world, double cell) : world_settings_(world), cell_(cell) {}
+  /// `settings` must have the tunables of paper_grid.
+  explicit GridListing(const Settings& settings);
 
   /// Algorithm 2 for these boxes, absent ones left aside: empty cells.
   void initialize(std::span<const Box2> boxes);
@@ -54,7 +54,8 @@ class GridListing {
 
   std::size_t bytes() const noexcept;
 
-  /// Whether a grid over `boxes` boxes may hold as many references (errata 2c and 3i).
+  /// Whether a grid over `boxes` boxes may hold as many references (errata 2c and 3i); always without a
+  /// limit.
   bool may_hold(double references, std::size_t boxes) const;
 
  private:
@@ -63,7 +64,8 @@ class GridListing {
   bool is_too_large(std::span<const Box2> boxes) const;
 
   WorldSettings world_settings_;
-  double cell_;
+  double cell_;      // 0 if the boxes choose it
+  bool is_limited_;  // by errata 2c and 3i
   World world_{};
   double size_ = 1;
   double x_grids_ = 1;

@@ -49,9 +49,7 @@ bool stays(double from, double to, double begin, double size) {
 class GridListingFollower final : public CoherentFollower<2> {
  public:
   explicit GridListingFollower(const Settings& settings)
-      : CoherentFollower(settings),
-        reposition_(reposition_of(settings)),
-        grid_(WorldSettings(settings), settings.optional_number("cell").value_or(0)) {}
+      : CoherentFollower(settings), reposition_(reposition_of(settings)), grid_(settings) {}
 
  private:
   void build() override {

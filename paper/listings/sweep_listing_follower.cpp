@@ -41,20 +41,22 @@ class SweepListingFollower final : public CoherentFollower<D> {
   void build() override {
     SweepListing<D>::sort(this->boxes(), e_);
     this->counts().moved += e_.size();
+    if (method_ == ReorderMethod::heap) note_places();  // what is sorted is a heap
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) override {
     if (method_ == ReorderMethod::rebuild) return false;
-    if (method_ == ReorderMethod::binary) {
-      for (const BoxId id : movers) reinsert(id, now[index(id)]);
+    if (method_ == ReorderMethod::insertion) {
+      take_keys(movers, now);
+      sort_by_insertion();
       return true;
     }
-    take_keys(movers, now);
-    if (method_ == ReorderMethod::insertion) {
-      sort_by_insertion();
-    } else {
-      std::make_heap(e_.begin(), e_.end(), is_later);
-      this->counts().visited += e_.size();
+    if (method_ == ReorderMethod::heap) places_.resize(now.size());
+    for (const BoxId id : movers) {
+      if (method_ == ReorderMethod::binary)
+        reinsert(id, now[index(id)]);
+      else
+        update_heap(id, now[index(id)]);
     }
     return true;
   }
@@ -64,8 +66,8 @@ class SweepListingFollower final : public CoherentFollower<D> {
       return listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(),
                                         [next = e_.begin()]() mutable { return (next++)->id; });
     }
-    // What has been extracted stands behind the heap. At the end that is everything in reverse, which is the
-    // next frame's heap once it is turned round.
+    // Extracted entries follow the heap in reverse order. At the end these are all; in order, they are the
+    // next frame's heap.
     auto end = e_.end();
     const Statistics statistics =
         listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(), [&] {
@@ -73,11 +75,12 @@ class SweepListingFollower final : public CoherentFollower<D> {
           return (--end)->id;
         });
     std::ranges::reverse(e_);
+    note_places();
     return statistics;
   }
 
   std::size_t structure_bytes() const noexcept override {
-    return e_.capacity() * sizeof(SweepEntry) + changed_.capacity();
+    return e_.capacity() * sizeof(SweepEntry) + changed_.capacity() + places_.capacity() * sizeof(places_[0]);
   }
 
   /// Gives the movers' entries their new keys, wherever they stand: drops those of boxes that are gone, and
@@ -107,6 +110,53 @@ class SweepListingFollower final : public CoherentFollower<D> {
       this->checkpoint().count(i - place);
     }
     this->counts().visited += e_.size();
+  }
+
+  void note_places() {
+    places_.resize(this->boxes().size());
+    for (std::size_t i = 0; i < e_.size(); ++i) places_[index(e_[i].id)] = static_cast<std::uint32_t>(i);
+  }
+
+  /// Gives the box's entry its new key, and the place in the heap that goes with it; or adds or removes it.
+  void update_heap(BoxId id, const Box<D>& now) {
+    Box<D>& before = this->boxes()[index(id)];
+    if (is_present(now)) {
+      if (!is_present(before)) {
+        places_[index(id)] = static_cast<std::uint32_t>(e_.size());
+        e_.push_back({});
+      }
+      sift({now.min[0], id}, places_[index(id)]);
+    } else if (is_present(before)) {
+      const std::size_t gap = places_[index(id)];
+      const SweepEntry last = e_.back();
+      e_.pop_back();
+      if (gap < e_.size()) sift(last, gap);
+    }
+    before = now;
+  }
+
+  /// Puts an entry into the heap at `place`, which is free, or above or below it.
+  void sift(const SweepEntry& entry, std::size_t place) {
+    const std::uint64_t moved_before = this->counts().moved;
+    std::size_t at = place;
+    for (; at > 0 && entry < e_[(at - 1) / 2]; at = (at - 1) / 2) put(e_[(at - 1) / 2], at);
+    if (at == place) {
+      for (std::size_t child = 2 * at + 1; child < e_.size(); child = 2 * at + 1) {
+        if (child + 1 < e_.size() && e_[child + 1] < e_[child]) ++child;
+        if (!(e_[child] < entry)) break;
+        put(e_[child], at);
+        at = child;
+      }
+    }
+    put(entry, at);
+    this->counts().visited += this->counts().moved - moved_before;
+    this->checkpoint().count(this->counts().moved - moved_before);
+  }
+
+  void put(const SweepEntry& entry, std::size_t place) {
+    e_[place] = entry;
+    places_[index(entry.id)] = static_cast<std::uint32_t>(place);
+    ++this->counts().moved;
   }
 
   /// Takes the box from its place and puts it into the new one; those between the two give way (erratum T8).
@@ -147,8 +197,9 @@ class SweepListingFollower final : public CoherentFollower<D> {
 
   ReorderMethod method_;
   SweepListing<D> listing_;
-  std::vector<SweepEntry> e_;  // sorted; of the heap method, a heap between mending and searching
+  std::vector<SweepEntry> e_;  // sorted; of the heap method, a heap
   std::vector<std::uint8_t> changed_;
+  std::vector<std::uint32_t> places_;  // of each box in the heap, between searches
 };
 
 }  // namespace

@@ -82,7 +82,11 @@ TEST(Erratum2b, TheWorldCanBeginNowhereButAtZero) {
 TEST(Erratum2c, AGridMayBeTooLargeForAnyMemory) {
   const Grid grid = printed::algorithm_2_init(1e9, 1e9, 1, 0, 0);
   EXPECT_EQ(grid.x_grids * grid.y_grids, 1e18);
-  expect_right("paper_grid:width=1e9:height=1e9:cell=1", {box(1, 1, 2, 2), box(2, 2, 9e8F, 3)});
+  const std::vector<Box2> boxes = {box(1, 1, 2, 2), box(2, 2, 9e8F, 3)};
+  expect_right("paper_grid:width=1e9:height=1e9:cell=1", boxes);
+  PairCounter pairs;
+  EXPECT_THROW(Finder<2>("paper_grid:width=1e30:height=1e30:cell=1:limit=none").find(boxes, pairs),
+               std::bad_alloc);
 }
 
 TEST(Erratum3a, TheLoopToTheLengthReadsPastTheEnd) {
@@ -174,6 +178,7 @@ TEST(Erratum3i, HugeBoxesFillEveryCell) {
   EXPECT_EQ(filed(boxes, 300, 1, 1).filings.size(), 450'000U);
   EXPECT_EQ(expect_right("paper_grid:width=300:height=300:cell=1", boxes).references, 112'500U);
   EXPECT_LE(expect_right("paper_grid", boxes).references, 80U);
+  EXPECT_EQ(expect_right("paper_grid:width=300:height=300:cell=1:limit=none", boxes).references, 450'000U);
 }
 
 TEST(Erratum4a, TheLoopsToTheNumberOfGridsReadPastTheEnd) {

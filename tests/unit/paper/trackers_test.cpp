@@ -198,6 +198,15 @@ TEST(ErratumT7, AChangeIsToBeComparedWithTheDistanceToTheBoundaryAhead) {
   EXPECT_EQ(moved(15, 95), 2U) << "more than one cell on";
 }
 
+TEST(PaperTrackers, KeepAHeapAndSiftWhatMoved) {
+  std::vector<Box2> boxes;
+  for (std::size_t i = 1; i <= 1000; ++i)
+    boxes.push_back({{static_cast<float>(i), 0}, {static_cast<float>(i), 1}});
+  Followed followed("paper_sweep_and_prune:update=heap", boxes);
+  EXPECT_EQ(followed.rest().moved, 0U) << "nothing is made anew";
+  EXPECT_LE(followed.move(999, {{0, 0}, {0, 1}}).moved, 11U) << "from the last place to the first, by levels";
+}
+
 TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
   std::vector<Box2> boxes;
   for (std::size_t i = 1; i <= 1000; ++i)

@@ -1,0 +1,68 @@
+// JsonPlace: a value in a file of JSON that knows its place, so that an error can name it.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace broadside::lab {
+
+/// The value that `text` is. Throws FileError, with the byte and what was found and expected there, if it is
+/// no JSON. `name` is what errors call the file.
+nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
+
+/// Every function throws FileError, which names the place, what is there and what was expected, if the value
+/// is not of its kind. The value must outlive its places.
+class JsonPlace {
+ public:
+  JsonPlace(const nlohmann::ordered_json& value, std::string place)
+      : value_(&value), place_(std::move(place)) {}
+
+  [[noreturn]] void refuse(std::string_view expected) const;
+
+  /// What errors call it.
+  const std::string& name() const { return place_; }
+
+  bool is_null() const { return value_->is_null(); }
+  const nlohmann::ordered_json& json() const { return *value_; }
+
+  /// Whether it is an object with this field.
+  bool has(const char* name) const { return value_->is_object() && value_->contains(name); }
+
+  /// The field of an object.
+  JsonPlace at(const char* name) const;
+
+  /// Throws unless it is an object with no fields but these.
+  void check_fields(std::initializer_list<const char*> names) const;
+
+  std::vector<JsonPlace> list() const;
+  std::string text() const;
+  std::string text_or_empty() const { return is_null() ? "" : text(); }
+  bool truth() const;
+
+  /// A number of at least 0.
+  double number() const;
+
+  /// A whole number of at least 0.
+  std::uint64_t count() const;
+
+  /// A text of 16 hexadecimal digits.
+  std::uint64_t hash() const;
+
+  template <typename Value>
+  std::optional<Value> or_empty(Value (JsonPlace::*read)() const) const {
+    return is_null() ? std::nullopt : std::optional<Value>((this->*read)());
+  }
+
+ private:
+  const nlohmann::ordered_json* value_;
+  std::string place_;
+};
+
+}  // namespace broadside::lab

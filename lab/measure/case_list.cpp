@@ -1,0 +1,272 @@
+// Reads lists of cases, and measures them.
+#include "lab/measure/case_list.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "broadside/error.hpp"
+
+#include "lab/formats/format.hpp"
+#include "lab/formats/json_place.hpp"
+#include "lab/measure/steadiness.hpp"
+#include "lab/platform/machine.hpp"
+
+namespace broadside::lab {
+namespace {
+
+/// Runs a step that reads a value; what it throws of a spec or a file gets the value's place in front.
+template <typename Step>
+auto at_place(const JsonPlace& place, const Step& step) {
+  try {
+    return step();
+  } catch (const InvalidSpec& error) {
+    throw FileError(place.name() + ": " + error.what());
+  } catch (const FileError& error) {
+    throw FileError(place.name() + ": " + error.what());
+  }
+}
+
+std::size_t count_from(const JsonPlace& place, std::size_t least, std::size_t most = SIZE_MAX) {
+  const std::uint64_t count = place.count();
+  if (count < least || count > most) {
+    place.refuse(most == SIZE_MAX ? fmt::format("a whole number of at least {}", least)
+                                  : fmt::format("a whole number from {} to {}", least, most));
+  }
+  return count;
+}
+
+double fraction_from(const JsonPlace& place) {
+  const double fraction = place.number();
+  if (fraction > 1) place.refuse("a fraction from 0 to 1");
+  return fraction;
+}
+
+/// Changes what the object at `place` gives.
+void read_effort(const JsonPlace& place, Effort& effort) {
+  const std::pair<const char*, double Effort::*> times[] = {
+      {"budget_seconds", &Effort::budget_seconds},
+      {"history_seconds", &Effort::history_seconds},
+      {"share_seconds", &Effort::share_seconds},
+      {"slow_seconds", &Effort::slow_seconds},
+      {"slow_history_seconds", &Effort::slow_history_seconds}};
+  const std::pair<const char*, std::size_t Effort::*> counts[] = {
+      {"min_rounds", &Effort::least_rounds},
+      {"max_rounds", &Effort::most_rounds},
+      {"slow_rounds", &Effort::slow_rounds},
+      {"definition_boxes", &Effort::definition_boxes}};
+  place.check_fields({"budget_seconds", "history_seconds", "share_seconds", "slow_seconds",
+                      "slow_history_seconds", "min_rounds", "max_rounds", "slow_rounds", "definition_boxes"});
+  for (const auto& [name, field] : times) {
+    if (place.has(name)) effort.*field = place.at(name).number();
+  }
+  for (const auto& [name, field] : counts) {
+    if (place.has(name)) effort.*field = count_from(place.at(name), 1);
+  }
+  if (effort.most_rounds < effort.least_rounds)
+    place.refuse(fmt::format("no fewer max_rounds than min_rounds, {}", effort.least_rounds));
+}
+
+void read_taking(const JsonPlace& place, ListedCase& listed) {
+  listed.taking.times = false;
+  for (const JsonPlace& part : place.list()) {
+    const std::string what = part.text();
+    if (what == "time" || what == "phases")
+      listed.taking.times = true;
+    else if (what != "counts" && what != "memory")
+      part.refuse("time, counts, memory or phases");
+    listed.taking.phases = listed.taking.phases || what == "phases";
+  }
+}
+
+/// A scene whose seeds are the boxes of these files, one after the other.
+NamedScene scene_of_files(std::vector<NamedScene> files, std::uint64_t first_seed) {
+  std::string names;
+  for (const NamedScene& file : files) names += (names.empty() ? "" : " ") + file.spec.name;
+  Scene scene = files[0].scene;
+  const auto one_of = [files = std::move(files), first_seed](std::uint64_t seed) -> const Scene& {
+    return files[(seed - first_seed) % files.size()].scene;
+  };
+  if (scene.boxes_2d) {
+    scene.boxes_2d = [one_of](const Settings& settings, std::size_t boxes, std::uint64_t seed) {
+      return one_of(seed).boxes_2d(settings, boxes, seed);
+    };
+  }
+  if (scene.boxes_3d) {
+    scene.boxes_3d = [one_of](const Settings& settings, std::size_t boxes, std::uint64_t seed) {
+      return one_of(seed).boxes_3d(settings, boxes, seed);
+    };
+  }
+  scene.fixed_seed = false;
+  return {std::move(scene), Spec(names, {})};
+}
+
+NamedScene read_scene(const JsonPlace& place, std::size_t dimension, std::uint64_t first_seed,
+                      const FindScene& find) {
+  const auto found_at = [&](const JsonPlace& part) {
+    const std::string text = part.text();
+    NamedScene found = at_place(part, [&] { return find(text); });
+    if (!found.scene.has_dimension(static_cast<int>(dimension)))
+      part.refuse(fmt::format("a scene that exists in {}D", dimension));
+    return found;
+  };
+  if (!place.json().is_array()) return found_at(place);
+  std::vector<NamedScene> files;
+  for (const JsonPlace& part : place.list()) {
+    files.push_back(found_at(part));
+    if (files.back().scene.kind != SceneKind::file ||
+        moves_by_itself(files.back().scene, static_cast<int>(dimension)))
+      part.refuse("a file of boxes at rest, as each of several scenes");
+  }
+  if (files.empty()) place.refuse("at least one file");
+  return scene_of_files(std::move(files), first_seed);
+}
+
+/// How many boxes there are and how they move, which depends on the scene.
+void read_boxes(const JsonPlace& place, ListedCase& listed) {
+  const Scene& scene = listed.scene.scene;
+  CaseRequest& request = listed.request;
+  if (scene.fixed_count && place.has("boxes"))
+    place.at("boxes").refuse(fmt::format("none: scene '{}' has a count of its own", scene.name));
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (!scene.fixed_count) request.boxes = count_from(place.at("boxes"), 1, most);
+
+  const bool moves = moves_by_itself(scene, request.dimension);
+  if (place.has("frames")) request.frames = count_from(place.at("frames"), 1);
+  if (place.has("moving")) request.moving = fraction_from(place.at("moving"));
+  if (place.has("drift")) request.drift = place.at("drift").number();
+  if (place.has("teleport")) request.teleport = fraction_from(place.at("teleport"));
+  for (const char* const name : {"moving", "drift", "teleport"}) {
+    if (!place.has(name)) continue;
+    if (moves) place.at(name).refuse(fmt::format("none: scene '{}' moves by itself", scene.name));
+    if (request.frames == 0) place.at(name).refuse("frames as well");
+  }
+  if (!moves && request.frames > 0 && !(request.moving > 0))
+    place.at("frames").refuse("the fraction that is moving as well, above 0");
+  if (listed.taking.made_anew && request.frames > 0)
+    place.at("made_anew").refuse("false where boxes move: a tracker keeps its structure");
+
+  const JsonPlace files = place.at("scene");
+  if (files.json().is_array()) listed.seeds = files.json().size();
+  if (place.has("seeds")) {
+    if (listed.seeds > 0) place.at("seeds").refuse("none: each file is an input");
+    listed.seeds = count_from(place.at("seeds"), 1, 10'000);
+  }
+  if (scene.fixed_seed && listed.seeds > 1)
+    place.at("seeds").refuse(fmt::format("1: scene '{}' is the same for every seed", scene.name));
+}
+
+/// Whether any of these has phases to tell on such a case.
+bool any_phases(const std::vector<Entry>& entries, const CaseRequest& request) {
+  return std::ranges::any_of(entries, [&](const Entry& entry) {
+    const Algorithm& algorithm = *entry.algorithm;
+    const bool follows =
+        request.dimension == 2 ? !algorithm.in_2d.followers.empty() : !algorithm.in_3d.followers.empty();
+    return algorithm.kind == AlgorithmKind::paper && (request.frames == 0 || follows);
+  });
+}
+
+void read_algorithms(const JsonPlace& place, const Catalogue& catalogue, ListedCase& listed) {
+  bool has_phases = false;
+  for (const JsonPlace& part : place.list()) {
+    const std::string text = part.text();
+    const std::vector<Entry> entries = at_place(part, [&] { return catalogue.select(text); });
+    for (const Entry& entry : entries) {
+      const bool is_group = entries.size() > 1;
+      const std::string reason = is_group ? "" : unfit(entry, listed.request.dimension, {});
+      if (!reason.empty())
+        part.refuse(fmt::format("an algorithm for {}D: it {}", listed.request.dimension, reason));
+    }
+    has_phases = has_phases || any_phases(entries, listed.request);
+    listed.algorithms += (listed.algorithms.empty() ? "" : ",") + text;
+  }
+  if (listed.algorithms.empty()) place.refuse("at least one spec");
+  if (listed.taking.phases && !has_phases)
+    place.refuse(
+        "a listing of the paper that has phases here, such as paper_grid, since they are to be taken");
+}
+
+ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const Catalogue& catalogue,
+                     const FindScene& find) {
+  place.check_fields({"name", "scene", "dimension", "boxes", "seed", "seeds", "moving", "frames", "drift",
+                      "teleport", "specs", "take", "made_anew", "effort"});
+  ListedCase listed;
+  listed.name = place.at("name").text();
+  if (listed.name.empty()) place.at("name").refuse("a name");
+  listed.effort = effort;
+  if (place.has("effort")) read_effort(place.at("effort"), listed.effort);
+  if (place.has("take")) read_taking(place.at("take"), listed);
+  if (place.has("made_anew")) listed.taking.made_anew = place.at("made_anew").truth();
+  const std::size_t dimension = place.has("dimension") ? count_from(place.at("dimension"), 2, 3) : 2;
+  listed.request.dimension = static_cast<int>(dimension);
+  if (place.has("seed")) listed.seed = place.at("seed").count();
+  listed.scene = read_scene(place.at("scene"), dimension, listed.seed, find);
+  listed.request.scene = listed.scene.spec.text();
+  read_boxes(place, listed);
+  read_algorithms(place.at("specs"), catalogue, listed);
+  return listed;
+}
+
+}  // namespace
+
+std::vector<ListedCase> read_case_list(std::string_view text, const std::string& name,
+                                       const Catalogue& catalogue, const FindScene& find) {
+  const nlohmann::ordered_json json = parse_json(text, name);
+  const JsonPlace root(json, name);
+  root.check_fields({"schema", "effort", "cases"});
+  if (const JsonPlace schema = root.at("schema"); schema.text() != "broadside.cases/1")
+    schema.refuse("\"broadside.cases/1\"");
+  Effort effort;
+  // All algorithms of a case take part in the same rounds, however far behind.
+  effort.far_ratio = std::numeric_limits<double>::infinity();
+  if (root.has("effort")) read_effort(root.at("effort"), effort);
+  std::vector<ListedCase> cases;
+  for (const JsonPlace& place : root.at("cases").list()) {
+    const std::string called = place.has("name") ? fmt::format(" '{}'", place.at("name").text()) : "";
+    const JsonPlace named(place.json(), place.name() + called);
+    cases.push_back(read_listed_case(named, effort, catalogue, find));
+    const auto first = std::ranges::find(cases, cases.back().name, &ListedCase::name);
+    if (first != cases.end() - 1) named.at("name").refuse("a name that no other case has");
+  }
+  if (cases.empty()) root.at("cases").refuse("at least one case");
+  return cases;
+}
+
+Comparison measure_cases(const Catalogue& catalogue, const std::vector<ListedCase>& cases, const Watch& watch,
+                         const std::function<void(const CaseResult&)>& finished) {
+  Comparison all;
+  all.load_before = platform::load();
+  const ProcessorShare share;
+  for (const ListedCase& listed : cases) {
+    CompareOptions options;
+    options.algorithms = listed.algorithms;
+    options.plan = {listed.request};
+    options.seed = listed.seed;
+    options.seeds = listed.seeds;
+    options.find = [&listed](std::string_view) { return listed.scene; };
+    options.effort = listed.effort;
+    options.taking = listed.taking;
+    options.watch = {watch.stop, [&](std::string_view what) {
+                       if (watch.progress) watch.progress(fmt::format("{}: {}", listed.name, what));
+                     }};
+    Comparison one;
+    try {
+      one = compare(catalogue, options);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("case '{}': {}", listed.name, error.what()));
+    }
+    if ((all.stopped = one.stopped)) break;
+    CaseResult& result = one.cases.at(0);
+    result.of.name = listed.name;
+    if (finished) finished(result);
+    all.cases.push_back(std::move(result));
+  }
+  all.processor_share = share.value();
+  all.load_after = platform::load();
+  return all;
+}
+
+}  // namespace broadside::lab

@@ -1,0 +1,81 @@
+"""What every experiment declares."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy
+
+from tools.paper import draft
+from tools.paper.experiment import Boxes, all_experiments, experiments_named, order_of, Unusable
+from tools.paper.rules import RuleBook
+from tools.paper.run import EFFORT
+
+PROGRAM = os.environ.get("BROADSIDE_PROGRAM")
+
+
+class Experiments(unittest.TestCase):
+    def test_are_about_statements_of_the_draft_each_judged_once(self):
+        statements = draft.statements()
+        numbers = [claim.number for experiment in all_experiments().values() for claim in experiment.claims]
+        self.assertEqual(len(numbers), len(set(numbers)))
+        for number in numbers:
+            self.assertIn(number, statements)
+            self.assertIn(statements[number].kind, ("claim", "definition"))
+
+    def test_say_what_would_decide_in_values_that_the_rules_have(self):
+        book = RuleBook()
+        for name, experiment in all_experiments().items():
+            for claim in experiment.claims:
+                for sentence in (claim.confirmed_if, claim.refuted_if):
+                    filled = book.of(name).fill(sentence)
+                    self.assertNotIn("{", filled)
+                    self.assertTrue(filled.endswith("."), filled)
+        self.assertLessEqual(set(book.experiments()), set(all_experiments()))
+
+    def test_stand_in_the_order_of_the_draft_and_are_found_by_name(self):
+        self.assertEqual(sorted(["10a", "2b", "B1", "2a"], key=order_of), ["2a", "2b", "10a", "B1"])
+        self.assertEqual([one.name for one in experiments_named(["sweep_insertion"])], ["sweep_insertion"])
+        with self.assertRaisesRegex(Unusable, "no experiment 'phlogiston'; expected some of: grid_cell_size"):
+            experiments_named(["phlogiston"])
+
+    def test_make_the_same_boxes_for_the_same_run(self):
+        for experiment in all_experiments().values():
+            for case in experiment.cases():
+                if isinstance(case.scene, Boxes):
+                    made = [case.scene.make(numpy.random.default_rng([1, 0])) for _ in range(2)]
+                    numpy.testing.assert_array_equal(*made)
+                    self.assertEqual(made[0].shape[1], 2 * case.dimension)
+                    self.assertTrue((made[0][:, :case.dimension] <= made[0][:, case.dimension:]).all())
+
+    @unittest.skipUnless(PROGRAM, "BROADSIDE_PROGRAM is not set; expected the program")
+    def test_list_cases_that_the_program_takes(self):
+        for experiment in all_experiments().values():
+            with tempfile.TemporaryDirectory() as folder:
+                numpy.save(Path(folder) / "boxes.npy", numpy.array([[0, 0, 1, 1]], dtype=numpy.float32))
+                cases = [case.listed(1, ["boxes.npy"]) for case in experiment.cases()]
+                listed = Path(folder) / "cases.json"
+                listed.write_text(json.dumps({"schema": "broadside.cases/1", "effort": EFFORT, "cases": cases}))
+                ended = subprocess.run([PROGRAM, "measure", listed, "--check"], cwd=folder, capture_output=True,
+                                       text=True, check=False)
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+
+
+class TheDraft(unittest.TestCase):
+    def test_is_read_statement_by_statement(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = Path(folder) / "draft.md"
+            page.write_text("# What\n\n| statement | a | kind | errata |\n|---|---|---|---|\n\n## V. Trees\n\n"
+                            "| statement | what | kind | errata |\n|---|---|---|---|\n| 8a | Many. | claim | |\n"
+                            "## VI. More\n### A. All\n\n| VI-A.1 | So. | opinion | T6 error |\n")
+            found = draft.statements(page)
+        self.assertEqual(list(found), ["8a", "VI-A.1"])
+        self.assertEqual((found["8a"].says, found["8a"].section), ("Many.", "V. Trees"))
+        self.assertEqual(found["VI-A.1"].section, "VI. More, A. All")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,52 @@
+"""Figures: readable as printed, without names from the code, the same bytes for the same drawing."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+from tools.paper import figures
+from tools.paper.experiment import Unusable
+from tools.paper.statistics import Estimate
+
+AT = [Estimate(1, 0.9, 1.1, (1,)), Estimate(2, 1.8, 2.2, (2,))]
+
+
+def drawn(x="boxes", name="the draft's grid"):
+    drawing, (axes,) = figures.new()
+    figures.line(axes, [10, 100], AT, name)
+    figures.label(axes, x, "milliseconds")
+    axes.legend()
+    return figures.Figure("one", "One.", drawing), axes
+
+
+class Figures(unittest.TestCase):
+    def test_of_words_of_eight_points_or_more_are_taken(self):
+        figures.check(drawn()[0])
+
+    def test_with_small_labels_are_refused(self):
+        figure, axes = drawn()
+        axes.set_title("small", fontsize=7.5)
+        with self.assertRaisesRegex(Unusable, "'small' has 7.5 points; expected 8 or more"):
+            figures.check(figure)
+
+    def test_with_names_from_the_code_are_refused(self):
+        for figure, _ in (drawn(name="paper_grid"), drawn(x="grid:cell")):
+            with self.assertRaisesRegex(Unusable, "is a name from the code"):
+                figures.check(figure)
+
+    def test_wider_than_the_text_are_refused(self):
+        figure, _ = drawn()
+        figure.drawing.set_figwidth(8)
+        with self.assertRaisesRegex(Unusable, "is 8 inches wide"):
+            figures.check(figure)
+
+    def test_are_the_same_bytes_each_time(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for copy in ("a", "b"):
+                figures.save(drawn()[0], Path(folder) / copy)
+            for name in ("one.svg", "one.pdf"):
+                self.assertEqual((Path(folder) / "a" / name).read_bytes(), (Path(folder) / "b" / name).read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

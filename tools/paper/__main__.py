@@ -1,0 +1,144 @@
+"""python3 -m tools.paper COMMAND: measures, judges and prints."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+MEASURED = ROOT / "build" / "experiments"
+PUBLISHED = Path(__file__).parent / "results"
+PACKAGES = "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib and python3-jinja2"
+
+try:
+    from . import draft, print as printing
+    from .archive import Archive
+    from .experiment import Experiment, Unusable, experiments_named
+    from .rules import RuleBook
+    from .run import Measuring
+except ModuleNotFoundError as missing:
+    sys.exit(f"tools.paper: {missing.name} is missing; expected Debian's {PACKAGES} (packages-paper.txt)")
+
+
+def main(arguments: Sequence[str]) -> int:
+    options = parse(arguments)
+    try:
+        return options.command(options)
+    except Unusable as error:
+        print(f"tools.paper: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("tools.paper: interrupted; what had ended is kept, and the same command goes on from there",
+              file=sys.stderr)
+        return 130
+
+
+def parse(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python3 -m tools.paper", description="The paper's experiments.")
+    verbs = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def verb(command, name: str, text: str) -> argparse.ArgumentParser:
+        added = verbs.add_parser(name, help=text, description=text)
+        added.set_defaults(command=command)
+        return added
+
+    def takes_experiments(added: argparse.ArgumentParser, folder: Path) -> None:
+        added.add_argument("names", nargs="*", metavar="NAME", help="experiments (default: all)")
+        added.add_argument("--results", type=Path, default=folder, metavar="FOLDER",
+                           help=f"the runs (default: {folder.relative_to(ROOT)})")
+
+    verb(list_experiments, "list", "List the experiments and their statements")
+    measuring = verb(run, "run", "Measure; what is there already is kept")
+    takes_experiments(measuring, MEASURED)
+    measuring.add_argument("--runs", type=int, default=3, metavar="N", help="how many runs (default: 3)")
+    measuring.add_argument("--first", type=int, default=1, metavar="N",
+                           help="the first one's number, by which its boxes are made (default: 1)")
+    measuring.add_argument("--quick", action="store_true", help="fewer rounds, for a first impression")
+    measuring.add_argument("--program", type=Path, default=ROOT / "build/release/broadside", metavar="FILE",
+                           help="the program (default: build/release/broadside)")
+    takes_experiments(verb(judge, "judge", "Judge what was measured"), MEASURED)
+    printed = verb(print_paper, "print", "Print what was measured")
+    takes_experiments(printed, PUBLISHED)
+    printed.add_argument("--to", type=Path, default=ROOT / "build/paper", metavar="FOLDER",
+                         help="where pages, figures, HTML and PDF go (default: build/paper)")
+    published = verb(publish, "publish", "Make a complete set of runs the published one")
+    published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER")
+    return parser.parse_args(arguments)
+
+
+def list_experiments(_: argparse.Namespace) -> int:
+    for experiment in experiments_named([]):
+        numbers = ", ".join(claim.number for claim in experiment.claims)
+        print(f"{experiment.name:20}  {experiment.title} ({numbers})")
+    return 0
+
+
+def run(options: argparse.Namespace) -> int:
+    if options.runs < 1 or options.first < 1:
+        raise Unusable(f"--runs is {options.runs} and --first {options.first}; expected 1 or more")
+    measuring = Measuring(options.program, Archive(options.results), options.results / "work", RuleBook(),
+                          options.quick)
+    measuring.measure(experiments_named(options.names), range(options.first, options.first + options.runs))
+    return 0
+
+
+def judged(options: argparse.Namespace) -> list[printing.JudgedExperiment]:
+    """The experiments of which there are runs, or those that are named."""
+    archive = Archive(options.results)
+    statements = draft.statements()
+    return [printing.judged_experiment(experiment, archive, RuleBook(), statements)
+            for experiment in measured_ones(archive, options.names)]
+
+
+def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
+    found = [experiment for experiment in experiments_named(names)
+             if names or archive.run_numbers(experiment.name)]
+    if not found:
+        raise Unusable(f"{archive.folder} has no runs; expected some, as `make experiments` measures")
+    return found
+
+
+def judge(options: argparse.Namespace) -> int:
+    for experiment in judged(options):
+        minutes = sum(one["seconds"] for one in experiment.runs) / len(experiment.runs) / 60
+        print(f"{experiment.name} ({len(experiment.runs)} runs of {minutes:.1f} min)")
+        for claim in experiment.claims:
+            print(f"  {claim.number:4} {claim.verdict}")
+            for name, at in claim.finding.evidence.items():
+                print(f"         {name}: {at.text()}")
+    return 0
+
+
+def print_paper(options: argparse.Namespace) -> int:
+    pages = printing.write_pages(judged(options), RuleBook(), draft.statements(), options.to)
+    printing.print_pages(pages, options.to)
+    return 0
+
+
+def publish(options: argparse.Namespace) -> int:
+    """Copies a set in which every experiment has all of its runs, by rules that were committed before them."""
+    archive, book = Archive(options.results), RuleBook()
+    for experiment in experiments_named([]):
+        _, runs = archive.results(experiment, book)
+        least = book.of(experiment.name).min_runs
+        if len(runs) < least:
+            raise Unusable(f"{experiment.name} has {len(runs)} runs; expected {least:g} or more")
+        for one in runs:
+            if one["quick"]:
+                raise Unusable(f"run {one['run']} of {experiment.name} was a quick one; expected a whole one")
+            if not one["rules"]["commit"]:
+                raise Unusable(f"run {one['run']} of {experiment.name} was measured before its rules were "
+                               f"committed; expected rules.toml committed first")
+    for old in PUBLISHED.glob("run-*"):
+        shutil.rmtree(old)
+    for folder in sorted(archive.folder.glob("run-*")):
+        shutil.copytree(folder, PUBLISHED / folder.name)
+    print(f"{PUBLISHED.relative_to(ROOT)} has what {archive.folder} has; commit it")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,125 @@
+"""Runs as files: one for each run and experiment, which says by what it was measured."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from .experiment import Experiment, Unusable
+from .results import Results, Run
+from .rules import RuleBook
+
+SCHEMA = "broadside.experiment-run/1"
+
+
+def digest_of(value: object) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Archive:
+    """A folder of runs: run-1/quadtree_capacity.json.gz and so on."""
+
+    folder: Path
+
+    def path(self, run: int, experiment: str) -> Path:
+        return self.folder / f"run-{run}" / f"{experiment}.json.gz"
+
+    def run_numbers(self, experiment: str) -> list[int]:
+        return sorted(int(path.parent.name.removeprefix("run-"))
+                      for path in self.folder.glob(f"run-*/{experiment}.json.gz"))
+
+    def write(self, run: int, experiment: Experiment, book: RuleBook, program: str, is_quick: bool,
+              seconds: float, results: dict) -> None:
+        """Whole or not at all: a run that is cut off leaves no file."""
+        content = {
+            "schema": SCHEMA,
+            "experiment": experiment.name,
+            "run": run,
+            "quick": is_quick,
+            "rules": {"version": book.version, "digest": book.digest, "commit": book.commit()},
+            "cases": digest_of(experiment.listed()),
+            "program": program,
+            "seconds": round(seconds, 1),
+            "results": results,
+        }
+        path = self.path(run, experiment.name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part")
+        with open(part, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=0) as packed:
+            packed.write(json.dumps(content, separators=(",", ":")).encode())
+        os.replace(part, path)
+
+    def read(self, run: int, experiment: Experiment, book: RuleBook) -> dict:
+        """Throws Unusable, in one line, where the file is of another version of anything."""
+        path = self.path(run, experiment.name)
+        try:
+            content = json.loads(gzip.decompress(path.read_bytes()))
+        except (OSError, EOFError, ValueError) as error:
+            raise Unusable(f"{path} cannot be read ({error}); expected a run of {experiment.name}") from None
+        check(path, "schema", content.get("schema") if isinstance(content, dict) else None, SCHEMA)
+        check(path, "the results' schema", content["results"]["schema"], "broadside.results/2")
+        rules = content["rules"]
+        check(path, "the rules' version", f"{rules['version']} ({rules['digest']})",
+              f"{book.version} ({book.digest})", "measure again: a changed rule means new data")
+        check(path, "the digest of its cases", content["cases"], digest_of(experiment.listed()),
+              f"measure again: the cases of {experiment.name} have changed")
+        return content
+
+    def results(self, experiment: Experiment, book: RuleBook) -> tuple[Results, list[dict]]:
+        """All runs of an experiment, and what each says of itself. Throws Unusable where there is none, or where
+        they do not go together."""
+        contents = [self.read(run, experiment, book) for run in self.run_numbers(experiment.name)]
+        if not contents:
+            raise Unusable(f"{self.folder} has no run of {experiment.name}; expected one at least, as "
+                           f"`make experiments` measures")
+        first = contents[0]
+        for content in contents[1:]:
+            path = self.path(content["run"], experiment.name)
+            for what in ("build", "machine"):
+                check(path, f"its {what}", text_of(content["results"][what]), text_of(first["results"][what]),
+                      f"that of run {first['run']}")
+            check(path, "quick", content["quick"], first["quick"], f"as in run {first['run']}")
+        for content in contents:
+            for measured in content["results"]["measurements"]:
+                if measured["verified"] is False:
+                    raise Unusable(f"{self.path(content['run'], experiment.name)}: {measured['algorithm']} is "
+                                   f"wrong in case '{measured['case']}' ({measured['skipped']}); expected "
+                                   f"results that were verified")
+        runs = [Run(content["results"]["measurements"]) for content in contents]
+        return Results(runs, book.of(experiment.name).confidence), [about(content) for content in contents]
+
+
+def check(path: Path, what: str, found: object, expected: object, why: str = "") -> None:
+    if found != expected:
+        raise Unusable(f"{path}: {what} is {found}; expected {expected}{', ' if why else ''}{why}")
+
+
+def text_of(machine_or_build: dict) -> str:
+    """Without the clock, which changes by itself on some machines."""
+    return ", ".join(f"{name} {value}" for name, value in machine_or_build.items() if name != "clock_mhz")
+
+
+def about(content: dict) -> dict:
+    """What a run says of itself."""
+    results = content["results"]
+    measurements = results["measurements"]
+    return {
+        "run": content["run"],
+        "quick": content["quick"],
+        "seconds": content["seconds"],
+        "date": results["date"],
+        "machine": results["machine"],
+        "build": results["build"],
+        "rules": content["rules"],
+        "processor_share": results["processor_share"],
+        "busy": results["busy"],
+        "load_before": results.get("load_before"),
+        "load_after": results.get("load_after"),
+        "measurements": len(measurements),
+        "unsteady": sum(1 for measured in measurements if measured["unsteady"]),
+    }

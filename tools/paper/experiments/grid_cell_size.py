@@ -1,0 +1,125 @@
+"""Section III: the size of a grid's cells is a balance, and whether it has to be tuned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from .. import figures
+from ..experiment import Case, Claim, Experiment
+from ..judge import Finding, judged
+from ..results import Results, Run
+from ..rules import Rules
+from ..statistics import Estimate, geometric_mean
+
+# The mean length of a scene's boxes in the plane and in space, by `broadside scene`: the unit of cells.
+LENGTHS = {"uniform": (1.0, 1.0), "clustered": (1.0, 1.0), "mixed": (2.0, 2.0), "power_law": (2.8, 2.9),
+           "thin": (25.4, 17.4)}
+
+# Cells in mean lengths of a box, up to the one that holds the world of every scene.
+SIZES = tuple(2.0**power for power in range(-3, 10))
+
+# As many boxes as the grid can test in one cell: the draft's tests all of them in pairs.
+GRIDS = {("paper_grid", 2): 10_000, ("grid", 2): 40_000, ("grid", 3): 40_000}
+
+
+def case_of(grid: str, dimension: int, scene: str) -> str:
+    return f"{figures.NAMES[grid]} in {dimension}D on {scene} boxes"
+
+
+def spec(grid: str, dimension: int, scene: str, size: float) -> str:
+    cell = f"{grid}:cell={size * LENGTHS[scene][dimension - 2]:g}"
+    return cell + (":limit=none" if grid == "paper_grid" else "")
+
+
+def specs(grid: str, dimension: int, scene: str) -> list[str]:
+    return [spec(grid, dimension, scene, size) for size in SIZES]
+
+
+def cases() -> list[Case]:
+    return [Case(case_of(grid, dimension, scene), scene, [grid, *specs(grid, dimension, scene)], boxes=boxes,
+                 dimension=dimension, take=["time", "counts"])
+            for (grid, dimension), boxes in GRIDS.items() for scene in LENGTHS]
+
+
+def over_best(results: Results, grid: str, dimension: int, scene: str, one: str) -> Estimate:
+    """The time of a spec over that of the best size on this scene."""
+    case = case_of(grid, dimension, scene)
+    return results.ratio(case, one, results.fastest(case, specs(grid, dimension, scene)))
+
+
+def mean_over_best(results: Results, grid: str, dimension: int, size: float | None) -> Estimate:
+    """Likewise of one size on all scenes, or of the size that the grid chooses: the mean over the scenes."""
+    ways = {}
+    for scene in LENGTHS:
+        case = case_of(grid, dimension, scene)
+        one = grid if size is None else spec(grid, dimension, scene, size)
+        ways[case] = (one, results.fastest(case, specs(grid, dimension, scene)))
+
+    def mean(run: Run) -> float:
+        return geometric_mean([run.ratio(case, one, best) for case, (one, best) in ways.items()])
+
+    return results.between(mean)
+
+
+def untuned(results: Results, grid: str, dimension: int) -> Estimate:
+    """The one size that does best on all scenes."""
+    everywhere = [size for size in SIZES
+                  if all(results.timed(case_of(grid, dimension, scene), [spec(grid, dimension, scene, size)])
+                         for scene in LENGTHS)]
+    return min((mean_over_best(results, grid, dimension, size) for size in everywhere), key=lambda at: at.value)
+
+
+def judge(results: Results, rules: Rules) -> Sequence[Finding]:
+    ends = {}
+    counts = {}
+    for scene in LENGTHS:
+        case = case_of("paper_grid", 2, scene)
+        smallest, *_, largest = results.timed(case, specs("paper_grid", 2, scene))
+        ends[f"the smallest cells on {scene} boxes"] = over_best(results, "paper_grid", 2, scene, smallest)
+        ends[f"the largest cells on {scene} boxes"] = over_best(results, "paper_grid", 2, scene, largest)
+        for what in ("references", "tests"):
+            counts[f"{what}, the smallest cells over the largest, {scene}"] = results.between(
+                lambda run: run.count(case, smallest, what) / run.count(case, largest, what))
+    tuned = {
+        "one size, in lengths of a box, for all scenes": untuned(results, "paper_grid", 2),
+        "a size by rule, twice a mean box": mean_over_best(results, "paper_grid", 2, None),
+    }
+    ours = {}
+    for dimension in (2, 3):
+        ours[f"our grid in {dimension}D, one size for all scenes"] = untuned(results, "grid", dimension)
+        ours[f"our grid in {dimension}D, its own choice"] = mean_over_best(results, "grid", dimension, None)
+    return [
+        judged("5a", ends, above=rules.clearly, where="at {}", beside=counts),
+        judged("5b", tuned, above=rules.clearly, fails_at=rules.level, where="the choice is {}", beside=ours),
+    ]
+
+
+def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
+    drawing, axes = figures.new(columns=2)
+    for place, (grid, title) in zip(axes, (("paper_grid", "The draft's grid"), ("grid", "Our grid"))):
+        for scene in LENGTHS:
+            timed = [size for size in SIZES
+                     if results.timed(case_of(grid, 2, scene), [spec(grid, 2, scene, size)])]
+            figures.line(place, timed, [over_best(results, grid, 2, scene, spec(grid, 2, scene, size))
+                                        for size in timed], scene.replace("_", " "))
+        figures.label(place, "length of a cell, in mean lengths of a box", "time over the best", title)
+    axes[0].legend()
+    yield figures.Figure("grid_cell_size", "Two grids by the size of their cells, on five scenes in the plane. "
+                         "Bars: intervals between runs.", drawing)
+
+
+EXPERIMENT = Experiment(
+    title="The size of cells is a balance",
+    measured="The draft's grid on 10,000 boxes in the plane, with cells as small as they are asked for, and ours on "
+             "40,000 in the plane and in space, with cells from an eighth of a box up to the world and with the size "
+             "that the grid chooses itself, in five scenes.",
+    claims=[
+        Claim("5a",
+              "In each scene, both the smallest cells and the largest take more than {clearly} times as long as the "
+              "best size.", "In no scene they do."),
+        Claim("5b",
+              "On the draft's grid, both the one size, in lengths of a box, that does best on all scenes and the size "
+              "by the rule of the mended listing take more than {clearly} times as long as each scene's best, as a "
+              "mean.", "Both take less than {level} times as long."),
+    ],
+    cases=cases, judge=judge, figures=draw)

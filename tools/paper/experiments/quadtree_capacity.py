@@ -1,0 +1,141 @@
+"""Section V: a quadtree trades tests for references, which slow it down in dense worlds; larger leaves help."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from .. import figures
+from ..experiment import Case, Claim, Experiment
+from ..judge import Finding, judged
+from ..results import Results
+from ..rules import Rules
+from ..statistics import Estimate
+
+NEIGHBOURS = (1, 4, 16, 64, 256)  # others that a box overlaps: ever more boxes in a world of one size
+BOXES = 10_000
+SMALL = (2, 4, 8)                 # the draft names no capacity
+CAPACITIES = tuple(2**power for power in range(1, 11))
+OWN_CAPACITIES = tuple(2**power for power in range(3, 12))
+
+
+def spec(capacity: int, tree: str = "paper_quadtree") -> str:
+    return f"{tree}:capacity={capacity}"
+
+
+def world(neighbours: int) -> str:
+    return f"{neighbours} neighbours"
+
+
+def the_draft(neighbours: int) -> str:
+    return f"the draft's tree, {world(neighbours)}"
+
+
+def ours(neighbours: int) -> str:
+    return f"our tree, {world(neighbours)}"
+
+
+def cases() -> list[Case]:
+    found = []
+    for neighbours in NEIGHBOURS:
+        scene = f"uniform:neighbours={neighbours}"
+        found.append(Case(the_draft(neighbours), scene, [*map(spec, CAPACITIES), "paper_grid", "auto"],
+                          boxes=BOXES, take=["time", "counts"]))
+        found.append(Case(ours(neighbours), scene, [*(spec(one, "quadtree") for one in OWN_CAPACITIES), "auto"],
+                          boxes=BOXES))
+    return found
+
+
+def references_grown(results: Results, neighbours: int, capacity: int) -> Estimate:
+    """A box's references over those in the sparsest world."""
+    return results.between(lambda run: run.count(the_draft(neighbours), spec(capacity), "references")
+                           / run.count(the_draft(NEIGHBOURS[0]), spec(capacity), "references"))
+
+
+def is_dense(results: Results, rules: Rules, neighbours: int) -> bool:
+    return all(references_grown(results, neighbours, capacity).is_above(rules.dense) for capacity in SMALL)
+
+
+def place(capacity: int, neighbours: int) -> str:
+    return f"leaves of {capacity} at {world(neighbours)}"
+
+
+def judge(results: Results, rules: Rules) -> Sequence[Finding]:
+    densest = NEIGHBOURS[-1]
+    grown = {place(capacity, densest): references_grown(results, densest, capacity) for capacity in SMALL}
+    slower = {}
+    fewer = {}
+    tests = {}
+    for neighbours in NEIGHBOURS:
+        case = the_draft(neighbours)
+        for capacity in SMALL:
+            larger = [one for one in CAPACITIES if one > capacity]
+            tests[place(capacity, neighbours)] = results.between(lambda run: run.count(case, spec(capacity), "tests")
+                / min(run.count(case, spec(one), "tests") for one in larger))
+            if not is_dense(results, rules, neighbours):
+                continue
+            best = results.fastest(case, [*map(spec, larger)])
+            slower[place(capacity, neighbours)] = results.ratio(case, spec(capacity), best)
+            fewer[f"references of the best over {place(capacity, neighbours)}"] = results.between(
+                lambda run: run.count(case, best, "references") / run.count(case, spec(capacity), "references"))
+    return [
+        judged("8a", grown, above=rules.twice, fails_at=rules.clearly, where="it has {}",
+               beside={f"references, {place(8, n)}": results.count(the_draft(n), spec(8), "references")
+                       for n in NEIGHBOURS}),
+        judged("8b", slower, above=rules.level, where="it has {}", beside={**fewer, **beside_times(results)}),
+        judged("8c", tests, below=1, where="it has {}", beside=beside_tests(results)),
+    ]
+
+
+def beside_times(results: Results) -> dict[str, Estimate]:
+    found = {}
+    for neighbours in NEIGHBOURS:
+        best = results.fastest(ours(neighbours), [spec(one, "quadtree") for one in OWN_CAPACITIES])
+        found[f"our tree with its usual leaves over its best, {world(neighbours)}"] = results.ratio(
+            ours(neighbours), spec(128, "quadtree"), best)
+        found[f"the draft's tree, leaves of 8, over our own choice, {world(neighbours)}"] = results.ratio(
+            the_draft(neighbours), spec(8), "auto")
+    return found
+
+
+def beside_tests(results: Results) -> dict[str, Estimate]:
+    found = {}
+    for neighbours in NEIGHBOURS:
+        case = the_draft(neighbours)
+        found[f"{place(8, neighbours)} over brute force"] = results.between(
+            lambda run: run.count(case, spec(8), "tests") / ((run.boxes(case) - 1) / 2))
+        found[f"{place(8, neighbours)} over the draft's grid"] = results.between(
+            lambda run: run.count(case, spec(8), "tests") / run.count(case, "paper_grid", "tests"))
+    return found
+
+
+def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
+    drawing, (times, references) = figures.new(columns=2)
+    for neighbours in NEIGHBOURS:
+        case = the_draft(neighbours)
+        timed = [one for one in CAPACITIES if results.timed(case, [spec(one)])]
+        best = results.fastest(case, [*map(spec, timed)])
+        figures.line(times, timed, [results.ratio(case, spec(one), best) for one in timed], f"{neighbours}")
+        figures.line(references, timed, [results.count(case, spec(one), "references") for one in timed])
+    figures.label(times, "boxes that a leaf holds", "time over the best")
+    figures.label(references, "boxes that a leaf holds", "references of a box")
+    times.legend(title="neighbours of a box", ncols=2)
+    yield figures.Figure("quadtree_capacity", "The draft's quadtree by the capacity of a leaf, in worlds in "
+                         "which a box overlaps few others or many. Bars: intervals between runs.", drawing)
+
+
+EXPERIMENT = Experiment(
+    title="Larger leaves for denser worlds",
+    measured=f"The draft's quadtree and ours with leaves of each capacity, and the draft's grid, on {BOXES:,} "
+             "uniform boxes in the plane that overlap 1 to 256 others: tests, references and time.",
+    claims=[
+        Claim("8a",
+              "With leaves of 2, of 4 and of 8 boxes, a box has more than {twice} times as many references in the "
+              "densest world as in the sparsest.", "With each of them it has fewer than {clearly} times as many."),
+        Claim("8b",
+              "In every dense world (more than {dense} times the references of the sparsest), leaves of 2, of 4 and "
+              "of 8 take more than {level} times as long as the best larger leaves.", "In none they do."),
+        Claim("8c",
+              "In every world, leaves of 2, of 4 and of 8 make fewer tests than any larger leaves: tests are lower as "
+              "nodes hold few.", "In none they do."),
+    ],
+    cases=cases, judge=judge, figures=draw)

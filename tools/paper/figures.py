@@ -1,0 +1,105 @@
+"""The figures: Matplotlib's, drawn at the size at which they are printed, readable there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+from matplotlib.text import Text
+
+from .experiment import Unusable
+from .statistics import Estimate
+
+WIDTH = 5.6          # inches: the width of the printed text
+LEAST_POINTS = 8     # of any label, as printed
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"]  # Okabe and Ito
+MARKERS = "os^Dv<>"
+
+matplotlib.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 8.5, "axes.titlesize": 9, "axes.labelsize": 8.5,
+    "xtick.labelsize": 8, "ytick.labelsize": 8, "legend.fontsize": 8, "legend.frameon": False,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd",
+    "grid.linewidth": 0.5, "lines.linewidth": 1.2, "lines.markersize": 3.5, "axes.prop_cycle":
+    matplotlib.cycler(color=COLOURS), "svg.hashsalt": "broadside", "svg.fonttype": "path",
+    "figure.constrained_layout.use": True, "pdf.fonttype": 42,
+})
+
+# What algorithms are called in figures and tables.
+NAMES = {
+    "paper_brute_force": "the draft's brute force", "paper_grid": "the draft's grid",
+    "paper_sweep_and_prune": "the draft's sweep", "paper_quadtree": "the draft's quadtree",
+    "brute_force": "our brute force", "grid": "our grid", "sweep_and_prune": "our sweep",
+    "quadtree": "our quadtree", "bvh": "our tree of bounds", "auto": "our own choice",
+}
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of an experiment: what it is called, what it shows, and the drawing."""
+
+    name: str
+    caption: str
+    drawing: pyplot.Figure
+
+
+def new(columns: int = 1, height: float = 2.6) -> tuple[pyplot.Figure, list[Axes]]:
+    """A drawing as wide as the text, with axes side by side."""
+    drawing, axes = pyplot.subplots(1, columns, figsize=(WIDTH, height), squeeze=False)
+    return drawing, list(axes[0])
+
+
+def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
+    """What the axes show, with units in words; `log` names those that are logarithmic. After the lines."""
+    axes.set(xlabel=x, ylabel=y, title=title)
+    for set_scale, axis, is_log in ((axes.set_xscale, axes.xaxis, "x" in log),
+                                    (axes.set_yscale, axes.yaxis, "y" in log)):
+        if is_log:
+            set_scale("log")
+            low, high = sorted(axis.get_view_interval())
+            decades = numpy.log10(high / low) if low > 0 else numpy.inf
+            axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5) if decades < 2.5 else (1,)))
+            axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:,g}"))
+            axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
+def line(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], name: str = "") -> None:
+    """A line through figures, with their intervals as bars."""
+    y = numpy.array([at.value for at in estimates])
+    bars = numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in estimates])).T
+    number = len(axes.containers)
+    axes.errorbar(x, y, yerr=bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
+                  elinewidth=0.8)
+
+
+def check(figure: Figure) -> None:
+    """Throws Unusable if a label would be too small to read, or is a name from the code."""
+    if figure.drawing.get_figwidth() > WIDTH + 1e-6:
+        raise Unusable(f"figure {figure.name} is {figure.drawing.get_figwidth():g} inches wide; expected at "
+                       f"most {WIDTH:g}, as wide as it is printed")
+    for text in figure.drawing.findobj(Text):
+        words = text.get_text()
+        if not words or not text.get_visible():
+            continue
+        if text.get_fontsize() < LEAST_POINTS:
+            raise Unusable(f"figure {figure.name}: '{words}' has {text.get_fontsize():g} points; expected "
+                           f"{LEAST_POINTS} or more")
+        if re.search(r"[a-z]_[a-z]|[a-z]:[a-z]", words):
+            raise Unusable(f"figure {figure.name}: '{words}' is a name from the code; expected words")
+
+
+def save(figure: Figure, folder: Path) -> None:
+    """As SVG for pages and as PDF for print; the same drawing gives the same bytes."""
+    check(figure)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.drawing.savefig(folder / f"{figure.name}.svg", metadata={"Date": None})
+    figure.drawing.savefig(folder / f"{figure.name}.pdf", metadata={"CreationDate": None})
+    pyplot.close(figure.drawing)

@@ -1,0 +1,127 @@
+"""What an experiment measured: one object for each run, and figures between runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy
+import pandas
+
+from .experiment import Unusable
+from .statistics import Estimate, between_runs, bootstrap_interval, median_ratio
+
+WHOLE = ("whole",)
+
+
+class Run:
+    """One run: a measurement for each case and spec.
+
+    A part of a time is the whole call or frame, or a sum of phases such as ("adding",): see
+    paper/listings/phases.hpp.
+    """
+
+    def __init__(self, measurements: Sequence[dict]):
+        table = pandas.DataFrame(measurements)
+        self._table = table.set_index(["case", "algorithm"], drop=False)
+
+    def measurement(self, case: str, spec: str) -> pandas.Series:
+        if (case, spec) not in self._table.index:
+            raise KeyError(f"'{spec}' was not measured in case '{case}'")
+        return self._table.loc[(case, spec)]
+
+    def samples(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> numpy.ndarray:
+        """Milliseconds: a row a round, a column a frame (one where boxes rest). No row: it was too slow."""
+        measured = self.measurement(case, spec)
+        if measured["samples_ms"] is None:
+            return numpy.empty((0, 1))
+        frames = max(int(measured["frames"]), 1)
+        whole = numpy.asarray(measured["samples_ms"], dtype=float).reshape(-1, frames)
+        if tuple(part) == WHOLE:
+            return whole
+        phases = measured["phases"]
+        return sum(numpy.asarray(phases[f"{name}_ms"], dtype=float) for name in part).reshape(whole.shape)
+
+    def was_timed(self, case: str, spec: str) -> bool:
+        return self.samples(case, spec).size > 0
+
+    def time(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> float:
+        """Milliseconds: the median of all calls or frames."""
+        return float(numpy.median(self.samples(case, spec, part)))
+
+    def ratio(self, case: str, spec: str, other: str, part: Sequence[str] = WHOLE,
+              other_part: Sequence[str] | None = None) -> float:
+        """The time of one over that of another, in the rounds of both."""
+        return median_ratio(self.samples(case, spec, part), self.samples(case, other, other_part or part))
+
+    def count(self, case: str, spec: str, what: str) -> float:
+        """Tests or references a box: the mean over the seeds."""
+        measured = self.measurement(case, spec)
+        by_seed = [number for number in measured[f"{what}_by_seed"] if number is not None]
+        if not by_seed:
+            raise KeyError(f"'{spec}' counts no {what}")
+        return float(numpy.mean(by_seed)) / self.boxes(case)
+
+    def per_mover(self, case: str, spec: str, what: str) -> float:
+        """Entries `visited` or `moved` for each box that changed."""
+        phases = self.measurement(case, spec)["phases"]
+        return float(numpy.sum(phases[what]) / max(numpy.sum(phases["movers"]), 1))
+
+    def memory(self, case: str, spec: str, what: str = "own") -> float:
+        """Bytes held between calls (own), or the most at one moment (peak)."""
+        return float(self.measurement(case, spec)[f"{what}_bytes"])
+
+    def boxes(self, case: str) -> int:
+        return int(self._table.xs(case, level="case", drop_level=False).iloc[0]["boxes"])
+
+    def seeds(self, case: str) -> int:
+        return len(self._table.xs(case, level="case", drop_level=False).iloc[0]["seeds"])
+
+
+class Results:
+    """All runs of one experiment. Every figure is a function of one run, with its interval between runs."""
+
+    def __init__(self, runs: Sequence[Run], confidence: float):
+        if not runs:
+            raise Unusable("no runs; expected one at least")
+        self.runs = list(runs)
+        self.confidence = confidence
+
+    def between(self, figure: Callable[[Run], float], unit: str = "") -> Estimate:
+        return between_runs([figure(run) for run in self.runs], self.confidence, unit)
+
+    def time(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> Estimate:
+        return self.between(lambda run: run.time(case, spec, part), "ms")
+
+    def ratio(self, case: str, spec: str, other: str, part: Sequence[str] = WHOLE,
+              other_part: Sequence[str] | None = None) -> Estimate:
+        """Of a single run the interval is the bootstrap's within it, for a first impression."""
+        estimate = self.between(lambda run: run.ratio(case, spec, other, part, other_part))
+        if len(self.runs) > 1 or spec == other:
+            return estimate
+        low, high = bootstrap_interval(self.runs[0].samples(case, spec, part),
+                                       self.runs[0].samples(case, other, other_part or part),
+                                       self.confidence)
+        return Estimate(estimate.value, low, high, estimate.runs)
+
+    def count(self, case: str, spec: str, what: str) -> Estimate:
+        return self.between(lambda run: run.count(case, spec, what), f"{what} a box")
+
+    def per_mover(self, case: str, spec: str, what: str) -> Estimate:
+        return self.between(lambda run: run.per_mover(case, spec, what), f"{what} a mover")
+
+    def boxes(self, case: str) -> int:
+        return self.runs[0].boxes(case)
+
+    def timed(self, case: str, specs: Sequence[str]) -> list[str]:
+        """Those of the specs that have a time in every run."""
+        return [spec for spec in specs if all(run.was_timed(case, spec) for run in self.runs)]
+
+    def fastest(self, case: str, specs: Sequence[str]) -> str:
+        """The spec with the least time, as the mean over the runs; one is chosen for all of them."""
+        timed = self.timed(case, specs)
+        if not timed:
+            raise Unusable(f"case '{case}': none of {', '.join(specs)} has a time; expected one at least")
+        means = {spec: math.exp(numpy.mean([math.log(run.time(case, spec)) for run in self.runs]))
+                 for spec in timed}
+        return min(means, key=means.get)

@@ -1,0 +1,58 @@
+"""The rules of judgement, from rules.toml."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+PATH = Path(__file__).parent / "rules.toml"
+
+
+class Rules:
+    """The values that one experiment is judged by, as attributes: its own and those of [all]."""
+
+    def __init__(self, values: Mapping[str, float]):
+        self._values = dict(values)
+
+    def __getattr__(self, name: str):
+        try:
+            return self._values[name]
+        except KeyError:
+            raise AttributeError(f"no rule '{name}'; expected one of: {', '.join(self._values)}") from None
+
+    def fill(self, sentence: str) -> str:
+        """The sentence with each `{rule}` replaced by its value."""
+        return sentence.format_map({name: f"{value:g}" for name, value in self._values.items()})
+
+
+class RuleBook:
+    """All rules, their version, and a digest of what they say."""
+
+    def __init__(self, path: Path = PATH):
+        text = path.read_text(encoding="utf-8")
+        self._tables = tomllib.loads(text)
+        self._path = path
+        self.version: int = self._tables.pop("version")
+        self.digest = hashlib.sha256(repr(sorted(self._tables.items())).encode()).hexdigest()[:16]
+
+    def of(self, experiment: str) -> Rules:
+        return Rules({**self._tables["all"], **self._tables.get(experiment, {})})
+
+    def experiments(self) -> list[str]:
+        """Those that have rules of their own."""
+        return [name for name in self._tables if name != "all"]
+
+    def commit(self) -> str:
+        """The commit that the rules are from; empty where they, or the repository, are not committed."""
+        def git(*arguments: str) -> subprocess.CompletedProcess:
+            return subprocess.run(("git", *arguments, "--", self._path.name), cwd=self._path.parent,
+                                  capture_output=True, text=True, check=False)
+        try:
+            if git("diff", "--quiet", "HEAD").returncode != 0:
+                return ""
+            return git("log", "-1", "--format=%H").stdout.strip()
+        except FileNotFoundError:  # no git
+            return ""

@@ -1,0 +1,126 @@
+"""Figures with intervals: between runs by Student's t, within one run by the bootstrap.
+
+A run is a process of its own on boxes of its own seeds, and the unit of every interval: rounds within a
+process share its memory layout and its moment, so that they are not independent (Georges, Buytaert and
+Eeckhout, OOPSLA 2007; Kalibera and Jones, ISMM 2013).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy
+from scipy import stats
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A figure: the mean of its runs and the interval between them."""
+
+    value: float
+    low: float
+    high: float
+    runs: tuple[float, ...]
+    unit: str = ""
+
+    def is_above(self, level: float) -> bool:
+        return self.low > level
+
+    def is_below(self, level: float) -> bool:
+        return self.high < level
+
+    def reciprocal(self) -> Estimate:
+        return Estimate(1 / self.value, 1 / self.high, 1 / self.low, tuple(1 / run for run in self.runs))
+
+    def text(self) -> str:
+        """Three digits, and the interval in brackets: "1.42 (1.38 to 1.46) ms"."""
+        interval = "" if self.low == self.high else f" ({digits(self.low)} to {digits(self.high)})"
+        return f"{digits(self.value)}{interval}{' ' if self.unit else ''}{self.unit}"
+
+
+def digits(number: float) -> str:
+    """Three significant digits, with commas: 0.0123, 1.42, 25,700."""
+    if not math.isfinite(number):
+        return "unknown" if math.isnan(number) else ("-" if number < 0 else "") + "without end"
+    if number == 0:
+        return "0"
+    places = 2 - math.floor(math.log10(abs(number)))
+    rounded = round(number, places)
+    return f"{rounded:,.{max(places, 0)}f}"
+
+
+def between_runs(values: Sequence[float], confidence: float, unit: str = "") -> Estimate:
+    """The mean of the runs' figures and its Student's interval.
+
+    Of figures above 0 both are of their logarithms, so that a ratio's reciprocal has the reciprocal
+    interval. One run has no interval between runs: it decides nothing.
+    """
+    runs = numpy.asarray(values, dtype=float)
+    if runs.size == 0:
+        raise ValueError("no runs; expected one at least")
+    if not numpy.isfinite(runs).all():
+        return Estimate(math.nan, math.nan, math.nan, tuple(runs), unit)
+    is_positive = bool((runs > 0).all())
+    numbers = numpy.log(runs) if is_positive else runs
+    mean = numbers.mean()
+    if runs.size == 1:
+        low = high = math.nan
+    elif numpy.ptp(numbers) == 0:  # counts
+        low = high = mean
+    else:
+        low, high = stats.t.interval(confidence, runs.size - 1, loc=mean, scale=stats.sem(numbers))
+    back = math.exp if is_positive else float
+    return Estimate(back(mean), back(low), back(high), tuple(runs), unit)
+
+
+def median_ratio(times: numpy.ndarray, others: numpy.ndarray) -> float:
+    """The median of paired ratios; that of the reciprocals is its reciprocal."""
+    return float(numpy.exp(numpy.median(_logarithms(times, others))))
+
+
+def bootstrap_interval(times: numpy.ndarray, others: numpy.ndarray, confidence: float) -> tuple[float, float]:
+    """Where the median ratio of one run lies, by resampling its pairs: what varies within the run."""
+    logarithms = _logarithms(times, others)
+    if logarithms.size < 5 or numpy.ptp(logarithms) == 0:
+        return math.nan, math.nan
+    result = stats.bootstrap((logarithms,), numpy.median, confidence_level=confidence, n_resamples=2000,
+                             method="percentile", random_state=numpy.random.default_rng(1))
+    return tuple(numpy.exp(result.confidence_interval))
+
+
+def _logarithms(times: numpy.ndarray, others: numpy.ndarray) -> numpy.ndarray:
+    """Of the pairs in which both took part. What the clock did not see took less than a nanosecond."""
+    rounds = min(len(times), len(others))
+    if rounds == 0:
+        raise ValueError("no round in which both took part; expected one at least")
+    least = 1e-6
+    return numpy.log(numpy.maximum(times[:rounds], least) / numpy.maximum(others[:rounds], least)).ravel()
+
+
+def geometric_mean(numbers: Sequence[float]) -> float:
+    return float(stats.gmean(numbers))
+
+
+def growth(sizes: Sequence[float], amounts: Sequence[float]) -> float:
+    """The exponent e of amount ~ size^e, by least squares of the logarithms."""
+    return float(stats.linregress(numpy.log(sizes), numpy.log(amounts)).slope)
+
+
+def crossing(places: Sequence[float], ratios: Sequence[float], level: float = 1) -> float:
+    """The place from which on a ratio stays above a level, between places by logarithms.
+
+    The first place where it always is; infinite where it is not at the last.
+    """
+    order = numpy.argsort(places)
+    x = numpy.log(numpy.asarray(places, dtype=float)[order])
+    above = numpy.log(numpy.asarray(ratios, dtype=float)[order] / level)
+    below = numpy.flatnonzero(above <= 0)
+    if below.size == 0:
+        return float(numpy.exp(x[0]))
+    last = below[-1]
+    if last == x.size - 1:
+        return math.inf
+    share = -above[last] / (above[last + 1] - above[last])
+    return float(numpy.exp(x[last] + share * (x[last + 1] - x[last])))
