@@ -4,7 +4,8 @@
 namespace broadside::lab::literature {
 
 std::vector<Algorithm> algorithms() {
-  return {terdiman_box_pruning(), segmented_sap(), serpa_kd_tree(), karras_lbvh(), pbsm_stripes()};
+  return {terdiman_box_pruning(), segmented_sap(), serpa_kd_tree(),
+          karras_lbvh(),          pbsm_stripes(),  two_layer_grid()};
 }
 
 }  // namespace broadside::lab::literature

@@ -15,5 +15,6 @@ Algorithm pbsm_stripes();
 Algorithm segmented_sap();
 Algorithm serpa_kd_tree();
 Algorithm terdiman_box_pruning();
+Algorithm two_layer_grid();
 
 }  // namespace broadside::lab::literature

@@ -13,42 +13,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "lab/literature/cut_axis.hpp"
 #include "lab/literature/literature.hpp"
 #include "lab/literature/radix_sort.hpp"
 
 namespace broadside::lab::literature {
 namespace {
-
-/// The part of an axis that finite coordinates take, cut into equal cells. What lies beyond is in the first
-/// or the last one.
-struct CutAxis {
-  double low = 0;
-  double scale = 0;  // cells a unit
-  std::size_t cells = 1;
-
-  std::size_t cell(float coordinate) const noexcept {
-    if (cells == 1) return 0;
-    const double place = (double{coordinate} - low) * scale;
-    return place > 0 ? static_cast<std::size_t>(std::min(place, static_cast<double>(cells - 1))) : 0;
-  }
-};
-
-/// What is known of the boxes on an axis: the range of their finite coordinates, and their mean extent in it.
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  double mean = 0;
-
-  CutAxis cut(std::size_t cells) const noexcept {
-    if (!(low < high)) return {};
-    return {low, static_cast<double>(cells) / (high - low), cells};
-  }
-};
 
 /// A box in a stripe: on the sweep axis, and on the others.
 template <int D>
@@ -71,11 +45,11 @@ class PbsmStripes final : public Searcher<D> {
     const std::span<const Box<D>> boxes = input.boxes;
     if (boxes.empty()) return std::nullopt;
     const std::size_t left = input.left_count;
-    for (int axis = 0; axis < D; ++axis) extents_[axis] = extent_of(boxes, axis);
+    for (int axis = 0; axis < D; ++axis) extents_[axis] = extent_of<D>(boxes, axis);
     choose_axes(boxes, left);
     const Extent& extent = extents_[partition_axis_];
     // No more stripes than boxes, where these are points.
-    const double stripes = std::ceil((extent.high - extent.low) / (width_ * extent.mean));
+    const double stripes = std::ceil(extent.length() / (width_ * extent.mean));
     const bool finite = stripes >= 1;  // not NaN
     const auto most = static_cast<double>(boxes.size());
     stripes_ = extent.cut(finite ? static_cast<std::size_t>(std::min(stripes, most)) : 1);
@@ -96,23 +70,6 @@ class PbsmStripes final : public Searcher<D> {
 
  private:
   using Run = std::span<const Reference<D>>;
-
-  static Extent extent_of(std::span<const Box<D>> boxes, int axis) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    Extent extent;
-    for (const Box<D>& box : boxes) {
-      for (const float bound : {box.min[axis], box.max[axis]}) {
-        if (std::abs(bound) == infinity) continue;
-        extent.low = std::min(extent.low, double{bound});
-        extent.high = std::max(extent.high, double{bound});
-      }
-    }
-    for (const Box<D>& box : boxes)
-      extent.mean +=
-          std::min(double{box.max[axis]}, extent.high) - std::max(double{box.min[axis]}, extent.low);
-    extent.mean /= static_cast<double>(boxes.size());
-    return extent;
-  }
 
   /// The sweep is along the axis on which the fewest pairs of boxes share a cell of a histogram; stripes cut
   /// the next best.

@@ -53,6 +53,7 @@ const families: Record<string, readonly [string, string]> = {
   segmented: ["#274f7d", "#86b1e0"],
   serpa: ["#7d2743", "#e086a6"],
   terdiman: ["#1f6f78", "#74c3cb"],
+  two_layer_grid: ["#b0782a", "#e3b777"],
 };
 
 /** The family that an algorithm is named for: "grid" of grid:cell=2 and of paper_grid, "bullet" of bullet_dbvt. */

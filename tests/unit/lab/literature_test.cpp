@@ -25,7 +25,7 @@ TEST(Literature, IsAGroupOfTheCatalogue) {
     EXPECT_TRUE(entry.algorithm->has_dimension(2) && entry.algorithm->has_dimension(3)) << selected.back();
   }
   EXPECT_THAT(selected, ElementsAre("terdiman_box_pruning", "segmented_sap", "serpa_kd_tree", "karras_lbvh",
-                                    "pbsm_stripes"));
+                                    "pbsm_stripes", "two_layer_grid"));
 }
 
 /// Intervals [i, i + 1/2] for i < 100, and 200 from -1 to 99.2, which was there before the others: so the
