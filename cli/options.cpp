@@ -103,9 +103,8 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
       ->type_name("PART");
   verb.add_option(
           "--layer,--array", options.layer,
-          "The layer of a map in TopoJSON, such as counties (default: all), or of a GeoPackage and its "
-          "like (default: the only one), or the array of an .npz file (likewise), which may be called "
-          "--array as well")
+          "The layer of a map in TopoJSON, such as counties (default: all), or the array of an .npz file "
+          "(default: the only one)")
       ->type_name("NAME");
   verb.add_option(
           "--columns", options.columns,

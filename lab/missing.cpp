@@ -70,14 +70,6 @@ Format readers::map() {
 }
 #endif
 
-#if !BROADSIDE_HAS_GDAL
-Format readers::vector() {
-  Format format = vector_description();
-  format.missing = missing("libgdal-dev");
-  return format;
-}
-#endif
-
 #if !BROADSIDE_HAS_ASSIMP
 IndexedMesh import_mesh(Input& input) { throw FileError(input.name() + ": " + mesh_import_missing()); }
 

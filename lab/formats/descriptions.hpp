@@ -13,7 +13,5 @@ Format broadmark();
 Format map();
 Format map_description();  // without a way to open them, which map() adds
 Format mesh();
-Format vector();
-Format vector_description();  // likewise
 
 }  // namespace broadside::lab::readers

@@ -98,9 +98,11 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   if (format != nullptr && format->missing.empty()) return *format;
   if (format != nullptr && name.empty()) refuse_unread(input, input.extension());
   if (format != nullptr) throw FileError(fmt::format("{}: {}", input.name(), format->missing));
-  if (!name.empty())
+  if (!name.empty()) {
+    refuse_unread(input, fmt::format(".{}", name));
     throw FileError(fmt::format("{}: unknown format '{}'{}; expected one of: {}", input.name(), name,
                                 suggested(name, can_be_read), listed(can_be_read)));
+  }
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
   if (!input.extension().empty()) refuse_unread(input, input.extension());
   // A file is also a table where the user names its columns.
@@ -162,7 +164,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 std::span<const Format> formats() {
   static const std::array list = {
       readers::trace(),     readers::csv(), readers::npy(),  readers::npz(),
-      readers::broadmark(), readers::map(), readers::mesh(), readers::vector(),
+      readers::broadmark(), readers::map(), readers::mesh(),
   };
   return list;
 }

@@ -1,14 +1,12 @@
-// The one table of formats that are not read here, or only through GDAL, and of their converters.
+// The one table of formats that are not read here, and of their converters.
 #include "lab/formats/unread_formats.hpp"
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "lab/formats/descriptions.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab {
@@ -23,7 +21,8 @@ struct UnreadFormat {
   std::string_view command;  ///< the first IN stands for the file
 };
 
-constexpr std::string_view ogr = "ogr2ogr -f GeoJSON out.geojson IN";
+// With as many digits as a double has: by default ogr2ogr rounds coordinates.
+constexpr std::string_view ogr = "ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson IN";
 constexpr std::string_view pdal = "pdal translate IN out.ply (then --boxes vertices)";
 constexpr std::string_view office = "libreoffice --headless --convert-to csv IN";
 
@@ -34,7 +33,7 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"FlatGeobuf", ".fgb ", "fgb\x03", ogr},
     {"KML", ".kml .kmz ", "<kml", ogr},
     {"GML", ".gml ", "<gml:", ogr},
-    {"GPX", ".gpx ", "<gpx", "ogr2ogr -f GeoJSON out.geojson IN tracks"},
+    {"GPX", ".gpx ", "<gpx", "ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson IN tracks"},
     {"OpenStreetMap data", ".osm .pbf ", "<osm", "osmium export IN -o out.geojson"},
     {"MapInfo data", ".tab .mif ", "", ogr},
     {"Parquet", ".parquet .geoparquet ", "PAR1\x15",
@@ -67,11 +66,6 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"a zip archive", ".zip ", "", "unzip IN"},
 });
 
-/// Whether GDAL reads a format: what its own converter is named for, but for parts of files.
-bool is_read_by_gdal(const UnreadFormat& format) {
-  return format.command.starts_with("ogr2ogr") && format.name != "a part of a shapefile";
-}
-
 bool begins_with(std::string_view beginning, std::string_view magic) {
   if (magic.empty()) return false;
   if (!magic.starts_with('<')) return beginning.starts_with(magic);
@@ -93,22 +87,12 @@ std::string command_for(const UnreadFormat& format, std::string_view file) {
 }  // namespace
 
 std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file) {
-  static const bool has_gdal = readers::vector().missing.empty();
   const auto found = std::ranges::find_if(unread_formats, [&](const UnreadFormat& format) {
-    if (has_gdal && is_read_by_gdal(format)) return false;
     return extension.empty() ? begins_with(beginning, format.magic) : has_extension(format, extension);
   });
   if (found == unread_formats.end()) return {};
-  return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}{}",
-                     found->name, command_for(*found, file),
-                     is_read_by_gdal(*found) ? ", or a program that was built with GDAL" : "");
-}
-
-bool is_vector_data(std::string_view beginning, std::string_view extension) {
-  return std::ranges::any_of(unread_formats, [&](const UnreadFormat& format) {
-    return is_read_by_gdal(format) &&
-           (begins_with(beginning, format.magic) || has_extension(format, extension));
-  });
+  return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}", found->name,
+                     command_for(*found, file));
 }
 
 }  // namespace broadside::lab

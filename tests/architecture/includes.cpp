@@ -68,7 +68,7 @@ const std::vector<Rule>& rules() {
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"lab/formats/", lab + R"(|<assimp/.*>|<(cpl_error|ogr_api)\.h>)"},
+      {"lab/formats/", lab + R"(|<assimp/.*>)"},
       {"lab/", lab},
       {"cli/", lab + R"(|"paper/experiments/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},

@@ -266,7 +266,7 @@ TEST_F(Mesh, RefusesWhatIsNone) {
 TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
   const auto part = put("rivers.dbf", "anything");
   EXPECT_THAT(refusal(part), AllOf(HasSubstr("rivers.dbf: is a part of a shapefile, which is not read here"),
-                                   HasSubstr("ogr2ogr -f GeoJSON out.geojson " + part.string())));
+                                   HasSubstr("ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson " + part.string())));
   EXPECT_THAT(refusal(put("a.xlsx", "PK")), HasSubstr("libreoffice --headless --convert-to csv "));
   EXPECT_THAT(refusal(put("a.laz", "?")), HasSubstr("pdal translate "));
   const auto intervals = put("a.bed", "chr1\t10\t20\n");
@@ -275,19 +275,12 @@ TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
   // By its content, whatever it is called.
   EXPECT_THAT(refusal(put("a.csv", "PAR1\x15\x04")),
               AllOf(HasSubstr("a.csv: is Parquet"), HasSubstr("pandas.read_parquet('")));
+  EXPECT_THAT(refusal(put("a.kml", "<?xml version=\"1.0\"?>\n<kml>")), HasSubstr("ogr2ogr"));
+  EXPECT_THAT(refusal(put("by_its_content", std::string("SQLite format 3\0", 16))), HasSubstr("ogr2ogr"));
+  EXPECT_THAT(refusal(put("rivers", "?"), {.format = "shp"}), HasSubstr("ogr2ogr"));
   EXPECT_THAT(refusal(put("b.dat", "\x89HDF\r\n\x1a\n")), HasSubstr("h5py"));
   EXPECT_THAT(refusal(put("c.dat", "ARROW1\n")), HasSubstr("no format known here"))
       << "has no zero behind it";
-}
-
-TEST_F(Files, OfVectorDataAreReadByGdalOrRefusedNamingItsConverter) {
-  const auto format = std::ranges::find(formats(), "vector", &Format::name);
-  ASSERT_NE(format, formats().end());
-  const auto expected = format->missing.empty() ? HasSubstr("cannot be read by GDAL") : HasSubstr("ogr2ogr");
-  EXPECT_THAT(refusal(put("rivers.shp", "anything")), expected);
-  EXPECT_THAT(refusal(put("a.gpkg", std::string("SQLite format 3\0", 16))), expected);
-  EXPECT_THAT(refusal(put("a.kml", "<?xml version=\"1.0\"?>\n<kml>")), expected);
-  EXPECT_THAT(refusal(put("by_its_content", std::string("SQLite format 3\0", 16))), expected);
 }
 
 TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
