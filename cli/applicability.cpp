@@ -35,7 +35,7 @@ constexpr std::string_view movers = "move by themselves";
 constexpr std::array rules = {
     Rule{"--format", is_read_from_file, no_file, no_files},
     Rule{"--boxes", is_read_from_file, no_file, no_files},
-    Rule{"--layer", is_read_from_file, no_file, no_files},
+    Rule{"--array", is_read_from_file, no_file, no_files},
     Rule{"--columns", is_read_from_file, no_file, no_files},
     Rule{"--skip-invalid", is_read_from_file, no_file, no_files},
     Rule{"--precision", is_read_from_file, "is of floats and no file", "are of floats and no files"},

@@ -102,9 +102,7 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "tells which a format has")
       ->type_name("PART");
   verb.add_option(
-          "--layer,--array", options.layer,
-          "The layer of a map in TopoJSON, such as counties (default: all), or the array of an .npz file "
-          "(default: the only one)")
+          "--array", options.array, "The array of an .npz file (default: the only one)")
       ->type_name("NAME");
   verb.add_option(
           "--columns", options.columns,
@@ -129,7 +127,7 @@ lab::ReadOptions read_options(const InputOptions& options, const std::string& pa
   lab::ReadOptions read;
   read.format = options.format;
   read.boxes = options.boxes;
-  read.layer = options.layer;
+  read.array = options.array;
   read.columns = options.columns;
   read.dimension = options.dimension;
   if (options.dimension != 0) check_dimension(options.dimension);

@@ -56,7 +56,7 @@ void check(const MotionOptions& options);
 struct InputOptions {
   std::string format;
   std::string boxes;
-  std::string layer;
+  std::string array;
   std::string columns;
   std::string precision;
   int dimension = 0;
@@ -66,7 +66,7 @@ struct InputOptions {
 /// Adds --progress and --no-progress, for a verb that may take long.
 void add_progress_options(CLI::App& verb);
 
-/// Adds --format, --boxes, --layer, --columns, --skip-invalid and those of progress, for a verb that has
+/// Adds --format, --boxes, --array, --columns, --skip-invalid and those of progress, for a verb that has
 /// other uses for the rest.
 void add_file_options(CLI::App& verb, InputOptions& options);
 

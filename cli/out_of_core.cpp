@@ -124,7 +124,7 @@ std::string identity_of(const FileToRead& file, const InputOptions& input) {
   };
   add("--format", input.format);
   add("--boxes", input.boxes);
-  add("--layer", input.layer);
+  add("--array", input.array);
   add("--columns", input.columns);
   if (file.options.dimension != 0) add("--dimension", std::to_string(file.options.dimension));
   if (file.options.precision) add("--precision", lab::name(*file.options.precision));

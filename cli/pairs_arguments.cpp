@@ -41,10 +41,10 @@ void check_swept(const PairsArguments& arguments) {
                                lab::counted(arguments.files.size(), "file", "files")));
   read_part("--left", arguments.left);
   read_part("--right", arguments.right);
-  if (!input.boxes.empty() || !input.layer.empty() || !input.columns.empty() || input.dimension != 0 ||
+  if (!input.boxes.empty() || !input.array.empty() || !input.columns.empty() || input.dimension != 0 ||
       !arguments.frame.empty() || !arguments.ids.empty() || input.skips_invalid)
     throw Unusable(
-        "--boxes, --layer, --columns, --dimension, --frame, --ids or --skip-invalid with --swept; expected "
+        "--boxes, --array, --columns, --dimension, --frame, --ids or --skip-invalid with --swept; expected "
         "none "
         "of them");
 }

@@ -62,14 +62,6 @@ void ZipArchive::refuse(std::string_view found) const { throw FileError(name_ + 
 std::string zip_missing() { return missing("libzip-dev"); }
 #endif
 
-#if !BROADSIDE_HAS_SIMDJSON
-Format readers::map() {
-  Format format = map_description();
-  format.missing = missing("libsimdjson-dev");
-  return format;
-}
-#endif
-
 #if !BROADSIDE_HAS_ASSIMP
 IndexedMesh import_mesh(Input& input) { throw FileError(input.name() + ": " + mesh_import_missing()); }
 

@@ -11,7 +11,6 @@ Format npy();
 Format npz();
 Format broadmark();
 Format map();
-Format map_description();  // without a way to open them, which map() adds
 Format mesh();
 
 }  // namespace broadside::lab::readers

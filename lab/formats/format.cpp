@@ -120,11 +120,9 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
   if (!options.columns.empty() && !format.has_columns)
     throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
                                 format.name));
-  if (!options.layer.empty() && !format.has_layers)
-    throw FileError(
-        fmt::format("{}: is in format {}, which has no layer or array '{}'; expected a map or an "
-                    ".npz file",
-                    name, format.name, options.layer));
+  if (!options.array.empty() && !format.has_arrays)
+    throw FileError(fmt::format("{}: is in format {}, which has no array '{}'; expected an .npz file", name,
+                                format.name, options.array));
   if (!options.ids.empty() && !format.has_ids)
     throw FileError(
         fmt::format("{}: is in format {}, which has no ids such as '{}'; expected a table or a map", name,

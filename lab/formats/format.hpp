@@ -29,7 +29,7 @@ struct ReadOptions {
   std::string format{};   ///< the name of a format; empty: told by the file's content and name
   std::string boxes{};    ///< what to make boxes of: one of the format's Format::parts
   std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
-  std::string layer{};    ///< of a map with several layers, the one to read (empty: all), or an array of .npz
+  std::string array{};    ///< of an .npz file, the array to read; empty: the only one
   std::string ids{};      ///< a table's column or a map's property of ids, as --ids; empty: not read
   bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
   int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
@@ -53,7 +53,7 @@ struct Format {
   std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
   std::vector<Part> parts{};            ///< what the boxes can be, the standard first; empty: boxes
   bool has_columns = false;             ///< whether ReadOptions::columns applies
-  bool has_layers = false;              ///< whether ReadOptions::layer applies
+  bool has_arrays = false;              ///< whether ReadOptions::array applies
   bool can_skip = false;                ///< whether ReadOptions::say_invalid applies
   bool has_ids = false;                 ///< whether ReadOptions::ids applies
   bool is_seen_flat = false;            ///< 3D, but made to be looked at in 2D as well

@@ -206,6 +206,54 @@ class HistoryReader final : public FrameReader<D, Real> {
   std::size_t next_ = 0;
 };
 
+/// Frames whose boxes have nothing to do with those of the frame before, and are numbered anew.
+template <int D>
+class SeparateFrames final : public FrameReader<D, double> {
+ public:
+  struct Frame {
+    std::vector<Box<D, double>> boxes{};
+    std::vector<std::string> ids{};
+  };
+
+  SeparateFrames(std::vector<Frame> frames, bool has_ids, bool is_computed, std::string warning)
+      : frames_(std::move(frames)), is_computed_(is_computed), warning_(std::move(warning)) {
+    labels_->has_ids = has_ids;
+  }
+
+  std::vector<Box<D, double>> first() override {
+    return frames_.empty() ? std::vector<Box<D, double>>() : take();
+  }
+
+  bool next(Step<D, double>& step) override {
+    if (next_ >= frames_.size()) return false;
+    step = {};
+    step.boxes = take();
+    step.size = step.boxes.size();
+    for (std::size_t i = 0; i < step.size; ++i) step.changed.push_back(BoxId(i));
+    return true;
+  }
+
+  std::string warning() const override { return warning_; }
+
+  /// With the ids of the frame that was read last.
+  std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
+
+  bool is_computed() const override { return is_computed_; }
+
+ private:
+  std::vector<Box<D, double>> take() {
+    Frame& frame = frames_[next_++];
+    labels_->ids = std::move(frame.ids);
+    return std::move(frame.boxes);
+  }
+
+  std::vector<Frame> frames_;
+  bool is_computed_;
+  std::string warning_;
+  std::size_t next_ = 0;
+  std::shared_ptr<BoxLabels> labels_ = std::make_shared<BoxLabels>();
+};
+
 /// Reads the remaining frames into memory.
 template <int D, typename Real>
 History<D, Real> read_all(FrameReader<D, Real>& frames) {

@@ -34,6 +34,7 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"KML", ".kml .kmz ", "<kml", ogr},
     {"GML", ".gml ", "<gml:", ogr},
     {"GPX", ".gpx ", "<gpx", "ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson IN tracks"},
+    {"TopoJSON", ".topojson ", "", "npx -p topojson-client topo2geo LAYER=out.geojson < IN"},
     {"OpenStreetMap data", ".osm .pbf ", "<osm", "osmium export IN -o out.geojson"},
     {"MapInfo data", ".tab .mif ", "", ogr},
     {"Parquet", ".parquet .geoparquet ", "PAR1\x15",

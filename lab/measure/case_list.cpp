@@ -11,7 +11,7 @@
 #include "broadside/error.hpp"
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/json_place.hpp"
+#include "lab/formats/json/json_place.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/platform/machine.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/input.hpp"
-#include "lab/formats/json_place.hpp"
+#include "lab/formats/json/json_place.hpp"
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/report/results.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/format.hpp"
 #include "lab/scenes/descriptions.hpp"
 
 namespace broadside::lab::generated {
@@ -15,30 +15,33 @@ std::filesystem::path data_file(const std::string& name) {
   return std::filesystem::path(folder != nullptr ? folder : BROADSIDE_DATA_FOLDER) / name;
 }
 
-/// Why a scene of this file cannot be made: the file is missing, or `reader_missing`; empty if it can be.
-std::string missing_data(const std::filesystem::path& file, const std::string& reader_missing) {
+/// Why a scene of this file cannot be made; empty if it can be.
+std::string missing_data(const std::filesystem::path& file) {
   std::error_code ignored;
-  return std::filesystem::exists(file, ignored) ? reader_missing
-                                                : file.string() + " is missing; run scripts/setup";
+  return std::filesystem::exists(file, ignored) ? "" : file.string() + " is missing; run scripts/setup";
 }
 
-/// A map, described; `feature_part` is the part of the format whose boxes are one a feature, `feature` what
-/// that is.
-Scene map_scene(Scene scene, const std::filesystem::path& path, const std::string& layer,
-                const std::string& feature_part, const std::string& feature) {
+/// A map, described: `part` is the part of the format with a box a `feature`. The lines around features, each
+/// once where two share it, are in a file of their own.
+Scene map_scene(Scene scene, const std::string& map, const std::string& lines, const std::string& part,
+                const std::string& feature) {
+  const std::filesystem::path map_file = data_file(map);
+  const std::filesystem::path lines_file = data_file(lines);
   scene.kind = SceneKind::file;
   scene.fixed_count = true;
   scene.fixed_seed = true;
-  scene.missing = missing_data(path, readers::map().missing);
+  scene.missing = missing_data(map_file);
+  if (scene.missing.empty()) scene.missing = missing_data(lines_file);
   scene.tunables = {{.name = "boxes",
                      .summary = "a box a " + feature + ", or a box a segment of the lines around them",
                      .default_value = "features",
                      .type = Tunable::Type::choice,
                      .choices = {"features", "segments"}}};
   scene.boxes_2d = [=](const Settings& settings, std::size_t, std::uint64_t) {
-    const bool is_segments = settings.text("boxes") == "segments";
-    const ReadOptions options{.boxes = is_segments ? "segments" : feature_part, .layer = layer};
-    return read_file(path, options).in_2d.value().boxes;
+    const bool are_segments = settings.text("boxes") == "segments";
+    return read_file(are_segments ? lines_file : map_file, {.boxes = are_segments ? "segments" : part})
+        .in_2d.value()
+        .boxes;
   };
   return scene;
 }
@@ -54,7 +57,7 @@ Scene bunny() {
               .fixed_count = true,
               .fixed_seed = true};
   const std::filesystem::path path = data_file("bunny.obj");
-  scene.missing = missing_data(path, readers::mesh().missing);
+  scene.missing = missing_data(path);
   scene.boxes_2d = [path](const Settings&, std::size_t, std::uint64_t) {
     return read_file(path).in_2d.value().boxes;
   };
@@ -69,14 +72,14 @@ Scene counties() {
   return map_scene({.name = "counties",
                     .summary = "the counties of the United States, in degrees",
                     .source = "United States Census Bureau, 2017; npm package us-atlas"},
-                   data_file("counties.topojson"), "counties", "features", "county");
+                   "counties.geojson", "county_borders.geojson", "features", "county");
 }
 
 Scene coastlines() {
   return map_scene({.name = "coastlines",
                     .summary = "the continents and islands of the Earth, in degrees",
                     .source = "Natural Earth, 1:50,000,000; npm package world-atlas"},
-                   data_file("land.topojson"), "land", "pieces", "continent or island");
+                   "land.geojson", "coastlines.geojson", "pieces", "continent or island");
 }
 
 }  // namespace broadside::lab::generated

@@ -37,7 +37,7 @@ TEST_F(Applicability, AnOptionForFilesIsRefusedWithAScene) {
                                                    {"--skip-invalid"},
                                                    {"--format", "csv"},
                                                    {"--columns", "a"},
-                                                   {"--layer", "a"}}) {
+                                                   {"--array", "a"}}) {
       std::vector<std::string> arguments = call;
       arguments.insert(arguments.end(), option.begin(), option.end());
       expect_refused(verb, {{arguments, {option[0], "'uniform'", "expected"}}});
@@ -49,7 +49,7 @@ TEST_F(Applicability, AnOptionWithoutEffectIsRefused) {
   const std::string svg = folder_.file("out.svg");
   const std::map<std::string, std::vector<Refusal>> refusals = {
       {"compare",
-       {{{"uniform,churn", "--layer", "a"}, {"--layer is 'a' for scenes 'uniform' and 'churn'"}},
+       {{{"uniform,churn", "--array", "a"}, {"--array is 'a' for scenes 'uniform' and 'churn'"}},
         {{file_, "-n", "100"}, {"-n is '100' for file", "a number of boxes of its own", "expected none"}},
         {{file_, "--seed", "3"}, {"--seed is '3'", "is the same for every seed"}},
         {{"terdiman", "--seed", "3"}, {"--seed is '3'"}},
@@ -87,7 +87,7 @@ TEST_F(Applicability, AnOptionWithoutEffectIsRefused) {
         {{file_, "-n", "5"}, {"-n is '5'"}},
         {{file_, "--seed", "5"}, {"--seed is '5'"}},
         {{"uniform", "--columns", "a"}, {"--columns is 'a'"}},
-        {{file_, "--layer", "a"}, {"no layer or array 'a'"}}}},
+        {{file_, "--array", "a"}, {"no array 'a'"}}}},
       {"verify",
        {{{"uniform", "--skip-invalid"}, {"--skip-invalid for scene 'uniform'"}},
         {{file_, "-n", "5"}, {"-n is '5'"}},
@@ -97,7 +97,7 @@ TEST_F(Applicability, AnOptionWithoutEffectIsRefused) {
       {"convert",
        {{{file_, "-o", folder_.file("out.aabbs"), "--precision", "double"},
          {"--precision is 'double'", "floats"}},
-        {{file_, "-o", out_, "--layer", "a"}, {"no layer or array 'a'"}}}},
+        {{file_, "-o", out_, "--array", "a"}, {"no array 'a'"}}}},
       {"pairs",
        {{{file_, "--count", "--order", "found"}, {"--order found with --count"}},
         {{file_, "--count", "--to", "npy"}, {"--to npy with --count"}},

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     AnyFrameReader reader;
     try {
       ReadOptions options;
-      options.layer = array;
+      options.array = array;
       reader = npz.open(
           std::make_unique<Input>("fuzz", std::string_view(reinterpret_cast<const char*>(data), size)),
           options);

@@ -131,7 +131,6 @@ def read(
     format: str,
     boxes: str,
     columns: str,
-    layer: str,
     dimension: int,
     frame: int,
     skips_invalid: bool,

@@ -120,12 +120,11 @@ def read(
     format: str | None = None,
     boxes: str | None = None,
     columns: Columns | None = None,
-    layer: str | None = None,
     dimension: int | None = None,
     frame: int = 0,
     quarantine: bool = False,
 ) -> NDArray[Any]:
-    """The boxes in a file: CSV, GeoJSON, TopoJSON, .npy, PLY, OBJ, traces ..., also compressed by gzip or zstd; Parquet
+    """The boxes in a file: CSV, GeoJSON, .npy, PLY, OBJ, traces ..., also compressed by gzip or zstd; Parquet
     and GeoParquet, if pyarrow is installed.
 
     Args:
@@ -136,7 +135,6 @@ def read(
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
         columns: A table's columns of bounds: a list of names, a str of names separated by commas, or the meaning of the
             numbers in a row, such as "xywh": see `pairs`. For CSV, the names are given to the columns from left to right.
-        layer: The layer of a map.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
         quarantine: Take invalid boxes in as absent ones, rows of minima inf and maxima -inf, with a warning instead of
@@ -164,9 +162,8 @@ def read(
     wanted = _text_or_none(format, "format")
     if (content is not None or not os.path.isdir(name)) and _parquet.recognises(name, content, wanted):
         shown = os.fsdecode(name)
-        for argument, given in (("boxes", boxes), ("layer", layer)):
-            if given is not None:
-                raise ValueError(f"{argument} is {given!r}, and '{shown}' is Parquet; expected None")
+        if boxes is not None:
+            raise ValueError(f"boxes is {boxes!r}, and '{shown}' is Parquet; expected None")
         if number != 0:
             raise ValueError(f"frame is {frame}; expected at most 0, the last one of '{shown}'")
         found, warning = _parquet.read(name, content, chosen, axes, bool(quarantine))
@@ -177,7 +174,6 @@ def read(
             wanted,
             _text_or_none(boxes, "boxes"),
             ",".join(chosen) if isinstance(chosen, list) else chosen or "",
-            _text_or_none(layer, "layer"),
             axes,
             number,
             bool(quarantine),

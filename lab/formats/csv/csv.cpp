@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/map/geometry_text.hpp"
+#include "lab/formats/csv/geometry_text.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/csv/csv.hpp"
-#include "lab/formats/map/geometry_text.hpp"
+#include "lab/formats/csv/geometry_text.hpp"
 #include "lab/formats/text.hpp"
 #include "lab/numbers.hpp"
 

@@ -18,7 +18,7 @@
 
 #include "lab/formats/csv/csv.hpp"
 #include "lab/formats/format.hpp"
-#include "lab/formats/map/geometry_text.hpp"
+#include "lab/formats/csv/geometry_text.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

@@ -53,7 +53,7 @@ AnyFrameReader open_npz(std::unique_ptr<Input> input, const ReadOptions& options
     throw FileError(fmt::format("{}: is empty; expected an .npz file", input->name()));
   const ZipArchive archive(input->bytes(), input->name());
   const std::vector<Array> arrays = arrays_of(archive);
-  const Array& array = choose(arrays, options.layer, input->name());
+  const Array& array = choose(arrays, options.array, input->name());
   return npy().open(Input::keeping(fmt::format("{}: array {}", input->name(), shown(array.name)),
                                    archive.read(array.member)),
                     options);
@@ -77,7 +77,7 @@ Format npz() {
       .name = "npz",
       .summary = "boxes as one of the arrays of a NumPy .npz file",
       .extensions = {".npz"},
-      .has_layers = true,
+      .has_arrays = true,
       .recognises = is_npz,
       .open = open_npz,
       .missing = zip_missing(),

@@ -182,9 +182,8 @@ def test_is_told_by_content_or_name_or_format(tmp_path):
     np.testing.assert_array_equal(broadside.read(other, columns=["min_x", "min_y", "max_x", "max_y"]), BOXES)
     with pytest.raises(broadside.FileError, match="expected one column a"):
         broadside.read(other, columns="a,b")
-    for arguments in ({"layer": "a"}, {"boxes": "features"}):
-        with pytest.raises(ValueError, match="is Parquet; expected None"):
-            broadside.read(other, **arguments)
+    with pytest.raises(ValueError, match="is Parquet; expected None"):
+        broadside.read(other, boxes="features")
     with pytest.raises(ValueError, match="frame is 1; expected at most 0"):
         broadside.read(other, frame=1)
     with pytest.raises(ValueError, match="dimension is 4"):

@@ -146,7 +146,7 @@ TEST_F(Npz, OfSeveralArraysReadsTheOneThatIsNamed) {
               AllOf(HasSubstr("two.npz: holds 2 arrays, 'boxes', 'weights'"), HasSubstr("--array")));
   const auto read = [&](const std::string& name) {
     ReadOptions options;
-    options.layer = name;
+    options.array = name;
     return read_file(file, options);
   };
   EXPECT_EQ(read("boxes").in_2d->boxes.size(), 2u);

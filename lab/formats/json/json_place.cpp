@@ -1,5 +1,5 @@
 // A value in a file of JSON that knows its place.
-#include "lab/formats/json_place.hpp"
+#include "lab/formats/json/json_place.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,18 +8,22 @@
 #include <fmt/ranges.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/formats/json_check.hpp"
+#include "lab/formats/json/json_reader.hpp"
+#include "lab/formats/text.hpp"
 
 namespace broadside::lab {
 
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name) {
-  check_json(text, 0, text.size(), name);
-  return nlohmann::ordered_json::parse(text);
+  try {
+    return nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw FileError(json_fault(name, error.what()));
+  }
 }
 
 void JsonPlace::refuse(std::string_view expected) const {
   const std::string found = value_->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  throw FileError(fmt::format("{} is {}; expected {}", place_, shown_json(found), expected));
+  throw FileError(fmt::format("{} is {}; expected {}", place_, shown(found, 24), expected));
 }
 
 JsonPlace JsonPlace::at(const char* name) const {

@@ -1,5 +1,5 @@
 // The box of a geometry in one field.
-#include "lab/formats/map/geometry_text.hpp"
+#include "lab/formats/csv/geometry_text.hpp"
 
 #include <algorithm>
 #include <array>
