@@ -32,9 +32,6 @@ Exit run(const ConvertArguments& arguments) {
   check_is_other_file("-o", arguments.output, arguments.file);
   const lab::Format& format = lab::writable_format(arguments.output, arguments.to);
   lab::ReadOptions options = read_options(arguments.input, arguments.file);
-  if (options.precision == lab::Precision::float64 && !format.has_doubles)
-    throw Unusable(fmt::format("--precision is 'double' for format {}, which holds floats; expected float",
-                               format.name));
   if (!arguments.ids.empty() && !format.keeps_ids)
     throw Unusable(fmt::format("--ids with format {}, which holds no ids; expected csv", format.name));
   options.ids = arguments.ids;

@@ -61,8 +61,7 @@ Converted convert(BoxFile from, const std::filesystem::path& path, const Format&
   Converted converted;
   converted.dimension = dimension_of(from.frames);
   converted.importer = importer_of(from.frames);
-  converted.precision =
-      format.has_doubles ? precision.value_or(precision_of_frames(from.frames)) : Precision::float32;
+  converted.precision = precision.value_or(precision_of_frames(from.frames));
   if (has_recorded_pairs(from.frames)) {
     if (!format.keeps_pairs)
       converted.left_out_pairs = fmt::format("format {} holds boxes alone", format.name);

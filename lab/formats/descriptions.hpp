@@ -9,7 +9,6 @@ Format trace();
 Format csv();
 Format npy();
 Format npz();
-Format broadmark();
 Format map();
 Format mesh();
 

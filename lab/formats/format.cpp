@@ -161,8 +161,7 @@ void describe(std::optional<History<D>> history, MakeBoxes<D>& boxes, MakeHistor
 
 std::span<const Format> formats() {
   static const std::array list = {
-      readers::trace(),     readers::csv(), readers::npy(),  readers::npz(),
-      readers::broadmark(), readers::map(), readers::mesh(),
+      readers::trace(), readers::csv(), readers::npy(), readers::npz(), readers::map(), readers::mesh(),
   };
   return list;
 }

@@ -72,7 +72,6 @@ struct Format {
   /// such boxes; the caller adds the file's name.
   std::function<AnyFrameWriter(std::ostream&, int dimension, Precision precision)> create{};
 
-  bool has_doubles = true;   ///< whether create() takes doubles, in a format that can be written
   bool keeps_ids = false;    ///< whether what it makes writes the boxes' ids
   bool keeps_pairs = false;  ///< whether it writes the pairs that an engine reported
 

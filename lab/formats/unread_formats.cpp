@@ -37,6 +37,10 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"TopoJSON", ".topojson ", "", "npx -p topojson-client topo2geo LAYER=out.geojson < IN"},
     {"OpenStreetMap data", ".osm .pbf ", "<osm", "osmium export IN -o out.geojson"},
     {"MapInfo data", ".tab .mif ", "", ogr},
+    {"a recording of Broadmark", ".aabbs ", "",
+     "python3 -c \"import struct; d = open('IN', 'rb').read(); n, _ = struct.unpack_from('<2i', d, 256); "
+     "print('frame,box,min_x,min_y,min_z,max_x,max_y,max_z'); [print(i // n, i % n, *b[:3], *b[4:7], sep=',') "
+     "for i, b in enumerate(struct.iter_unpack('<8f', d[304:]))]\" > out.csv"},
     {"Parquet", ".parquet .geoparquet ", "PAR1\x15",
      "python3 -c \"import pandas; pandas.read_parquet('IN').to_csv('out.csv', index=False)\""},
     {"Arrow or Feather", ".arrow .feather ", "ARROW1\0"sv,

@@ -204,15 +204,15 @@ TEST(SceneVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {
   for (const int milliseconds : {1, 30, 100, 200, 400}) {
     const TemporaryFolder folder;
     Process process({"scene", "uniform", "-n", "100k", "--moving", "0.1", "--frames", "10", "--dimension",
-                     "3", "-o", folder.file("boxes.aabbs")});
+                     "3", "-o", folder.file("boxes.btrace")});
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     process.signal(SIGINT);
     const Ended ended = process.wait();
     if (folder.names().empty()) {
       EXPECT_EQ(ended.status, 130);
     } else {
-      EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.aabbs"});
-      EXPECT_EQ(std::filesystem::file_size(folder.file("boxes.aabbs")), 304u + 32 * 100'000 * 11);
+      EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.btrace"});
+      EXPECT_THAT(run({"info", folder.file("boxes.btrace")}).output, HasSubstr("100,000 boxes in 3D, as floats, 11 frames"));
     }
   }
 }

@@ -29,7 +29,7 @@ TEST(ConvertVerb, ReachesTheSamePairsThroughEveryFormat) {
   const std::string file = folder.file("boxes.csv");
   ASSERT_EQ(run({"scene", "integers", "-n", "300", "--dimension", "3", "-o", file}).status, 0);
   const std::string expected = run({"pairs", file}).output;
-  for (const std::string name : {"a.btrace", "b.aabbs", "c.csv"}) {
+  for (const std::string name : {"a.btrace", "b.csv"}) {
     const Ended ended = run({"convert", file, "-o", folder.file(name)});
     EXPECT_EQ(ended.status, 0);
     EXPECT_EQ(ended.output, "");
@@ -54,16 +54,10 @@ TEST(ConvertVerb, KeepsEveryFrame) {
 TEST(ConvertVerb, SaysHowManyCoordinatesAreRounded) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", tenths);
-  for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"-o", folder.file("boxes.aabbs")},
-        std::vector<std::string>{"--precision", "float", "-o", folder.file("boxes.btrace")}}) {
-    std::vector<std::string> arguments = {"convert", file};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.status, 0);
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("1 frame of 2 boxes in 2D, as floats, in format "),
-                                    EndsWith("; 2 of 8 coordinates were rounded to float\n")));
-  }
+  const Ended ended = run({"convert", file, "--precision", "float", "-o", folder.file("boxes.btrace")});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("1 frame of 2 boxes in 2D, as floats, in format "),
+                                  EndsWith("; 2 of 8 coordinates were rounded to float\n")));
 }
 
 TEST(ConvertVerb, ReadsWhatIsCompressedAndWritesNothingThatIs) {
@@ -176,13 +170,12 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
                                       "frame,box,min_x,min_y,max_x,max_y\n"
                                       "0,0,0,0,1,1\n"
                                       "1,0,0,0,1,-1\n");
-  const std::string absent = folder.put("absent.csv", "min_x,min_y,max_x,max_y\n,,,\n");
   const std::vector<Refusal> refusals = {
       {{good}, {"--output"}},
       {{good, "-o", good}, {"-o is '" + good, "the input", "expected another file"}},
       {{folder.file("missing.csv"), "-o", folder.file("out.csv")}, {"missing.csv", "No such file"}},
       {{late, "-o", folder.file("out.btrace")}, {"late.csv:3", "min <= max"}},
-      {{absent, "-o", folder.file("out.aabbs")}, {"out.aabbs", "box 0 is absent"}},
+      {{late, "-o", folder.file("out.npy")}, {"late.csv:3", "min <= max"}},
       {{good, "-o", folder.file("out.ply")}, {"out.ply", "'.ply'", "can be written"}},
       {{good, "-o", folder.file("out.csv"), "--to", "mesh"}, {"'mesh'", "can be written"}},
       {{good, "-o", "-"}, {"standard output", "expected --to FORMAT, one of: ", "csv (.csv)"}},
@@ -191,7 +184,7 @@ TEST(ConvertVerb, LeavesNothingBehindThatIsNotWhole) {
       {{good, "-o", folder.file("out.csv"), "--dimension", "3"}, {"good.csv", "2D"}},
   };
   expect_refused("convert", refusals);
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"absent.csv", "good.csv", "late.csv"}));
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"good.csv", "late.csv"}));
 }
 
 TEST(ConvertVerb, ReadsWhatIsWholeOfATraceThatIsCutOff) {

@@ -25,8 +25,7 @@ using testing::IsEmpty;
 
 const std::string two_boxes = "0,0,1,1\n1,1,2,2\n";
 
-const std::vector<std::string> formats = {"trace", "csv",  "npy", "npz", "broadmark",
-                                          "map",   "mesh", "ply", "obj"};
+const std::vector<std::string> formats = {"trace", "csv", "npy", "npz", "map", "mesh", "ply", "obj"};
 
 TEST(InputWithoutEnd, IsRefusedInEveryFormatBeforeItTakesMemory) {
   for (const std::string& format : formats) {

@@ -94,7 +94,6 @@ TEST(ReadersOutOfMemory, ThrowAndReadTheFileRightAfterwards) {
       files.put("frames.csv", written("csv", true)),
       files.put("ids.csv", "id,min_x,min_y,max_x,max_y\na,0,0,1,1\nb,1,1,2,2\n"),
       files.put("boxes.npy", written("npy", false)),
-      files.put("boxes.aabbs", written("broadmark", true)),
       files.put("mesh.ply", ply),
       files.put("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
       files.put("map.geojson",

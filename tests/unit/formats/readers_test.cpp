@@ -32,7 +32,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 using Csv = Files;
-using Broadmark = Files;
 using Mesh = Files;
 using WriteFile = Files;
 using FileScene = Files;
@@ -154,93 +153,6 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(framed + "1,0,0,0,1,1\n0,0,0,0,1,1\n"), HasSubstr("expected 1 or 2"));
 }
 
-TEST_F(Broadmark, GivesBackHistoriesInWhichNoBoxComesOrGoes) {
-  const NamedScene uniform = find_scene("uniform");
-  const SceneRequest request{.boxes = 50, .frames = 7};
-  const auto solid = make_history<3>(uniform.scene, uniform.spec, request);
-  write_scene(solid, path("a.aabbs"));
-  EXPECT_EQ(std::filesystem::file_size(path("a.aabbs")), 304u + 32 * 50 * 8);
-  const FileContent content = read_file(path("a.aabbs"));
-  EXPECT_EQ(frames_of(content.in_3d.value()), frames_of(solid));
-  EXPECT_FALSE(content.in_2d);
-  EXPECT_EQ(content.in_3d->steps[0].changed, solid.steps[0].changed);
-
-  const auto flat = make_history<2>(uniform.scene, uniform.spec, request);
-  write_scene(flat, path("b.aabbs"));
-  EXPECT_EQ(frames_of(read_file(path("b.aabbs")).in_2d.value()), frames_of(flat));
-}
-
-TEST_F(Broadmark, IsWrittenByteForByteAsSpecified) {
-  write_scene(History<3>{{{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 0}, {0, 9, 0}}}, {}}, path("a.aabbs"));
-  const std::string text = text_of("a.aabbs");
-  ASSERT_EQ(text.size(), 304u + 64);
-  const auto word = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(text[at + i]);
-    return value;
-  };
-  EXPECT_EQ(text.find('\0'), std::string("Broadside").size());
-  EXPECT_EQ(word(256), 2u);
-  EXPECT_EQ(word(260), 0u);
-  EXPECT_EQ(word(264), 0u);
-  EXPECT_EQ(word(268), 0u);
-  const std::vector<float> expected = {-1, 0, 0, 0, 4,  9, 6, 0, 1, 2, 3, 0,
-                                       4,  5, 6, 0, -1, 0, 0, 0, 0, 9, 0, 0};
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &expected[i], 4);
-    EXPECT_EQ(word(272 + 4 * i), bits) << "float " << i << " after the counts";
-  }
-}
-
-TEST_F(Broadmark, RefusesWhatIsWrong) {
-  write_scene(History<3>{{{{1, 2, 3}, {4, 5, 6}}}, {{1, {BoxId{0}}, {{{1, 2, 3}, {4, 5, 7}}}}}},
-              path("good.aabbs"));
-  const std::string good = text_of("good.aabbs");
-  const auto refusal_of = [&](const std::string& text) { return refusal(put("bad.aabbs", text)); };
-  const auto with = [&](std::size_t at, const std::string& bytes) {
-    return std::string(good).replace(at, bytes.size(), bytes);
-  };
-
-  EXPECT_THAT(refusal_of("abc"),
-              AllOf(HasSubstr("bad.aabbs: has 3 bytes"), HasSubstr("expected a header of 304")));
-  EXPECT_THAT(refusal_of(good + "x"),
-              AllOf(HasSubstr("has 369 bytes and claims 1 boxes and 1 steps"), HasSubstr("expected 304 +")));
-  EXPECT_THAT(refusal_of(good.substr(0, good.size() - 32)), HasSubstr("has 336 bytes"));
-  EXPECT_THAT(refusal_of(good + std::string(32, '\0')), HasSubstr("has 400 bytes"));
-  EXPECT_THAT(refusal_of(with(256, "\xff\xff\xff\x7f\xff\xff\xff\x7f")),
-              HasSubstr("claims 2147483647 boxes and 2147483647 steps"));
-  EXPECT_THAT(refusal_of(with(256, "\xff\xff\xff\xff")), HasSubstr("claims -1 boxes"));
-  EXPECT_THAT(refusal_of(with(304, std::string("\0\0\xc0\x7f", 4))),
-              AllOf(HasSubstr("frame 0, box 0 has min (nan"), HasSubstr("expected numbers")));
-  EXPECT_THAT(refusal_of(with(336, std::string("\0\0\x80\x7f", 4))),
-              HasSubstr("frame 1, box 0 has min (inf"));
-}
-
-TEST_F(Broadmark, TakesNoStepsWithoutBoxesHoweverManyAreClaimed) {
-  write_scene(History<3>{}, path("empty.aabbs"));
-  std::string text = text_of("empty.aabbs");
-  text.replace(260, 4, "\xff\xff\xff\x7f");
-  EXPECT_TRUE(read_file(put("many.aabbs", text)).in_3d->steps.empty());
-}
-
-TEST_F(Broadmark, CannotHoldBoxesThatComeOrGo) {
-  const auto refusal_of = [&](const History<2>& history) -> std::string {
-    try {
-      write_scene(history, path("a.aabbs"));
-    } catch (const FileError& error) {
-      return error.what();
-    }
-    return "was written";
-  };
-  const Box2 box{{0, 0}, {1, 1}};
-  EXPECT_THAT(refusal_of({{box, absent_box<2>()}, {}}),
-              AllOf(HasSubstr("a.aabbs"), HasSubstr("frame 0, box 1 is absent")));
-  EXPECT_THAT(refusal_of({{box}, {{2, {BoxId{1}}, {box}}}}),
-              HasSubstr("frame 1 has 2 boxes and the first 1"));
-  EXPECT_EQ(count_files(), 0u) << "a refused history leaves a file";
-}
-
 TEST_F(Mesh, IsTheBoundsOfItsTrianglesInOrder) {
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 -3\nf 1 2 3\nf 1 2 4\n";
   const FileContent content = read_file(put("a.obj", obj));
@@ -277,6 +189,7 @@ TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
               AllOf(HasSubstr("a.csv: is Parquet"), HasSubstr("pandas.read_parquet('")));
   EXPECT_THAT(refusal(put("a.kml", "<?xml version=\"1.0\"?>\n<kml>")), HasSubstr("ogr2ogr"));
   EXPECT_THAT(refusal(put("by_its_content", std::string("SQLite format 3\0", 16))), HasSubstr("ogr2ogr"));
+  EXPECT_THAT(refusal(put("a.aabbs", "?")), HasSubstr("import struct; d = open('"));
   EXPECT_THAT(refusal(put("rivers", "?"), {.format = "shp"}), HasSubstr("ogr2ogr"));
   EXPECT_THAT(refusal(put("b.dat", "\x89HDF\r\n\x1a\n")), HasSubstr("h5py"));
   EXPECT_THAT(refusal(put("c.dat", "ARROW1\n")), HasSubstr("no format known here"))
@@ -288,7 +201,7 @@ TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   EXPECT_THAT(refusal(path("")), HasSubstr("cannot be read"));
   EXPECT_THAT(
       refusal(put("a.xyzzy", "hello")),
-      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), broadmark (.aabbs)")));
+      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), map (.geojson ")));
   try {
     write_scene(History<2>{}, path("a.obj"));
     FAIL() << "wrote a format that is only read";
@@ -335,7 +248,7 @@ TEST_F(Files, AreReadThroughAPipeAndToldByTheirContent) {
 TEST_F(Files, TellHowFarTheyHaveBeenRead) {
   // Some 20 MB in each format: there is a report every 8 MB.
   const History<3> history{std::vector<Box3>(800'000, Box3{{1.5, 2.5, 3.5}, {4.5, 5.5, 6.5}}), {}};
-  for (const std::string name : {"a.csv", "a.npy", "a.aabbs"}) {
+  for (const std::string name : {"a.csv", "a.npy"}) {
     write_scene(history, path(name));
     std::vector<std::uint64_t> reports;
     ReadOptions options;
@@ -428,7 +341,7 @@ TEST_F(FileScene, PlaysAFileThatMovesForAsManyFramesAsAskedForAndThere) {
 
 TEST_F(FileScene, SaysOfAPathThatTheFileIsMissingAndNotTheScene) {
   EXPECT_THROW(find_scene(path("nothing.csv").string()), FileError);
-  EXPECT_THROW(find_scene("nothing.aabbs"), FileError);
+  EXPECT_THROW(find_scene("nothing.btrace"), FileError);
   EXPECT_THROW(find_scene("nothing"), InvalidSpec);
   EXPECT_THROW(find_scene(put("a.csv", "min_x,min_y,max_x,max_y\n").string() + ":colour=red"), InvalidSpec);
 }
