@@ -45,20 +45,16 @@ PairFormat pair_format_of(const std::filesystem::path& path, std::string_view na
 PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids,
                    bool has_large_numbers)
     : stream_(stream), ids_(ids) {
-  if (format == PairFormat::npy && has_large_numbers)
-    large_array_.emplace(stream, 2);
-  else if (format == PairFormat::npy)
-    array_.emplace(stream, 2);
+  if (format == PairFormat::npy)
+    array_.emplace(stream, has_large_numbers ? "u8" : "u4", 2);
   else
     text_ = is_between ? "left,right\n" : "first,second\n";
 }
 
 void PairFile::write(std::span<const Pair> pairs) {
+  static_assert(sizeof(Pair) == 2 * sizeof(std::uint32_t));
+  if (array_) return array_->write(pairs);
   for (const Pair pair : pairs) {
-    if (array_) {
-      array_->write(std::array{index(pair.first), index(pair.second)});
-      continue;
-    }
     append(text_, index(pair.first), ids_.left, ',');
     append(text_, index(pair.second), ids_.right, '\n');
     if (text_.size() >= bytes_a_piece) write_text();
@@ -66,11 +62,8 @@ void PairFile::write(std::span<const Pair> pairs) {
 }
 
 void PairFile::write(std::span<const std::array<std::uint64_t, 2>> pairs) {
+  if (array_) return array_->write(pairs);
   for (const std::array<std::uint64_t, 2>& pair : pairs) {
-    if (large_array_) {
-      large_array_->write(pair);
-      continue;
-    }
     append(text_, pair[0], ids_.left, ',');
     append(text_, pair[1], ids_.right, '\n');
     if (text_.size() >= bytes_a_piece) write_text();
@@ -80,8 +73,6 @@ void PairFile::write(std::span<const std::array<std::uint64_t, 2>> pairs) {
 void PairFile::finish() {
   if (array_)
     array_->finish();
-  else if (large_array_)
-    large_array_->finish();
   else
     write_text();
 }

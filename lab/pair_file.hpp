@@ -13,7 +13,7 @@
 
 #include "broadside/pair.hpp"
 
-#include "lab/formats/npy/array.hpp"
+#include "lab/formats/npy/npy_array_writer.hpp"
 
 namespace broadside::lab {
 
@@ -54,8 +54,7 @@ class PairFile {
   std::ostream& stream_;
   PairIds ids_;
   std::string text_;  // CSV that is not yet written
-  std::optional<NpyArrayWriter<std::uint32_t>> array_;
-  std::optional<NpyArrayWriter<std::uint64_t>> large_array_;
+  std::optional<NpyArrayWriter> array_;
 };
 
 }  // namespace broadside::lab

@@ -39,7 +39,8 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
     {"MapInfo data", ".tab .mif ", "", ogr},
     {"a recording of Broadmark", ".aabbs ", "",
      "python3 -c \"import struct; d = open('IN', 'rb').read(); n, _ = struct.unpack_from('<2i', d, 256); "
-     "print('frame,box,min_x,min_y,min_z,max_x,max_y,max_z'); [print(i // n, i % n, *b[:3], *b[4:7], sep=',') "
+     "print('frame,box,min_x,min_y,min_z,max_x,max_y,max_z'); [print(i // n, i % n, *b[:3], *b[4:7], "
+     "sep=',') "
      "for i, b in enumerate(struct.iter_unpack('<8f', d[304:]))]\" > out.csv"},
     {"Parquet", ".parquet .geoparquet ", "PAR1\x15",
      "python3 -c \"import pandas; pandas.read_parquet('IN').to_csv('out.csv', index=False)\""},

@@ -212,7 +212,8 @@ TEST(SceneVerb, LeavesNothingHalfDoneWheneverItIsInterrupted) {
       EXPECT_EQ(ended.status, 130);
     } else {
       EXPECT_EQ(folder.names(), std::vector<std::string>{"boxes.btrace"});
-      EXPECT_THAT(run({"info", folder.file("boxes.btrace")}).output, HasSubstr("100,000 boxes in 3D, as floats, 11 frames"));
+      EXPECT_THAT(run({"info", folder.file("boxes.btrace")}).output,
+                  HasSubstr("100,000 boxes in 3D, as floats, 11 frames"));
     }
   }
 }

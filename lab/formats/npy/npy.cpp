@@ -1,36 +1,128 @@
-// Boxes as a NumPy array: a row a box, with the minima on all axes and then the maxima, or with named fields.
+// Boxes as a NumPy array: a row a box, with the minima on all axes and then the maxima; alone (.npy), or by
+// its name in a zip archive (.npz).
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <ostream>
+#include <regex>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "lab/formats/descriptions.hpp"
-#include "lab/formats/npy/array.hpp"
-#include "lab/formats/npy/header.hpp"
-#include "lab/formats/npy/layout.hpp"
+#include "lab/formats/npy/npy_array_writer.hpp"
+#include "lab/formats/text.hpp"
+#include "lab/formats/zip_archive.hpp"
 
 namespace broadside::lab::readers {
 namespace {
+
+constexpr std::string_view npy_magic = "\x93NUMPY";
+
+/// What the header of an array says (numpy.lib.format, versions 1.0 to 3.0).
+struct NpyHeader {
+  std::size_t bytes = 0;  // of the header
+  char kind = 'f';        // 'f', 'i' or 'u'
+  std::size_t number_bytes = 0;
+  bool is_big_endian = false;
+  bool is_column_major = false;
+  bool is_corners = false;  // of shape (n, 2, dimension) rather than (n, 2 * dimension)
+  int dimension = 2;
+  std::uint64_t rows = 0;
+
+  std::size_t row_bytes() const { return 2 * static_cast<std::size_t>(dimension) * number_bytes; }
+};
+
+[[noreturn]] void refuse(const std::string& name, std::string_view found, std::string_view expected) {
+  throw FileError(fmt::format("{}: {}; expected {}", name, found, expected));
+}
+
+/// The header's dictionary of Python, here without blanks and with one kind of quotes; `end` is where it
+/// ends.
+std::string header_text(std::string_view bytes, const std::string& name, std::size_t& end) {
+  const auto check_length = [&](std::size_t size) {
+    if (bytes.size() < size)
+      refuse(name, fmt::format("has {} bytes", bytes.size()),
+             fmt::format("a NumPy header of {} bytes", size));
+  };
+  const auto byte = [bytes](std::size_t at) { return std::size_t{static_cast<unsigned char>(bytes[at])}; };
+  const std::string_view magic = bytes.substr(0, npy_magic.size());
+  if (!npy_magic.starts_with(magic))
+    refuse(name, fmt::format("begins with {}", shown(magic)), "byte 93 and NUMPY");
+  constexpr std::size_t least = 12;
+  check_length(least);
+  if (byte(6) < 1 || byte(6) > 3 || byte(7) != 0)
+    refuse(name, fmt::format("byte 6: version {}.{}", byte(6), byte(7)), "1.0, 2.0 or 3.0");
+  const std::size_t begin = byte(6) == 1 ? 10 : 12;
+  end = begin + (byte(8) | byte(9) << 8 | (begin == 10 ? 0 : byte(10) << 16 | byte(11) << 24));
+  check_length(end);
+  std::string text;
+  for (const char c : bytes.substr(begin, end - begin)) {
+    if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) text += c == '"' ? '\'' : c;
+  }
+  return text;
+}
+
+/// Reads the header with which an array begins, and checks that the numbers that it claims follow.
+NpyHeader read_header(std::string_view bytes, const std::string& name) {
+  NpyHeader header;
+  const std::string text = header_text(bytes, name, header.bytes);
+  if (text.find("'descr':[") != std::string::npos)
+    refuse(name, "has named fields",
+           fmt::format("numbers: python3 -c \"import numpy as n; a = n.load('{}'); n.save('out.npy', "
+                       "n.stack([a[k] for k in "
+                       "('min_x', 'min_y', 'max_x', 'max_y')], 1))\"",
+                       plainly(name)));
+  static const std::regex pattern(
+      R"(\{(?=.*'descr':'([<>=|])([fiu])([1248])')(?=.*'fortran_order':(True|False)))"
+      R"((?=.*'shape':\((\d{1,20}),(?:([46])|2,([23])),?\)).*\})");
+  constexpr std::size_t most = 1000;  // more would take the matcher much of the stack
+  std::smatch match;
+  // NumPy gives no order to a single byte, and only to that.
+  if (text.size() > most || !std::regex_match(text, match, pattern) || (match[1] == "|" && match[3] != "1") ||
+      (match[2] == "f" && match[3] == "1"))
+    refuse(name, fmt::format("has the header {}", shown(text, 200)),
+           "'descr' of f2, f4, f8, i1 to i8 or u1 to u8, with '<' or '>' before it, 'fortran_order', and "
+           "'shape' of (n, 4) or "
+           "(n, 2, 2), minima and then maxima, or (n, 6) or (n, 2, 3) in 3D");
+  header.is_big_endian = match[1] == ">" || (match[1] == "=" && std::endian::native == std::endian::big);
+  header.kind = *match[2].first;
+  header.number_bytes = static_cast<std::size_t>(*match[3].first - '0');
+  header.is_column_major = match[4] == "True";
+  header.rows = std::strtoull(match[5].str().c_str(), nullptr, 10);  // the most there can be if it is more
+  header.is_corners = match[7].matched;
+  header.dimension = header.is_corners ? *match[7].first - '0' : (*match[6].first - '0') / 2;
+  // Compared as numbers of rows: in bytes, the claim may be more than 64 bits can say.
+  const std::size_t rest = bytes.size() - header.bytes;
+  if (rest % header.row_bytes() != 0 || rest / header.row_bytes() != header.rows)
+    refuse(name, fmt::format("has {} bytes behind its header and claims {} rows", rest, match[5].str()),
+           fmt::format("{} bytes a row", header.row_bytes()));
+  return header;
+}
+
+/// A float of half precision (IEEE 754's binary16).
+double value_of_half(std::uint64_t bits) {
+  const int exponent = static_cast<int>(bits >> 10 & 31);
+  const int digits = static_cast<int>(bits & 1023);
+  const double sign = (bits & 0x8000) != 0 ? -1 : 1;
+  if (exponent == 31)
+    return digits != 0 ? std::numeric_limits<double>::quiet_NaN()
+                       : sign * std::numeric_limits<double>::infinity();
+  return sign * (exponent == 0 ? std::ldexp(digits, -24) : std::ldexp(1024 + digits, exponent - 25));
+}
 
 /// The boxes of an array whose rows are all there.
 template <int D, typename Real>
 class NpyFrame final : public FrameReader<D, Real> {
  public:
-  NpyFrame(std::unique_ptr<Input> input, std::size_t begin, const NpyLayout& layout)
-      : input_(std::move(input)),
-        begin_(begin),
-        layout_(layout),
-        is_plain_(is_plain(layout)),
-        end_row_(layout.rows) {
-    settle_top();
-  }
+  NpyFrame(std::unique_ptr<Input> input, const NpyHeader& header)
+      : input_(std::move(input)), header_(header), end_row_(header_.rows) {}
 
   std::vector<Box<D, Real>> first() override {
     std::vector<Box<D, Real>> boxes;
@@ -40,7 +132,7 @@ class NpyFrame final : public FrameReader<D, Real> {
 
   bool first_piece(std::vector<Box<D, Real>>& boxes) override {
     constexpr std::size_t rows_a_piece = std::size_t{1} << 18;
-    input_->release(begin_ + next_row_ * layout_.row_step);
+    if (!header_.is_column_major) input_->release(header_.bytes + next_row_ * header_.row_bytes());
     read(std::min(rows_a_piece, end_row_ - next_row_), boxes);
     return !boxes.empty();
   }
@@ -48,8 +140,9 @@ class NpyFrame final : public FrameReader<D, Real> {
   bool has_pieces() const override { return true; }
 
   bool take_slice(std::size_t slice, std::size_t slices) override {
-    next_row_ = layout_.rows / slices * slice + std::min(slice, layout_.rows % slices);
-    end_row_ = next_row_ + layout_.rows / slices + (slice < layout_.rows % slices ? 1 : 0);
+    const std::size_t rows = header_.rows;
+    next_row_ = rows / slices * slice + std::min(slice, rows % slices);
+    end_row_ = next_row_ + rows / slices + (slice < rows % slices ? 1 : 0);
     return true;
   }
 
@@ -57,126 +150,95 @@ class NpyFrame final : public FrameReader<D, Real> {
 
   bool next(Step<D, Real>&) override { return false; }
 
-  std::shared_ptr<const BoxLabels> labels() const override {
-    return layout_.unread.empty() ? nullptr
-                                  : std::make_shared<BoxLabels>(BoxLabels{.unread = layout_.unread});
-  }
-
-  bool is_computed() const override { return std::ranges::any_of(layout_.forms, computes_bounds); }
-
  private:
-  /// Looks for the first row that shows in which direction y grows.
-  void settle_top() {
-    if (layout_.forms[1] != BoundsForm::bottom_top) return;
-    layout_.forms[1] = BoundsForm::min_max;
-    for (std::size_t row = 0; row < layout_.rows; ++row) {
-      const double bottom = number(row, layout_.first[1]);
-      const double top = number(row, layout_.second[1]);
-      if (bottom == top || !std::isfinite(bottom) || !std::isfinite(top)) continue;
-      if (top < bottom) std::swap(layout_.first[1], layout_.second[1]);
-      return;
-    }
-  }
-
   /// Reads the next `count` rows.
   void read(std::size_t count, std::vector<Box<D, Real>>& boxes) {
+    constexpr bool is_big_endian = std::endian::native == std::endian::big;
+    const bool is_plain = !header_.is_column_major && header_.kind == 'f' &&
+                          header_.number_bytes == sizeof(Real) && header_.is_big_endian == is_big_endian;
     boxes.resize(count);
     const std::size_t first = std::exchange(next_row_, next_row_ + count);
-    if (is_plain_ && count > 0)
-      std::memcpy(boxes.data(), input_->bytes().data() + begin_ + first * layout_.row_step,
-                  count * layout_.row_step);
+    if (is_plain && count > 0)
+      std::memcpy(boxes.data(), input_->bytes().data() + header_.bytes + first * sizeof(boxes[0]),
+                  count * sizeof(boxes[0]));
     for (std::size_t i = 0; i < count; ++i) {
-      if (!is_plain_) boxes[i] = box_of(first + i);
+      if (!is_plain) boxes[i] = box_of(first + i);
       if (!is_present(boxes[i]) && !is_absent(boxes[i])) refuse_box(first + i, boxes[i]);
-      input_->passed(begin_ + (first + i) * layout_.row_step);
+      input_->passed(header_.bytes + (first + i) * header_.row_bytes());
     }
   }
 
   Box<D, Real> box_of(std::size_t row) const {
     Box<D, Real> box;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      const auto [min, max] =
-          bounds_of(layout_.forms[axis], number(row, layout_.first[axis]), number(row, layout_.second[axis]));
-      box.min[axis] = static_cast<Real>(min);
-      box.max[axis] = static_cast<Real>(max);
+      box.min[axis] = static_cast<Real>(number(row, 0, axis));
+      box.max[axis] = static_cast<Real>(number(row, 1, axis));
     }
     return box;
   }
 
-  /// Whether the rows are boxes as they are in memory.
-  static bool is_plain(const NpyLayout& layout) {
-    if constexpr (std::endian::native != std::endian::little) return false;
-    const auto load = npy_type_of(sizeof(Real) == sizeof(float) ? "<f4" : "<f8")->load;
-    const auto is_at = [load](const NpyColumn& column, std::size_t place) {
-      return column.offset == place * sizeof(Real) && column.type.load == load;
-    };
-    bool is_plain = layout.row_step == sizeof(Box<D, Real>);
-    for (std::size_t axis = 0; axis < D; ++axis)
-      is_plain = is_plain && layout.forms[axis] == BoundsForm::min_max && is_at(layout.first[axis], axis) &&
-                 is_at(layout.second[axis], D + axis);
-    return is_plain;
-  }
-
-  double number(std::size_t row, const NpyColumn& column) const {
-    const char* const bytes = input_->bytes().data() + begin_ + row * layout_.row_step + column.offset;
-    double value = 0;
-    if (!column.type.load(bytes, value))
-      throw FileError(fmt::format("{}: row {} holds {}; expected at most 2^53, up to which a double is exact",
-                                  input_->name(), row, column.type.digits(bytes)));
-    return value;
-  }
-
-  /// Whether all rows are valid as a corner and the size.
-  bool are_sizes() const {
-    for (std::size_t row = 0; row < layout_.rows; ++row) {
-      for (std::size_t axis = 0; axis < D; ++axis) {
-        if (layout_.forms[axis] != BoundsForm::min_max || !(number(row, layout_.second[axis]) >= 0))
-          return false;
-      }
-    }
-    return true;
+  /// A coordinate of a row's minima (corner 0) or maxima (1).
+  double number(std::size_t row, std::size_t corner, std::size_t axis) const {
+    // By columns, the last index is the slowest.
+    const std::size_t place = !header_.is_column_major ? (2 * row + corner) * D + axis
+                              : header_.is_corners     ? (2 * axis + corner) * header_.rows + row
+                                                       : (corner * D + axis) * header_.rows + row;
+    const std::size_t size = header_.number_bytes;
+    const char* const bytes = input_->bytes().data() + header_.bytes + place * size;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < size; ++i)
+      bits = bits << 8 | static_cast<unsigned char>(bytes[header_.is_big_endian ? i : size - 1 - i]);
+    if (header_.kind == 'f')
+      return size == 8   ? std::bit_cast<double>(bits)
+             : size == 4 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+                         : value_of_half(bits);
+    const std::size_t unused = 64 - 8 * size;
+    const std::int64_t value = static_cast<std::int64_t>(bits << unused) >> unused;
+    constexpr std::int64_t most = std::int64_t{1} << 53;
+    if (header_.kind == 'u' && bits <= std::uint64_t{most}) return static_cast<double>(bits);
+    if (header_.kind == 'i' && value >= -most && value <= most) return static_cast<double>(value);
+    throw FileError(fmt::format("{}: row {} holds {}; expected at most 2^53, up to which a double is exact",
+                                input_->name(), row,
+                                header_.kind == 'u' ? fmt::to_string(bits) : fmt::to_string(value)));
   }
 
   [[noreturn]] void refuse_box(std::size_t row, const Box<D, Real>& box) const {
+    bool are_sizes = true;
+    for (std::size_t i = 0; i < header_.rows * D && are_sizes; ++i) are_sizes = number(i / D, 1, i % D) >= 0;
     throw FileError(fmt::format(
-        "{}: row {} has min ({}) and max ({}); expected numbers with min <= max, or inf and -inf "
-        "for an absent box{}",
+        "{}: row {} has min ({}) and max ({}); expected numbers with min <= max, or inf and -inf for an "
+        "absent box{}",
         input_->name(), row, fmt::join(box.min, ", "), fmt::join(box.max, ", "),
-        are_sizes() ? fmt::format("; as a corner and the size all {} rows are valid: make maxima by "
-                                  "boxes[:, {}:] += boxes[:, :{}]",
-                                  layout_.rows, int{D}, int{D})
-                    : ""));
+        are_sizes ? fmt::format(
+                        "; as a corner and the size all {0} rows are valid: make maxima by boxes[:, {1}:] += "
+                        "boxes[:, :{1}]",
+                        header_.rows, int{D})
+                  : ""));
   }
 
   std::unique_ptr<Input> input_;
-  std::size_t begin_;
-  NpyLayout layout_;
-  bool is_plain_;
+  NpyHeader header_;
   std::size_t next_row_ = 0;
   std::size_t end_row_;
 };
 
 AnyFrameReader open_npy(std::unique_ptr<Input> input, const ReadOptions&) {
-  const std::string_view bytes = input->bytes();
-  const NpyHeader header = read_npy_header(bytes, input->name());
-  const NpyLayout layout = npy_layout(header, bytes.size() - header.bytes, input->name());
-  return for_boxes_of(layout.dimension, layout.precision, [&]<int D, typename Real>() -> AnyFrameReader {
-    return std::make_unique<NpyFrame<D, Real>>(std::move(input), header.bytes, layout);
-  });
+  const NpyHeader header = read_header(input->bytes(), input->name());
+  const bool are_floats = header.kind == 'f' && header.number_bytes <= 4;
+  return for_boxes_of(header.dimension, are_floats ? Precision::float32 : Precision::float64,
+                      [&]<int D, typename Real>() -> AnyFrameReader {
+                        return std::make_unique<NpyFrame<D, Real>>(std::move(input), header);
+                      });
 }
 
 template <int D, typename Real>
 class NpyWriter final : public FrameWriter<D, Real> {
  public:
-  explicit NpyWriter(std::ostream& stream) : array_(stream, 2 * D) {}
+  explicit NpyWriter(std::ostream& stream) : array_(stream, sizeof(Real) == 4 ? "f4" : "f8", 2 * D) {}
 
   void first(std::span<const Box<D, Real>> boxes) override {
-    std::array<Real, 2 * D> row;
-    for (const Box<D, Real>& box : boxes) {
-      std::ranges::copy(box.min, row.begin());
-      std::ranges::copy(box.max, row.begin() + D);
-      array_.write(row);
-    }
+    static_assert(sizeof(Box<D, Real>) == 2 * D * sizeof(Real));
+    array_.write(boxes);
   }
 
   void next(const Step<D, Real>&) override {
@@ -186,13 +248,52 @@ class NpyWriter final : public FrameWriter<D, Real> {
   void finish() override { array_.finish(); }
 
  private:
-  NpyArrayWriter<Real> array_;
+  NpyArrayWriter array_;
 };
 
-AnyFrameWriter create_npy(std::ostream& stream, int dimension, Precision precision) {
-  return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
-    return std::make_unique<NpyWriter<D, Real>>(stream);
-  });
+// .npz, as numpy.savez and numpy.savez_compressed write it.
+
+constexpr std::string_view array_suffix = ".npy";
+
+/// The member of an archive that holds the array of this name or, where that is empty, the only one.
+std::size_t chosen_array(const ZipArchive& archive, const std::string& wanted, const std::string& file) {
+  std::vector<std::size_t> arrays;
+  std::string names;
+  for (std::size_t i = 0; i < archive.members().size(); ++i) {
+    std::string_view member = archive.members()[i];
+    if (!member.ends_with(array_suffix)) continue;
+    member.remove_suffix(array_suffix.size());
+    if (member == wanted) return i;
+    arrays.push_back(i);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", shown(member));
+  }
+  if (arrays.empty()) refuse(file, "holds no array", "one");
+  if (!wanted.empty())
+    refuse(file, fmt::format("holds no array {}", shown(wanted)), fmt::format("one of: {}", names));
+  if (arrays.size() > 1)
+    refuse(file, fmt::format("holds {} arrays, {}", arrays.size(), names),
+           "--array NAME, which says the one to read");
+  return arrays.front();
+}
+
+AnyFrameReader open_npz(std::unique_ptr<Input> input, const ReadOptions& options) {
+  if (input->bytes().empty()) refuse(input->name(), "is empty", "an .npz file");
+  const ZipArchive archive(input->bytes(), input->name());
+  const std::size_t member = chosen_array(archive, options.array, input->name());
+  std::string_view name = archive.members()[member];
+  name.remove_suffix(array_suffix.size());
+  return open_npy(
+      Input::keeping(fmt::format("{}: array {}", input->name(), shown(name)), archive.read(member)), options);
+}
+
+/// Whether these are the first bytes of an archive whose first member is an array.
+bool is_npz(std::string_view bytes, std::string_view extension) {
+  if (extension == ".npz") return true;
+  constexpr std::size_t name_size_at = 26;
+  constexpr std::size_t name_at = 30;
+  if (!bytes.starts_with("PK\x03\x04") || bytes.size() < name_at) return false;
+  const auto size = static_cast<unsigned char>(bytes[name_size_at]);
+  return bytes[name_size_at + 1] == 0 && bytes.substr(name_at, size).ends_with(array_suffix);
 }
 
 }  // namespace
@@ -207,7 +308,24 @@ Format npy() {
             return extension == ".npy" || bytes.starts_with(npy_magic);
           },
       .open = open_npy,
-      .create = create_npy,
+      .create =
+          [](std::ostream& stream, int dimension, Precision precision) {
+            return for_boxes_of(dimension, precision, [&]<int D, typename Real>() -> AnyFrameWriter {
+              return std::make_unique<NpyWriter<D, Real>>(stream);
+            });
+          },
+  };
+}
+
+Format npz() {
+  return {
+      .name = "npz",
+      .summary = "boxes as one of the arrays of a NumPy .npz file",
+      .extensions = {".npz"},
+      .has_arrays = true,
+      .recognises = is_npz,
+      .open = open_npz,
+      .missing = zip_missing(),
   };
 }
 

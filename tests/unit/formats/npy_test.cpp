@@ -101,28 +101,10 @@ TEST_F(Npy, OfTwoCornersIsReadByRowsOrByColumns) {
       two_boxes);
 }
 
-TEST_F(Npy, WithNamedFieldsIsReadAsATable) {
-  EXPECT_EQ((boxes_of<2, float>(corpus("npy/fields.npy"))), (std::vector<Box2>{{{0, 1}, {2, 3}}}));
-  EXPECT_EQ((boxes_of<3, double>(corpus("npy/fields_of_vectors.npy"))),
-            (std::vector<DoubleBox3>{{{0, 1, 2}, {3, 4, 5}}}));
-  EXPECT_EQ((boxes_of<2, double>(corpus("npy/fields_of_centres.npy"))),
-            (std::vector<DoubleBox2>{{{1.75, -3}, {4.25, 1}}}));
-  EXPECT_THAT(refusal_of(corpus("npy/fields_and_frame.npy")),
-              AllOf(HasSubstr("several frames"), HasSubstr("expected one")));
-  EXPECT_THAT(refusal_of(corpus("npy/fields_claim_everything.npy")),
-              HasSubstr("field 'min_x' has the shape"));
-  const auto refusal_of_fields = [&](const std::string& fields, const std::string& shape) {
-    return refusal_of(
-        npy_header("{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }"));
-  };
-  const std::string rest = ", ('min_y', '<f4'), ('max_x', '<f4'), ('max_y', '<f4')";
-  EXPECT_THAT(refusal_of_fields("('a', '<f4')", "0,"),
-              AllOf(HasSubstr("bad.npy: fields a: no columns"), HasSubstr("expected names such as min_x")));
-  EXPECT_THAT(refusal_of_fields("('min_x', '<U4')" + rest, "0,"), HasSubstr("'min_x' is no number"));
-  EXPECT_THAT(refusal_of_fields("('min_x', '|O')" + rest, "0,"), HasSubstr("field 'min_x' is of type '|O'"));
-  EXPECT_THAT(refusal_of_fields("('min_x', '<f4')" + rest, "2,"), HasSubstr("claims 2 rows of 4"));
-  EXPECT_THAT(refusal_of_fields("('min_x', '<f4')" + rest, "0, 2"), HasSubstr("shape (n,)"));
-  EXPECT_THAT(refusal_of_fields("('min_x', [('a', '<f4')])", "0,"), HasSubstr("expected a type of numbers"));
+TEST_F(Npy, WithNamedFieldsIsRefusedNamingWhatMakesAPlainArrayOfIt) {
+  EXPECT_THAT(
+      refusal_of(corpus("npy/fields.npy")),
+      AllOf(HasSubstr("bad.npy: has named fields; expected numbers: python3 -c"), HasSubstr("n.stack(")));
 }
 
 /// Archives of arrays; tests that need libzip.
@@ -152,7 +134,8 @@ TEST_F(Npz, OfSeveralArraysReadsTheOneThatIsNamed) {
   EXPECT_EQ(read("boxes").in_2d->boxes.size(), 2u);
   EXPECT_THAT(message_of<FileError>([&] { read("boxen"); }),
               AllOf(HasSubstr("no array 'boxen'"), HasSubstr("expected one of: 'boxes', 'weights'")));
-  EXPECT_THAT(message_of<FileError>([&] { read("weights"); }), HasSubstr("array 'weights': shape (2)"));
+  EXPECT_THAT(message_of<FileError>([&] { read("weights"); }),
+              HasSubstr("array 'weights': has the header '{'descr'"));
 }
 
 TEST_F(Npz, IsRefusedWhereItIsDamaged) {
@@ -241,41 +224,40 @@ TEST_F(Npy, RefusesAHeaderThatIsNotRight) {
   const std::string good = array_header("<f8", "0, 4");
   for (std::size_t size = 0; size < good.size(); ++size)
     EXPECT_THAT(refusal_of(good.substr(0, size)), HasSubstr("expected")) << size << " bytes";
-  EXPECT_THAT(refusal_of("\x93NUMPX" + good.substr(6)),
-              HasSubstr("bad.npy: byte 0: 93 4e 55 4d 50 58; expected 93"));
+  EXPECT_THAT(refusal_of("\x93NUMPX" + good.substr(6)), HasSubstr("bad.npy: begins with '?NUMPX'; expected"));
   EXPECT_THAT(refusal_of(good.substr(0, 6) + "\x04" + good.substr(7)),
               HasSubstr("byte 6: version 4.0; expected 1.0"));
   EXPECT_THAT(refusal_of(good.substr(0, 9) + "\xff" + good.substr(10)),
               HasSubstr("expected a NumPy header of 65"));
 
-  const auto refusal_of_dictionary = [&](const std::string& text) { return refusal_of(npy_header(text)); };
-  EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': False}"), HasSubstr("'shape'"));
-  EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'descr': '<f8'}"), HasSubstr("each once"));
-  EXPECT_THAT(refusal_of_dictionary("{'colour': 'red'}"), HasSubstr("key 'colour'"));
-  EXPECT_THAT(refusal_of_dictionary("{'descr': [('x', 8)], 'fortran_order': False, 'shape': (0,)}"),
-              AllOf(HasSubstr("byte 27: '8)"), HasSubstr("expected a type of numbers")));
-  EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': 0, 'shape': (0, 4)}"),
-              HasSubstr("True or False"));
-  EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 4)}"),
-              HasSubstr("a whole number"));
-  EXPECT_THAT(refusal_of_dictionary("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4)} x"),
-              HasSubstr("expected the end of the header"));
-  for (const std::string type : {"|f2", "<c8", "|b1", "f8", "|f8", "<f9", "", "<U4", "|O"})
-    EXPECT_THAT(refusal_of(array_header(type, "0, 4")), HasSubstr("numbers of type '" + type + "'"));
-  for (const std::string shape : {"", "4,", "0, 5", "0, 4, 1"})
-    EXPECT_THAT(refusal_of(array_header("<f8", shape)), HasSubstr("expected (n, 4)")) << shape;
+  for (const std::string text : {"{'descr': '<f8', 'fortran_order': False}", "{'colour': 'red'}", "",
+                                 "{'descr': '<f8', 'fortran_order': 0, 'shape': (0, 4)}",
+                                 "{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 4)}",
+                                 "{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4)} x"})
+    EXPECT_THAT(refusal_of(npy_header(text)),
+                AllOf(HasSubstr("bad.npy: has the header '"), HasSubstr("expected 'descr' of f2")))
+        << text;
+  EXPECT_THAT(refusal_of(npy_header("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 4)" +
+                                    std::string(2000, ' ') + "}")),
+              "was read");
+  EXPECT_THAT(refusal_of(npy_header("{" + std::string(60'000, 'a') + "}")), HasSubstr("expected 'descr'"));
+  for (const std::string type : {"|f2", "<c8", "|b1", "f8", "|f8", "<f9", "", "<U4", "|O", "<f1"})
+    EXPECT_THAT(refusal_of(array_header(type, "0, 4")), HasSubstr("'descr':'" + type + "'"));
+  for (const std::string shape : {"", "4,", "0, 5", "0, 4, 1", "0, 2, 4", "0, 3, 2"})
+    EXPECT_THAT(refusal_of(array_header("<f8", shape)), HasSubstr("'shape' of (n, 4)")) << shape;
 }
 
 TEST_F(Npy, RefusesNumbersThatAreMissingTooManyOrNoBox) {
   const std::string rows = numbers<double>({1, 2, 5, 8, 3, 4, 7, 9});
   EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + rows.substr(1)),
-              AllOf(HasSubstr("bad.npy: has 63 bytes behind its header and claims 2 rows of 4"),
+              AllOf(HasSubstr("bad.npy: has 63 bytes behind its header and claims 2 rows"),
                     HasSubstr("32 bytes a row")));
   EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + rows + "x"), HasSubstr("has 65 bytes"));
   for (const std::string count : {"2147483648", "576460752303423489", "18446744073709551615"})
     EXPECT_THAT(refusal_of(array_header("<f8", count + ", 4") + rows),
                 HasSubstr("claims " + count + " rows"));
-  EXPECT_THAT(refusal_of(array_header("<f8", "18446744073709551616, 4") + rows), HasSubstr("a whole number"));
+  EXPECT_THAT(refusal_of(array_header("<f8", "18446744073709551617, 4") + rows),
+              HasSubstr("claims 18446744073709551617 rows"));
 
   EXPECT_THAT(refusal_of(array_header("<f8", "2, 4") + numbers<double>({1, 2, 5, 8, 3, 4, nan, 9})),
               AllOf(HasSubstr("bad.npy: row 1 has min (3, 4) and max (nan, 9)"), HasSubstr("min <= max")));

@@ -226,7 +226,7 @@ TEST_F(Files, AreShownInErrorsAsPrintableText) {
               AllOf(HasSubstr("a.csv:2: column max_x is '\?\?\?[1m'; expected a number")));
   EXPECT_THAT(refusal(put("b.csv", "\0\xffq,w\n"s)),
               AllOf(HasSubstr("'\?\?q,w'"), HasSubstr("expected columns")));
-  EXPECT_THAT(refusal(put("c.npy", "\x93NUMPY\1\0\4\0{\0\xff}"s)), HasSubstr("'\?\?}'; expected a key"));
+  EXPECT_THAT(refusal(put("c.npy", "\x93NUMPY\1\0\4\0{\0\xff}"s)), HasSubstr("'{\?\?}'; expected 'descr'"));
   EXPECT_THAT(refusal(put("d.csv", "\xff\xfem\0i\0n\0"s)), HasSubstr("UTF-16; expected UTF-8"));
 }
 
