@@ -19,7 +19,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view schema = "broadside.experiments/2";
 
 /// Its tables are as today's, and findings are made anew from those.
-constexpr std::string_view schema_before = "broadside.experiments/1";
 
 Json json_of(const Cell& cell) {
   if (const auto* const number = std::get_if<double>(&cell)) return *number;
@@ -303,7 +302,7 @@ std::string json_of(const ExperimentResults& results) {
 ExperimentResults read_experiments(std::string_view text, const std::string& name) {
   const Json json = parsed(text, name);
   const Reader reader(json, name);
-  if (const auto found = reader.get<std::string>("schema", schema); found != schema && found != schema_before)
+  if (const auto found = reader.get<std::string>("schema", schema); found != schema)
     throw FileError(fmt::format("{}: schema '{}'; expected '{}'", name, found, schema));
   ExperimentResults results{
       .machine = read_part(reader, "machine", read_machine),

@@ -1,6 +1,5 @@
 // The results that the paper quotes, read from JSON and checked: what is not as the program writes it is refused.
 import type { Comparison, Experiments, Verdict } from "../../web/charts/data.ts";
-import { inTodaysShape, type OldComparison } from "../../web/charts/old_results.ts";
 import { Problem } from "./problem.ts";
 
 type Kind = "a text" | "a finite number" | "true or false" | "a list" | "an object";
@@ -153,19 +152,17 @@ function checkRatio(ratio: Place): void {
   ratio.has("a text", "of").has("a finite number", "median", "rounds").hasOrNull("a finite number", "low", "high");
 }
 
-/** Reads what `broadside compare --json` wrote, today or by the schema before, with samples or without. Throws Problem. */
+/** Reads what `broadside compare --json` wrote, with samples or without. Throws Problem. */
 export function readComparison(text: string, file: string): Comparison {
-  const root = rootOf(text, file, "broadside.results/2", "broadside.results/1");
-  const isOld = root.at("schema").value === "broadside.results/1";
-  if (!isOld) root.has("a text", "date").has("a finite number", "processor_share").has("true or false", "busy");
+  const root = rootOf(text, file, "broadside.results/2");
+  root.has("a text", "date").has("a finite number", "processor_share").has("true or false", "busy");
   const measurements = root.at("measurements").list();
   if (measurements.length === 0) root.at("measurements").refuse("at least one measurement");
   for (const measurement of measurements) {
     checkMeasurement(measurement);
-    if (isOld) continue;
     measurement.hasOrNull("a finite number", "rounds");
     for (const name of ["ratio_to_fastest", "ratio_to_best_own", "ratio_to_fastest_peer"])
       checkRatio(measurement.at(name));
   }
-  return inTodaysShape(root.value as Comparison | OldComparison);
+  return root.value as Comparison;
 }

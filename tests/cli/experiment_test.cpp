@@ -102,14 +102,6 @@ TEST(ExperimentVerb, JudgesAFileByItsTables) {
   EXPECT_THAT(refuted.output, AllOf(HasSubstr("unique: refuted.\n"), HasSubstr("1 of 2 numbers")));
 }
 
-TEST(ExperimentVerb, JudgesResultsOfAnEarlierVersionAsTheyAre) {
-  const std::string old = BROADSIDE_SOURCE_DIR "/tests/fixtures/experiments_v1_hierarchical_grid.json";
-  const Ended judged = run({"experiment", "--from", old});
-  EXPECT_EQ(judged.status, 0) << judged.errors;
-  EXPECT_THAT(judged.output,
-              AllOf(HasSubstr("hierarchical_grid in 3D"), HasSubstr("collections: confirmed.")));
-}
-
 TEST(ExperimentVerb, JudgesStandardInputAsItDoesAFile) {
   const TemporaryFolder folder;
   OrderedJson json = results();

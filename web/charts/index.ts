@@ -10,6 +10,4 @@ export { dark, light, coloursOf, familyColour, familyOf } from "./theme.ts";
 export type { Theme } from "./theme.ts";
 export type { Drawn, Place } from "./frame.ts";
 export * from "./numbers.ts";
-export { inTodaysShape } from "./old_results.ts";
-export type { OldComparison } from "./old_results.ts";
 export * from "./ratios.ts";

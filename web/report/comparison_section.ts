@@ -6,7 +6,6 @@ import {
 } from "../charts/comparison_charts.ts";
 import type { Comparison, Measurement, Ratio } from "../charts/data.ts";
 import { bytesText, geometricMean, grouped, ratioText, rounded, timeText } from "../charts/numbers.ts";
-import type { OldComparison } from "../charts/old_results.ts";
 import { intervalOf, intervalText, isLevel } from "../charts/ratios.ts";
 import { dataTable } from "./data_table.ts";
 import type { DataColumn } from "./data_table.ts";
@@ -205,9 +204,9 @@ export function doubtsOfComparison({ measurements, busy, processor_share }: Comp
   };
 }
 
-/** The sections of a comparison, each [id, title, element]. Its JSON is handed out as it was `written`. */
+/** The sections of a comparison, each [id, title, element]. */
 export function comparisonSections(
-  comparison: Comparison, date: string, written: Comparison | OldComparison,
+  comparison: Comparison, date: string,
 ): [string, string, HTMLElement][] {
   const cases = casesOf(comparison.measurements);
   const target = comparison.measurements.find((measurement) => measurement.target !== null)?.target ?? null;
@@ -215,7 +214,7 @@ export function comparisonSections(
   const summary = el("section", {}, tiles(comparison, cases), failures(comparison),
     el("div", { class: "card" }, el("h3", {}, "Where this comes from"), facts({ ...comparison, date, target }),
       el("p", { class: "downloads", style: "margin: 1rem 0 0" },
-        downloadButton("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(written)), " ",
+        downloadButton("Save as JSON", "comparison.json", "application/json", () => JSON.stringify(comparison)), " ",
         downloadButton("Save as CSV", "comparison.csv", "text/csv", () => csvOfComparison(comparison)))));
   const charts = el("section", {});
   if (cases.length > 1) {

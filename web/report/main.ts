@@ -1,7 +1,5 @@
 // The report: builds the page from the document that the program put into it.
 import type { Comparison, Experiments } from "../charts/data.ts";
-import { inTodaysShape } from "../charts/old_results.ts";
-import type { OldComparison } from "../charts/old_results.ts";
 import { comparisonSections, doubtsOfComparison } from "./comparison_section.ts";
 import { add, el } from "./dom.ts";
 import { drawingSection } from "./drawing_section.ts";
@@ -13,16 +11,15 @@ import { beginThemes } from "./themes.ts";
 /** What lab/report/page.cpp puts together. */
 interface ReportDocument {
   date: string;
-  comparison: Comparison | OldComparison | null;
+  comparison: Comparison | null;
   experiments: Experiments | null;
   drawings: Drawing[];
 }
 
 function build(report: ReportDocument): void {
-  const { comparison: written, experiments, drawings } = report;
-  const comparison = written === null ? null : inTodaysShape(written);
+  const { comparison, experiments, drawings } = report;
   const sections: [string, string, HTMLElement][] = [];
-  if (comparison !== null && written !== null) sections.push(...comparisonSections(comparison, report.date, written));
+  if (comparison !== null) sections.push(...comparisonSections(comparison, report.date));
   if (experiments !== null) sections.push(...experimentSections(experiments));
   const pictures = drawingSection(drawings);
   if (pictures !== undefined) sections.push(pictures);

@@ -1,20 +1,17 @@
 // What the charts make of tables and comparisons.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
 
 import {
   bytesText, casesOf, coloursOf, dark, drawFrames, drawLeads, drawLines, drawRatios, drawScaling, drawStandings,
   drawTableChart, drawWinners, familyOf, grouped, labelOf, leadOf, light, rounded, scaledScenes, short, standings,
-  inTodaysShape, intervalText, ratioText, timeText,
+  intervalText, ratioText, timeText,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
 import { inverse, meanRatio } from "../charts/ratios.ts";
 import { logTicks } from "../charts/frame.ts";
 import { svgOf } from "../charts/render.ts";
-import { project } from "../../paper/web/tests/fixture.ts";
-import { comparison, oldComparison } from "./fixture.ts";
+import { comparison } from "./fixture.ts";
 
 const place: Place = { theme: light, width: 640 };
 
@@ -137,30 +134,6 @@ test("ratios have two significant digits, and are level where their interval hol
     intervalText({ of: "grid", median: 1.02, low, high, rounds: 5 });
   assert.deepEqual([text(1.01, 1.03), text(0.98, 1.06), text(1, 1.06), text(null, null)],
     ["1.0 (1.0 to 1.0)", "1.0 (level)", "1.0 (level)", "1.0"]);
-});
-
-test("results of the schema before are read with ratios of their medians, which have no interval", () => {
-  const read = inTodaysShape(oldComparison);
-  assert.deepEqual([read.schema, read.busy, read.processor_share, read.measurements[0]?.rounds],
-    ["broadside.results/2", null, null, null]);
-  const [grid, bvh, box2d] = read.measurements;
-  assert.deepEqual(grid?.ratio_to_fastest, { of: "bvh", median: 2, low: null, high: null, rounds: null });
-  assert.equal(bvh?.ratio_to_fastest?.median, 1);
-  assert.deepEqual([box2d?.ratio_to_best_own?.median, box2d?.ratio_to_fastest_peer?.median], [4, 1]);
-  assert.equal(bvh?.ratio_to_fastest_peer?.median, 0.25);
-  assert.equal(read.measurements[7]?.ratio_to_fastest, null);
-  assert.equal(inTodaysShape(comparison), comparison);
-  const [of] = casesOf(read.measurements);
-  assert.equal(seriesOf(drawRatios(of!, place)).length, 1);
-});
-
-test("results that earlier versions wrote are read, and show algorithms by the names that they had", () => {
-  for (const [name, algorithm] of [["results_v1_hierarchical_grid", "hierarchical_grid"], ["results_v2", "brute_force"]]) {
-    const results = inTodaysShape(JSON.parse(readFileSync(join(project, `tests/fixtures/${name}.json`), "utf8")));
-    const [only] = casesOf(results.measurements);
-    assert.equal(only?.dimension, 2);
-    assert.match(svgOf(drawRatios(only!, place), { width: 640 }), new RegExp(`>${algorithm}<`));
-  }
 });
 
 test("a ratio's interval is a whisker of its bar, and told in words", () => {

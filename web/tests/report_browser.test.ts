@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 
-import { comparison, doubtful, oldComparison } from "./fixture.ts";
+import { comparison, doubtful } from "./fixture.ts";
 
 const program = process.env["BROADSIDE_PROGRAM"] ?? "";
 const web = process.env["BROADSIDE_WEB"] ?? "";
@@ -113,7 +113,6 @@ describe("the report", { skip: missing !== "" && missing }, () => {
       date: "2026-11-21", comparison, experiments: null, drawings: [drawing("uniform", 2), drawing("clustered", 3)],
     });
     pageWith("doubtful.html", { date: "2026-11-21", comparison: doubtful, experiments: null, drawings: [] });
-    pageWith("old.html", { date: "2026-11-21", comparison: oldComparison, experiments: null, drawings: [] });
     pageWith("quick.html", { date: "2026-11-21", comparison: quickComparison(), experiments: null, drawings: [] });
     const playwright = createRequire(`${web}/`)("playwright-core") as typeof import("playwright-core");
     browser = await playwright.chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox"] });
@@ -191,7 +190,6 @@ describe("the report", { skip: missing !== "" && missing }, () => {
       return cells;
     };
     assert.deepEqual(await ratios("fixture.html"), ["1.0", "1.2 (0.92 to 1.6)", "1.8 (1.7 to 1.9)"]);
-    assert.deepEqual(await ratios("old.html"), ["1.0", "1.2", "1.8"]);
   });
 
   test("sorts by a column, by the keyboard alone, and back", async () => {

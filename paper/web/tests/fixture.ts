@@ -4,8 +4,7 @@ import { dirname, join } from "node:path";
 import { cwd } from "node:process";
 
 import type { Comparison, Experiments, Measurement } from "../../../web/charts/data.ts";
-import type { OldComparison } from "../../../web/charts/old_results.ts";
-import { inRounds } from "../../../web/tests/fixture.ts";
+import { inRounds, untold } from "../../../web/tests/fixture.ts";
 
 function folderWith(path: string, from: string): string {
   if (existsSync(join(from, path))) return from;
@@ -86,7 +85,7 @@ export function experiments(): Experiments {
   };
 }
 
-function measurement(algorithm: string, kind: Measurement["kind"], median_ms: number, moving = 0): OldComparison["measurements"][number] {
+function measurement(algorithm: string, kind: Measurement["kind"], median_ms: number, moving = 0): Measurement {
   return {
     scene: "uniform",
     scene_parameters: {},
@@ -122,13 +121,16 @@ function measurement(algorithm: string, kind: Measurement["kind"], median_ms: nu
     explanation: null,
     own_bytes: null,
     peak_bytes: null,
+    ...untold,
   };
 }
 
-/** By the schema before. */
-export function oldComparison(): OldComparison {
+export function withoutRatios(): Comparison {
   return {
-    schema: "broadside.results/1",
+    schema: "broadside.results/2",
+    date: "2026-11-21",
+    processor_share: 0.998,
+    busy: false,
     machine,
     build,
     command: ["broadside", "compare"],
@@ -146,5 +148,5 @@ export function oldComparison(): OldComparison {
 }
 
 export function comparison(): Comparison {
-  return inRounds(oldComparison());
+  return inRounds(withoutRatios());
 }

@@ -160,14 +160,6 @@ TEST(ExperimentResults, AreRefusedWhereTheyAreOfAnotherSchema) {
   EXPECT_THAT(refusal_after([](Json& json) { json["schema"] = 1; }), HasSubstr("schema: 1"));
 }
 
-TEST(ExperimentResults, OfTheSchemaBeforeAreJudgedByTheirTables) {
-  Json json = Json::parse(json_of(results()));
-  json["schema"] = "broadside.experiments/1";
-  first(json).erase("statements");
-  first(json)["verdict"] = "holds";
-  EXPECT_EQ(read_experiments(json.dump(), "x.json").results[0].finding, results().results[0].finding);
-}
-
 TEST(ExperimentResults, AreRefusedWhereThereAreNone) {
   EXPECT_THAT(refusal_after([](Json& json) { json["experiments"] = Json::array(); }),
               AllOf(HasSubstr("0 experiments"), HasSubstr("at least one")));
