@@ -14,7 +14,7 @@
 #include "cli/out_of_core.hpp"
 #include "cli/values.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/formats/csv/text.hpp"
+#include "lab/formats/text.hpp"
 #include "lab/numbers.hpp"
 #include "lab/pair_file.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/csv/text.hpp"
+#include "lab/formats/csv/csv_text.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/write_file.hpp"
 

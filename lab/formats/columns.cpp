@@ -107,16 +107,6 @@ int point_of(Found found) {
   return std::ranges::count(found, none) == std::ptrdiff_t{roles} - 1 ? column : none;
 }
 
-/// The radius, if it is one: beside g and b, r is a colour.
-int radius_of(std::span<const std::string_view> names) {
-  const auto find = [names](std::string_view wanted) {
-    const auto name = std::ranges::find(names, wanted, [](std::string_view text) { return plain(text); });
-    return name == names.end() ? none : static_cast<int>(name - names.begin());
-  };
-  if (const int radius = find("radius"); radius != none) return radius;
-  return find("g") != none && find("b") != none ? none : find("r");
-}
-
 /// The first column of one of these names, the names in order.
 int first_of(std::span<const std::string_view> names, std::span<const std::string_view> wanted) {
   for (const std::string_view want : wanted) {
@@ -124,6 +114,13 @@ int first_of(std::span<const std::string_view> names, std::span<const std::strin
     if (name != names.end()) return static_cast<int>(name - names.begin());
   }
   return none;
+}
+
+/// The radius, if it is one: beside g and b, r is a colour.
+int radius_of(std::span<const std::string_view> names) {
+  const auto find = [names](std::string_view wanted) { return first_of(names, {&wanted, 1}); };
+  const bool is_colour = find("g") != none && find("b") != none;
+  return is_colour || find("radius") != none ? find("radius") : find("r");
 }
 
 /// The fault of an axis without bounds; empty for a z axis that needs none.
@@ -214,17 +211,6 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
 bool BoxColumns::is_computed() const noexcept {
   if (has_geometry) return computes_bounds(geometry_form);
   return std::any_of(forms.begin(), forms.begin() + dimension, computes_bounds);
-}
-
-unsigned BoxColumns::needed() const noexcept {
-  if (has_geometry) return 1U << geometry;
-  unsigned bits = 0;
-  for (int axis = 0; axis < dimension; ++axis) {
-    bits |= 1U << (first + axis);
-    const BoundsForm form = forms[static_cast<std::size_t>(axis)];
-    if (form != BoundsForm::point) bits |= 1U << (form == BoundsForm::centre_radius ? radius : second + axis);
-  }
-  return bits;
 }
 
 std::string BoxColumns::wanted() const {

@@ -117,9 +117,6 @@ struct BoxColumns {
                      values[has_radius ? std::size_t{radius} : static_cast<std::size_t>(second) + axis]);
   }
 
-  /// The values that a box is made of, as bits: bit p for place p.
-  unsigned needed() const noexcept;
-
   /// The names of the columns that are not ignored, with commas between.
   std::string wanted() const;
 };

@@ -184,8 +184,11 @@ template <int D, typename Real>
 class HistoryReader final : public FrameReader<D, Real> {
  public:
   explicit HistoryReader(History<D, Real> history, std::shared_ptr<const BoxLabels> labels = nullptr,
-                         std::string warning = {})
-      : history_(std::move(history)), labels_(std::move(labels)), warning_(std::move(warning)) {}
+                         std::string warning = {}, bool is_computed = false)
+      : history_(std::move(history)),
+        labels_(std::move(labels)),
+        warning_(std::move(warning)),
+        is_computed_(is_computed) {}
 
   std::vector<Box<D, Real>> first() override { return std::move(history_.boxes); }
 
@@ -199,10 +202,13 @@ class HistoryReader final : public FrameReader<D, Real> {
 
   std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
 
+  bool is_computed() const override { return is_computed_; }
+
  private:
   History<D, Real> history_;
   std::shared_ptr<const BoxLabels> labels_;
   std::string warning_;
+  bool is_computed_;
   std::size_t next_ = 0;
 };
 

@@ -1,61 +1,44 @@
-// Why a text is no number: the ways in which other programs and countries write one.
+// Numbers in text, and why a text is none: the ways in which other programs and countries write one.
 #include "lab/formats/text.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
-
-#include "lab/formats/csv/text.hpp"
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <type_traits>
+#include <version>
 
 namespace broadside::lab::readers {
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
-  return result;
-}
-
-/// Takes what separates groups of digits, which is UTF-8 for the narrow and the fixed blank; 0 bytes if the
-/// text does not begin with one.
-std::size_t separator_bytes(std::string_view text) {
-  constexpr std::array<std::string_view, 9> separators = {
-      ",", ".", " ", "'", "_", "\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89", "\xE2\x80\x99"};
-  for (const std::string_view separator : separators) {
-    if (text.starts_with(separator)) return separator.size();
-  }
-  return 0;
+/// How many digits a text begins with.
+std::size_t digits_of(std::string_view text) {
+  return std::min(text.find_first_not_of("0123456789"), text.size());
 }
 
 /// Whether digits stand in groups of three behind a first one: "1,234,567.8", "1 234", "1.234,5".
 bool is_grouped(std::string_view text) {
-  const auto digits = [&text] {
-    const auto end = std::ranges::find_if_not(text, is_digit);
-    const auto count = static_cast<std::size_t>(end - text.begin());
-    text.remove_prefix(count);
-    return count;
-  };
-  const std::size_t first = digits();
+  // Some blanks are of several bytes in UTF-8: the fixed one, and two narrow ones; and a quote.
+  constexpr std::array<std::string_view, 9> separators = {
+      ",", ".", " ", "'", "_", "\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89", "\xE2\x80\x99"};
+  const std::size_t first = digits_of(text);
   if (first == 0 || first > 3) return false;
-  const std::size_t bytes = separator_bytes(text);
-  if (bytes == 0) return false;
-  const std::string_view separator = text.substr(0, bytes);
-  std::size_t groups = 0;
-  while (text.starts_with(separator)) {
-    text.remove_prefix(bytes);
-    if (digits() != 3) return false;
-    ++groups;
+  text.remove_prefix(first);
+  for (const std::string_view separator : separators) {
+    if (!text.starts_with(separator)) continue;
+    while (text.starts_with(separator)) {
+      text.remove_prefix(separator.size());
+      if (digits_of(text) != 3) return false;
+      text.remove_prefix(3);
+    }
+    if (text.empty()) return true;
+    const bool has_point = (text[0] == '.' || text[0] == ',') && separator != text.substr(0, 1);
+    return has_point && digits_of(text.substr(1)) == text.size() - 1;
   }
-  // One group behind a point is a number, and the caller asks about texts that are not.
-  if (groups == 0) return false;
-  if (text.empty()) return true;
-  const char point = text.front();
-  if ((point != '.' && point != ',') || separator == text.substr(0, 1)) return false;
-  text.remove_prefix(1);
-  digits();
-  return text.empty();
+  return false;
 }
 
 /// Whether a comma in place of the point makes it no number.
@@ -65,19 +48,48 @@ bool has_decimal_comma(std::string_view text) {
   std::string with_point(text);
   with_point[comma] = '.';
   double value = 0;
-  return parse_number(std::string_view(with_point), value);
+  return parse_number(with_point, value);
 }
 
 }  // namespace
+
+template <typename Number>
+bool parse_any_number(std::string_view text, Number& value) {
+  // Which std::from_chars does not know.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+#if __cpp_lib_to_chars >= 201611L
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size()) return false;
+  if (error != std::errc::result_out_of_range) return error == std::errc();
+#else
+  // What std::strtod takes besides.
+  if (text.find_first_of("xX( \t\n\r\f\v") != std::string_view::npos) return false;
+#endif
+  // Too large, or so small that the nearest is zero or almost zero: that one is right.
+  const std::string copy(text);
+  char* last = nullptr;
+  value = std::is_same_v<Number, float> ? static_cast<Number>(std::strtof(copy.c_str(), &last))
+                                        : static_cast<Number>(std::strtod(copy.c_str(), &last));
+  const bool is_named = text.find_first_of("iInN") != std::string_view::npos;  // "inf" or "nan"
+  return !copy.empty() && last == copy.c_str() + copy.size() && (is_named || std::isfinite(value));
+}
+
+template bool parse_any_number(std::string_view, float&);
+template bool parse_any_number(std::string_view, double&);
+
+bool parse_number(std::string_view text, double& value) {
+  return parse_any_number(text, value) && !std::isnan(value);
+}
 
 NumberFault number_fault(std::string_view text) {
   if (text.empty()) return {"empty", {}};
   std::string_view digits = text;
   if (digits.front() == '+' || digits.front() == '-') digits.remove_prefix(1);
   if (digits.empty()) return {"text", {}};
-  const std::string word = lower(digits);
-  if (word.starts_with("nan") || word == "na" || word == "n/a" || word == "null" || word == "none")
-    return {word.starts_with("nan") ? "NaN" : "no value", {}};
+  std::string word(digits);
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (word.starts_with("nan")) return {"NaN", {}};
+  if (word == "na" || word == "n/a" || word == "null" || word == "none") return {"no value", {}};
   // "1,234" may be either.
   if (has_decimal_comma(digits))
     return {is_grouped(digits) ? "with a decimal comma or a thousands separator" : "with a decimal comma",
@@ -86,7 +98,7 @@ NumberFault number_fault(std::string_view text) {
   if (is_digit(digits.front()) && std::isalpha(static_cast<unsigned char>(digits.back())) != 0 &&
       !word.starts_with("0x"))
     return {"a number with text behind it", {}};
-  if (std::ranges::none_of(digits, is_digit)) return {"text", {}};
+  if (digits.find_first_of("0123456789") == std::string_view::npos) return {"text", {}};
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Text of files: shown in messages, split into words, and why it is not a number.
+// Text of files: shown in messages, split into words, and numbers in it.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +32,10 @@ inline std::string_view next_word(std::string_view& text) {
 }  // namespace broadside::lab
 
 namespace broadside::lab::readers {
+
+/// Whether all of `text` is a number, which may be infinite but not a NaN; `value` is then the nearest
+/// double.
+bool parse_number(std::string_view text, double& value);
 
 /// Why a text is not a number, and what is expected instead.
 struct NumberFault {

@@ -9,7 +9,7 @@ import { clock, latest, patch, problem, shown, state } from "./state/store.ts";
 import { readState, writeState } from "./state/url.ts";
 import { App } from "./ui/app.tsx";
 import { keepAddress } from "./ui/address.ts";
-import { acceptDrops } from "./ui/drop.ts";
+import { acceptDrops, showFile } from "./ui/drop.ts";
 import { openLesson } from "./ui/lesson_view.tsx";
 import { Stage } from "./ui/stage.ts";
 
@@ -35,7 +35,7 @@ let loop: Loop | undefined;
 const client = startBench((reply) => loop?.receive(reply));
 setClient(client);
 const stage = new Stage();
-loop = new Loop(client, () => stage.paint());
+loop = new Loop(client, () => stage.paint(), showFile);
 stage.onChange = () => loop?.repaint();
 acceptDrops();
 keepAddress();

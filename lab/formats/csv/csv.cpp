@@ -1,19 +1,18 @@
 // Boxes as text: comma-separated values and their kin. The columns' names tell what they are.
-#include "lab/formats/csv/csv.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/csv/csv_rows.hpp"
+#include "lab/formats/csv/csv_writer.hpp"
 #include "lab/formats/csv/geometry_text.hpp"
+#include "lab/formats/descriptions.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {
@@ -36,20 +35,18 @@ bool is_before(std::string_view line) {
   return first == std::string_view::npos || line[first] == '#';
 }
 
-/// Whether a field is more likely a geometry or bounds than their column's name.
-bool is_geometry(std::string_view field) { return field.find_first_of("([") != std::string_view::npos; }
-
+/// Whether fields are more likely a row, with a number or a geometry in it, than names of columns.
 bool is_table_row(const Fields& fields) {
-  return std::ranges::any_of(fields, is_geometry) ||
-         std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
-         std::ranges::any_of(fields, is_number);
+  return std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
+         std::ranges::any_of(fields, [](std::string_view field) {
+           return field.find_first_of("([") != std::string_view::npos || is_number(field);
+         });
 }
 
-/// The columns that a comment before rows of numbers names, as numpy.savetxt writes it.
-bool resolve_comment(std::string_view comment, std::size_t count, BoxColumns& columns) {
-  comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
-  const Fields names = fields_of(comment, separator_of(comment));
-  return names.size() == count && resolve(names, columns).empty();
+/// Whether a row is one of KITTI's object labels: a class, and 14 or 15 numbers.
+bool is_kitti(const Fields& fields) {
+  return (fields.size() == 15 || fields.size() == 16) && !is_number(fields.front()) &&
+         std::all_of(fields.begin() + 1, fields.end(), is_number);
 }
 
 /// The meaning of a box's numbers, under the names that torchvision made common.
@@ -67,249 +64,237 @@ constexpr auto conventions = std::to_array<Convention>({
     {"cxcyczwhd", BoundsForm::centre_size, "cx,cy,cz,w,h,d"},
 });
 
-const Convention* find_convention(std::string_view name) {
-  const auto* const found = std::ranges::find(conventions, name, &Convention::name);
-  return found == conventions.end() ? nullptr : found;
-}
+/// Opens a table: finds out what its columns are.
+class CsvOpener {
+ public:
+  CsvOpener(std::unique_ptr<Input> input, const ReadOptions& options)
+      : input_(std::move(input)), options_(options), lines_(*input_), rows_(lines_) {}
 
-/// The order of the numbers in a field of bounds.
-std::optional<BoundsForm> form_named(std::string_view name) {
-  const Convention* const convention = find_convention(name);
-  return convention == nullptr ? std::nullopt : std::optional(convention->form);
-}
+  AnyFrameReader open() {
+    const std::string_view comment = skip_comments();
+    separator_ = separator_of(lines_.line());
+    // The blanks of a geometry that is alone in its line separate nothing.
+    if (separator_ == Separator::blanks && is_geometry_name(fields_of(lines_.line(), separator_).front()))
+      separator_ = Separator::tab;
+    fields_ = fields_of(lines_.line(), separator_);
+    const bool has_header = options_.columns.empty() ? find_columns(comment) : take_columns(options_.columns);
+    if (!has_header) lines_ = rows_;
+    look_into_rows();
+    std::vector<std::string> others = other_meanings(columns_);
+    if (!are_named_) std::ranges::copy(unnamed_meanings(fields_.size()), std::back_inserter(others));
+    std::string note = note_on_columns();
+    if (!note.empty()) note = fmt::format("{}: {}", input_->name(), note);
+    std::shared_ptr<BoxLabels> labels = find_labels();
+    return read_csv({std::move(input_), lines_, separator_, std::move(columns_), std::move(labels),
+                     Quarantine(options_), std::move(others), std::move(note)});
+  }
 
-/// The columns of bounds in a file with names, as a convention says.
-BoxColumns columns_of_convention(const Convention& convention, const Fields& fields, const CsvLines& lines) {
-  Fields names = fields;
-  if (convention.form == BoundsForm::centre_size) {
+ private:
+  /// Goes to the first line of the table, and returns the comment before it, if any.
+  std::string_view skip_comments() {
+    std::string_view comment;
+    while (true) {
+      if (!lines_.next())
+        throw FileError(fmt::format("{}: {}; expected a table with {}", input_->name(),
+                                    input_->bytes().empty() ? "is empty" : "has no line but comments",
+                                    expected_columns));
+      if (lines_.line().find('\r') != std::string_view::npos)
+        lines_.refuse("a carriage return within the line", "lines that end with a line feed");
+      if (!is_before(lines_.line())) return comment;
+      comment = lines_.line();
+      rows_ = lines_;
+    }
+  }
+
+  /// Takes the columns by the names in the first line or in a comment before it, as numpy.savetxt writes it,
+  /// or by their number. Whether the first line is of names.
+  bool find_columns(std::string_view comment) {
+    std::string problem = resolve(fields_, columns_);
+    if (problem.empty()) return true;
+    if (!is_table_row(fields_)) {
+      const auto slip = std::ranges::find_if(
+          fields_, [](std::string_view field) { return !number_fault(field).expected.empty(); });
+      if (slip != fields_.end())
+        lines_.refuse(fmt::format("{}, {}", shown(*slip), number_fault(*slip).found),
+                      number_fault(*slip).expected);
+      lines_.refuse(fmt::format("{}: {}", shown(lines_.line(), 100), problem),
+                    fmt::format("{}; --columns can name them{}", expected_columns,
+                                other_ways(lines_, separator_, corner_or_centre(fields_))));
+    }
+    comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
+    const Fields names = fields_of(comment, separator_of(comment));
+    if (names.size() == fields_.size() && resolve(names, columns_).empty()) return false;
+    are_named_ = false;
+    problem = is_kitti(fields_) ? resolve(fields_of(unnamed_meanings(15).front(), Separator::comma), columns_)
+                                : positional(fields_.size(), columns_);
+    columns_.places.resize(fields_.size(), BoxColumns::ignored);
+    columns_.names.resize(fields_.size());
+    if (!problem.empty())
+      lines_.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns" +
+                                 other_ways(rows_, separator_, unnamed_meanings(fields_.size())));
+    return false;
+  }
+
+  /// Takes the columns that the user names, from left to right. Or, as "bbox=xywh", the order of the numbers
+  /// in the file's column of that name; or, as "xywh", the meaning of its columns of bounds. Whether the
+  /// first line is of names.
+  bool take_columns(std::string_view list) {
+    const auto* const convention = std::ranges::find(conventions, list, &Convention::name);
+    const bool is_row = is_table_row(fields_);
+    if (convention != conventions.end() && !is_row) return take_convention(*convention);
+    const std::string_view wanted = convention != conventions.end() ? convention->columns : list;
+    Fields names = fields_of(wanted, Separator::comma);
+    std::ranges::replace(names, std::string_view("-"), std::string_view());
+    BoundsForm form = BoundsForm::min_max;
     for (std::string_view& name : names) {
-      if (plain(name) == "x") name = "cx";
-      if (plain(name) == "y") name = "cy";
-      if (plain(name) == "z") name = "cz";
+      const std::size_t equals = name.find('=');
+      if (equals == std::string_view::npos) continue;
+      const auto* const told = std::ranges::find(conventions, name.substr(equals + 1), &Convention::name);
+      name = name.substr(0, equals);
+      if (told == conventions.end() || !is_geometry_name(name))
+        lines_.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
+      form = told->form;
+      // In a file with names, the column is found by its name, and other columns of bounds are ignored.
+      if (names.size() != 1 || std::ranges::find(fields_, name) == fields_.end()) continue;
+      const std::string_view only = name;
+      names = fields_;
+      std::ranges::replace_if(
+          names,
+          [only](std::string_view other) {
+            return other != only && (meaning_of(other) || is_geometry_name(other));
+          },
+          std::string_view());
+      break;
     }
-  }
-  BoxColumns columns;
-  std::string problem = resolve(names, columns, true);
-  columns.geometry_form = convention.form;
-  const auto is_such = [&](BoundsForm form) {
-    return form == convention.form ||
-           (form == BoundsForm::bottom_top && convention.form == BoundsForm::min_max);
-  };
-  if (problem.empty() && !columns.has_geometry &&
-      !std::all_of(columns.forms.begin(), columns.forms.begin() + columns.dimension, is_such))
-    problem = "other columns of bounds";
-  if (!problem.empty())
-    lines.refuse(fmt::format("--columns is '{}': {}", convention.name, problem),
-                 fmt::format("columns such as {}", convention.columns));
-  return columns;
-}
-
-/// The columns that the user names, from left to right. Or, as "bbox=xywh", the order of the numbers in the
-/// file's column of that name; or, as "xywh", the meaning of its columns of bounds.
-BoxColumns columns_of_user(std::string_view list, const Fields& fields, const CsvLines& lines) {
-  if (const Convention* const convention = find_convention(list)) {
-    if (!is_table_row(fields)) return columns_of_convention(*convention, fields, lines);
-    list = convention->columns;
-  }
-  const std::size_t count = fields.size();
-  Fields names = fields_of(list, Separator::comma);
-  BoundsForm form = BoundsForm::min_max;
-  for (std::string_view& name : names) {
-    if (name == "-") name = {};
-    const std::size_t equals = name.find('=');
-    if (equals == std::string_view::npos) continue;
-    const std::optional<BoundsForm> told = form_named(name.substr(equals + 1));
-    name = name.substr(0, equals);
-    if (!told || !is_geometry_name(name))
-      lines.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
-    form = *told;
-    // In a file with names, the column is found by its name, and other columns of bounds are ignored.
-    if (names.size() != 1 || std::ranges::find(fields, name) == fields.end()) continue;
-    const std::string_view wanted = name;
-    names = fields;
-    for (std::string_view& other : names) {
-      if (other != wanted && (meaning_of(other) || is_geometry_name(other))) other = {};
+    if (names.size() > fields_.size())
+      lines_.refuse(fmt::format("{} column{}", fields_.size(), fields_.size() == 1 ? "" : "s"),
+                    fmt::format("the {} that --columns names", names.size()));
+    names.resize(fields_.size());
+    const std::string problem = resolve(names, columns_, true);
+    columns_.geometry_form = form;
+    if (!problem.empty())
+      lines_.refuse(fmt::format("--columns names '{}': {}", list, problem), expected_columns);
+    // A row in which one of several numbers is wrong is not taken for names.
+    Fields read;
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      if (columns_.places[i] != BoxColumns::ignored) read.push_back(fields_[i]);
     }
-    break;
+    return !is_table_row(read);
   }
-  if (names.size() > count)
-    lines.refuse(fmt::format("{} column{}", count, count == 1 ? "" : "s"),
-                 fmt::format("the {} that --columns names", names.size()));
-  names.resize(count);
-  BoxColumns columns;
-  const std::string problem = resolve(names, columns, true);
-  columns.geometry_form = form;
-  if (!problem.empty())
-    lines.refuse(fmt::format("--columns names '{}': {}", list, problem), expected_columns);
-  return columns;
-}
 
-std::size_t column_of(const BoxColumns& columns, int place) {
-  return static_cast<std::size_t>(std::ranges::find(columns.places, place) - columns.places.begin());
-}
-
-/// The first geometry; empty if there is none.
-std::string_view first_geometry(CsvLines lines, Separator separator, const BoxColumns& columns) {
-  const std::size_t column = column_of(columns, BoxColumns::geometry);
-  while (lines.next()) {
-    const Fields fields = fields_of(lines.line(), separator);
-    if (column < fields.size() && !fields[column].empty()) return fields[column];
+  /// Takes the columns of bounds in a file with names as a convention says.
+  bool take_convention(const Convention& convention) {
+    Fields names = fields_;
+    static constexpr std::array<std::string_view, 3> centres = {"cx", "cy", "cz"};
+    for (std::string_view& name : names) {
+      const std::string letter = plain(name);
+      if (convention.form == BoundsForm::centre_size && letter.size() == 1 && letter >= "x" && letter <= "z")
+        name = centres[static_cast<std::size_t>(letter[0] - 'x')];
+    }
+    std::string problem = resolve(names, columns_, true);
+    columns_.geometry_form = convention.form;
+    const auto is_other = [&](BoundsForm form) {
+      return form != convention.form &&
+             (form != BoundsForm::bottom_top || convention.form != BoundsForm::min_max);
+    };
+    if (problem.empty() && !columns_.has_geometry &&
+        std::any_of(columns_.forms.begin(), columns_.forms.begin() + columns_.dimension, is_other))
+      problem = "other columns of bounds";
+    if (!problem.empty())
+      lines_.refuse(fmt::format("--columns is '{}': {}", convention.name, problem),
+                    fmt::format("columns such as {}", convention.columns));
+    return true;
   }
-  return {};
-}
 
-/// Looks for the first row that shows in which direction y grows.
-void settle_top(CsvLines lines, Separator separator, BoxColumns& columns) {
-  const std::size_t bottom = column_of(columns, BoxColumns::first + 1);
-  const std::size_t top = column_of(columns, BoxColumns::second + 1);
-  while (columns.forms[1] == BoundsForm::bottom_top && lines.next()) {
-    const Fields fields = fields_of(lines.line(), separator);
-    double bottom_y = 0;
-    double top_y = 0;
-    if (std::max(bottom, top) < fields.size() && parse_number(fields[bottom], bottom_y) &&
-        parse_number(fields[top], top_y) && bottom_y != top_y && std::isfinite(bottom_y) &&
-        std::isfinite(top_y))
-      readers::settle_top(columns, top_y < bottom_y);
+  std::size_t column_of(int place) const {
+    return static_cast<std::size_t>(std::ranges::find(columns_.places, place) - columns_.places.begin());
   }
-  readers::settle_top(columns, false);
-}
 
-/// How ambiguous columns were read; empty if the columns are not ambiguous.
-std::string note_on(const BoxColumns& columns, std::string_view geometry, bool are_chosen, bool are_named) {
-  const auto name_at = [&columns](int place) {
-    const std::size_t column = column_of(columns, place);
-    return column < columns.names.size() ? shown(columns.names[column]) : std::string();
-  };
-  if (columns.has_frames && columns.has_tracks && name_at(BoxColumns::track).empty())
-    return "no column of ids: the boxes of each frame are numbered anew";
-  if (are_chosen) return {};
-  if (!are_named)
-    return fmt::format(
-        "no names of columns: read as {}{}", columns.wanted(),
-        columns.names.size() == 4 ? "; --columns x,y,w,h if they are a corner and the size" : "");
-  const bool is_list = !geometry.empty() &&
-                       std::string_view("[( +-.0123456789").find(geometry.front()) != std::string_view::npos;
-  if (columns.has_geometry && is_list)
-    return fmt::format(
-        "column {} read as minima and then maxima; --columns {}=xywh if it is a corner and the size",
-        name_at(BoxColumns::geometry), plainly(columns.names[column_of(columns, BoxColumns::geometry)]));
-  if (!columns.has_geometry && columns.forms[0] == BoundsForm::point)
-    return fmt::format("no columns of bounds: each row is a point, with x from {} and y from {}{}",
-                       name_at(BoxColumns::first), name_at(BoxColumns::first + 1),
-                       columns.dimension == 3 ? " and z from " + name_at(BoxColumns::first + 2) : "");
-  return {};
-}
-
-/// Whether a row is one of KITTI's object labels: a class, and 14 or 15 numbers.
-bool is_kitti(const Fields& fields) {
-  return (fields.size() == 15 || fields.size() == 16) && !is_number(fields.front()) &&
-         std::all_of(fields.begin() + 1, fields.end(), is_number);
-}
-
-/// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing is
-/// read from.
-std::shared_ptr<BoxLabels> find_labels(const ReadOptions& options, const CsvLines& lines,
-                                       BoxColumns& columns) {
-  auto labels = std::make_shared<BoxLabels>();
-  const std::vector<std::string>& names = columns.names;
-  std::string_view wanted = options.ids;
-  if (wanted.empty() && options.finds_ids) {
-    const auto track = std::ranges::find(columns.places, BoxColumns::track);
-    wanted = track == columns.places.end() ? std::string_view("id")
-                                           : names[static_cast<std::size_t>(track - columns.places.begin())];
+  /// Looks for the first geometry, which tells the dimension, and for the first row that shows in which
+  /// direction y grows.
+  void look_into_rows() {
+    CsvLines lines = lines_;
+    const std::size_t geometry = column_of(BoxColumns::geometry);
+    const std::size_t bottom = column_of(BoxColumns::first + 1);
+    const std::size_t top = column_of(BoxColumns::second + 1);
+    while (((columns_.has_geometry && geometry_.empty()) || columns_.forms[1] == BoundsForm::bottom_top) &&
+           lines.next()) {
+      const Fields fields = fields_of(lines.line(), separator_);
+      if (geometry < fields.size()) geometry_ = fields[geometry];
+      double bottom_y = 0;
+      double top_y = 0;
+      if (std::max(bottom, top) < fields.size() && parse_number(fields[bottom], bottom_y) &&
+          parse_number(fields[top], top_y) && bottom_y != top_y && std::isfinite(bottom_y) &&
+          std::isfinite(top_y))
+        settle_top(columns_, top_y < bottom_y);
+    }
+    settle_top(columns_, false);
+    if (columns_.has_geometry) columns_.dimension = read_geometry_text(geometry_).dimension;
   }
-  if (!wanted.empty()) {
+
+  /// How ambiguous columns were read; empty if the columns are not ambiguous.
+  std::string note_on_columns() const {
+    const auto name_at = [this](int place) {
+      const std::size_t column = column_of(place);
+      return column < columns_.names.size() ? shown(columns_.names[column]) : std::string();
+    };
+    if (columns_.has_tracks && name_at(BoxColumns::track).empty())
+      return "no column of ids: the boxes of each frame are numbered anew";
+    if (!options_.columns.empty()) return {};
+    if (!are_named_)
+      return fmt::format(
+          "no names of columns: read as {}{}", columns_.wanted(),
+          columns_.names.size() == 4 ? "; --columns x,y,w,h if they are a corner and the size" : "");
+    const bool is_list = !geometry_.empty() && std::string_view("[( +-.0123456789").find(geometry_.front()) !=
+                                                   std::string_view::npos;
+    if (is_list)
+      return fmt::format(
+          "column {} read as minima and then maxima; --columns {}=xywh if it is a corner and the size",
+          name_at(BoxColumns::geometry), plainly(columns_.names[column_of(BoxColumns::geometry)]));
+    if (!columns_.has_geometry && columns_.forms[0] == BoundsForm::point)
+      return fmt::format("no columns of bounds: each row is a point, with x from {} and y from {}{}",
+                         name_at(BoxColumns::first), name_at(BoxColumns::first + 1),
+                         columns_.dimension == 3 ? " and z from " + name_at(BoxColumns::first + 2) : "");
+    return {};
+  }
+
+  /// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing
+  /// is read from.
+  std::shared_ptr<BoxLabels> find_labels() {
+    auto labels = std::make_shared<BoxLabels>();
+    const std::vector<std::string>& names = columns_.names;
+    const std::size_t track = column_of(BoxColumns::track);
+    const std::string standard = track < names.size() ? names[track] : "id";
+    const std::string wanted = options_.ids.empty() && options_.finds_ids ? standard : options_.ids;
     auto column = std::ranges::find(names, wanted);
-    if (column == names.end())
-      column = std::ranges::find(names, plain(wanted), [](const std::string& name) { return plain(name); });
-    if (column == names.end() && !options.ids.empty())
-      lines.refuse(fmt::format("no column {} of ids", shown(wanted)),
-                   fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
-    if (column != names.end()) {
-      int& place = columns.places[static_cast<std::size_t>(column - names.begin())];
+    if (column == names.end()) column = std::ranges::find(names, plain(wanted), plain);
+    if (column == names.end() && !options_.ids.empty())
+      lines_.refuse(fmt::format("no column {} of ids", shown(wanted)),
+                    fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
+    if (column != names.end() && !wanted.empty()) {
+      int& place = columns_.places[static_cast<std::size_t>(column - names.begin())];
       if (place != BoxColumns::ignored && place != BoxColumns::track)
-        lines.refuse(fmt::format("column {} is read already, and --ids names it", shown(*column)),
-                     "a column of its own for the ids");
+        lines_.refuse(fmt::format("column {} is read already, and --ids names it", shown(*column)),
+                      "a column of its own for the ids");
       if (place == BoxColumns::ignored) place = BoxColumns::id;
       labels->has_ids = true;
     }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (columns_.places[i] == BoxColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
+    }
+    return labels;
   }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (columns.places[i] == BoxColumns::ignored && !names[i].empty()) labels->unread.push_back(names[i]);
-  }
-  return labels;
-}
 
-AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options) {
-  CsvLines lines(*input);
-  CsvLines rows = lines;
-  std::string_view comment;
-  while (true) {
-    if (!lines.next())
-      throw FileError(fmt::format("{}: {}; expected a table with {}", input->name(),
-                                  input->bytes().empty() ? "is empty" : "has no line but comments",
-                                  expected_columns));
-    if (lines.line().find('\r') != std::string_view::npos)
-      lines.refuse("a carriage return within the line", "lines that end with a line feed");
-    if (!is_before(lines.line())) break;
-    comment = lines.line();
-    rows = lines;
-  }
-  Separator separator = separator_of(lines.line());
-  // The blanks of a geometry that is alone in its line separate nothing.
-  if (separator == Separator::blanks && is_geometry_name(fields_of(lines.line(), separator).front()))
-    separator = Separator::tab;
-  const Fields fields = fields_of(lines.line(), separator);
-  BoxColumns columns;
-  bool has_header = false;
-  bool are_named = true;
-  if (!options.columns.empty()) {
-    columns = columns_of_user(options.columns, fields, lines);
-    // A row in which one of several numbers is wrong is not taken for names.
-    Fields wanted;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (columns.places[i] != BoxColumns::ignored) wanted.push_back(fields[i]);
-    }
-    has_header = !is_table_row(wanted);
-  } else {
-    std::string problem = resolve(fields, columns);
-    has_header = problem.empty();
-    if (!has_header && is_table_row(fields) && !resolve_comment(comment, fields.size(), columns)) {
-      are_named = false;
-      problem = is_kitti(fields) ? resolve(fields_of(unnamed_meanings(15).front(), Separator::comma), columns)
-                                 : positional(fields.size(), columns);
-      columns.places.resize(fields.size(), BoxColumns::ignored);
-      columns.names.resize(fields.size());
-      if (!problem.empty())
-        lines.refuse(problem, "4, which are min_x,min_y,max_x,max_y, or 6 in 3D, or names with --columns" +
-                                  other_ways(rows, separator, unnamed_meanings(fields.size())));
-    } else if (!has_header && !is_table_row(fields)) {
-      const auto slip = std::ranges::find_if(
-          fields, [](std::string_view field) { return !number_fault(field).expected.empty(); });
-      if (slip != fields.end())
-        lines.refuse(fmt::format("{}, {}", shown(*slip), number_fault(*slip).found),
-                     number_fault(*slip).expected);
-      lines.refuse(fmt::format("{}: {}", shown(lines.line(), 100), problem),
-                   fmt::format("{}; --columns can name them{}", expected_columns,
-                               other_ways(lines, separator, corner_or_centre(fields))));
-    }
-  }
-  if (!has_header) lines = rows;
-  std::string_view geometry;
-  if (columns.has_geometry) {
-    geometry = first_geometry(lines, separator, columns);
-    columns.dimension = dimension_of_geometry_text(geometry);
-  }
-  settle_top(lines, separator, columns);
-  std::vector<std::string> others = other_meanings(columns);
-  if (!are_named) std::ranges::copy(unnamed_meanings(fields.size()), std::back_inserter(others));
-  std::string note = note_on(columns, geometry, !options.columns.empty(), are_named);
-  if (!note.empty()) note = fmt::format("{}: {}", input->name(), note);
-  std::shared_ptr<BoxLabels> labels = find_labels(options, lines, columns);
-  return read_csv({std::move(input), lines, separator, std::move(columns), std::move(labels),
-                   Quarantine(options), lines, std::move(others), std::move(note)},
-                  options.precision.value_or(Precision::float64));
-}
+  std::unique_ptr<Input> input_;
+  const ReadOptions& options_;
+  CsvLines lines_;  // first to the table's first line, and in the end before its first row
+  CsvLines rows_;   // before the table's first line
+  Separator separator_ = Separator::comma;
+  Fields fields_;  // of the first line
+  BoxColumns columns_;
+  bool are_named_ = true;
+  std::string_view geometry_;  // the first one
+};
 
 /// Whether the first line that says something is that of a table.
 bool is_csv(std::string_view bytes, std::string_view extension) {
@@ -331,6 +316,10 @@ bool is_csv(std::string_view bytes, std::string_view extension) {
 }
 
 }  // namespace
+
+AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options) {
+  return CsvOpener(std::move(input), options).open();
+}
 
 Format csv() {
   return {

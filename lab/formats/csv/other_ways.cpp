@@ -1,7 +1,5 @@
 // Finds other meanings of a table's columns in which all rows are valid.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -9,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/csv/csv.hpp"
+#include "lab/formats/csv/csv_rows.hpp"
 #include "lab/formats/csv/geometry_text.hpp"
 #include "lab/formats/text.hpp"
 #include "lab/numbers.hpp"
@@ -20,57 +18,40 @@ namespace {
 /// The columns that a list for --columns names.
 BoxColumns columns_of(const std::string& list, std::size_t count) {
   std::vector<std::string_view> names = fields_of(list, Separator::comma);
-  for (std::string_view& name : names) {
-    if (name == "-") name = {};
-  }
+  std::ranges::replace(names, std::string_view("-"), std::string_view());
   names.resize(count);
   BoxColumns columns;
   if (!resolve(names, columns, true).empty()) columns.places.clear();
   return columns;
 }
 
-bool is_valid(const std::vector<std::string_view>& fields, BoxColumns& columns) {
-  std::array<double, BoxColumns::places_of_a_row> values{};
-  bool is_empty = true;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const int place = columns.places[i];
-    if (place == BoxColumns::ignored || place >= BoxColumns::id) continue;
-    if (fields[i].empty()) {
-      values[static_cast<std::size_t>(place)] = NAN;
-      continue;
-    }
-    if (place >= BoxColumns::first) is_empty = false;
-    if (!parse_number(fields[i], values[static_cast<std::size_t>(place)])) return false;
-  }
-  if (is_empty) return true;
+bool is_valid(const std::vector<CsvField>& fields, BoxColumns& columns) {
+  if (columns.places.size() != fields.size()) return false;
+  const RowBox row = box_of(fields, columns);
+  if (row.wrong_place != BoxColumns::ignored) return false;
+  if (is_absent(row.box)) return true;
   // The first row that shows in which direction y grows decides for all rows.
-  if (const double bottom = values[BoxColumns::first + 1], top = values[BoxColumns::second + 1];
-      columns.forms[1] == BoundsForm::bottom_top && bottom != top) {
-    settle_top(columns, top < bottom);
+  if (columns.forms[1] == BoundsForm::bottom_top && row.box.min[1] != row.box.max[1]) {
+    settle_top(columns, row.box.max[1] < row.box.min[1]);
     return is_valid(fields, columns);
   }
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(columns.dimension); ++axis) {
-    const auto [min, max] = columns.bounds(values, axis);
-    if (!(min <= max)) return false;
-  }
-  return true;
+  return is_present(row.box);
 }
 
 }  // namespace
 
 std::string other_ways(CsvLines lines, Separator separator, const std::vector<std::string>& lists) {
   std::vector<std::pair<std::string, BoxColumns>> ways;
+  std::vector<CsvField> fields;
   std::uint64_t rows = 0;
   while (lines.next()) {
-    const std::vector<std::string_view> fields = fields_of(lines.line(), separator);
-    if (fields.size() == 1 && fields.front().empty()) continue;
+    split(lines.line(), separator, fields);
+    if (fields.size() == 1 && fields.front().text.empty()) continue;
     if (rows++ == 0) {
       for (const std::string& list : lists) ways.emplace_back(list, columns_of(list, fields.size()));
     }
-    std::erase_if(ways, [&](auto& way) {
-      return way.second.places.size() != fields.size() || !is_valid(fields, way.second);
-    });
-    if (ways.empty()) return {};
+    std::erase_if(ways, [&](auto& way) { return !is_valid(fields, way.second); });
+    if (ways.empty()) break;
   }
   if (ways.empty()) return {};
   std::string found;
@@ -88,15 +69,11 @@ std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& c
   while (lines.next()) {
     const std::vector<std::string_view> fields = fields_of(lines.line(), separator);
     if (column >= fields.size() || fields[column].empty()) continue;
-    DoubleBox3 solid;
-    DoubleBox2 flat;
-    const bool is_read =
-        columns.dimension == 3
-            ? read_geometry_text(fields[column], solid, BoundsForm::min_size).found.empty() &&
-                  is_present(solid)
-            : read_geometry_text(fields[column], flat, BoundsForm::min_size).found.empty() &&
-                  is_present(flat);
-    if (!is_read) return {};
+    const TextGeometry geometry = read_geometry_text(fields[column], BoundsForm::min_size);
+    bool is_right = geometry.found.empty() && geometry.dimension == columns.dimension;
+    for (int axis = 0; axis < columns.dimension; ++axis)
+      is_right = is_right && geometry.box.min[axis] <= geometry.box.max[axis];
+    if (!is_right) return {};
     ++rows;
   }
   return fmt::format("; as a corner and the size all {} rows are valid: say --columns={}=xywh", grouped(rows),

@@ -69,10 +69,7 @@ class ObjReader {
   void read_vertex() {
     std::array<double, 3> vertex{};
     for (double& coordinate : vertex) {
-      std::string_view word = next_word(rest_);
-      if (word.starts_with('+')) word.remove_prefix(1);
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), coordinate);
-      if (error != std::errc() || end != word.data() + word.size()) refuse("three numbers behind 'v'");
+      if (!readers::parse_any_number(next_word(rest_), coordinate)) refuse("three numbers behind 'v'");
     }
     if (mesh_.vertices.size() == std::numeric_limits<std::uint32_t>::max())
       refuse("at most 4294967295 vertices");

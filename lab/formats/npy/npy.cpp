@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <ostream>
 #include <regex>
@@ -15,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "lab/formats/binary_number.hpp"
 #include "lab/formats/descriptions.hpp"
 #include "lab/formats/npy/npy_array_writer.hpp"
 #include "lab/formats/text.hpp"
@@ -28,15 +27,13 @@ constexpr std::string_view npy_magic = "\x93NUMPY";
 /// What the header of an array says (numpy.lib.format, versions 1.0 to 3.0).
 struct NpyHeader {
   std::size_t bytes = 0;  // of the header
-  char kind = 'f';        // 'f', 'i' or 'u'
-  std::size_t number_bytes = 0;
-  bool is_big_endian = false;
+  NumberType type{};
   bool is_column_major = false;
   bool is_corners = false;  // of shape (n, 2, dimension) rather than (n, 2 * dimension)
   int dimension = 2;
   std::uint64_t rows = 0;
 
-  std::size_t row_bytes() const { return 2 * static_cast<std::size_t>(dimension) * number_bytes; }
+  std::size_t row_bytes() const { return 2 * static_cast<std::size_t>(dimension) * type.bytes; }
 };
 
 [[noreturn]] void refuse(const std::string& name, std::string_view found, std::string_view expected) {
@@ -91,9 +88,9 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
            "'descr' of f2, f4, f8, i1 to i8 or u1 to u8, with '<' or '>' before it, 'fortran_order', and "
            "'shape' of (n, 4) or "
            "(n, 2, 2), minima and then maxima, or (n, 6) or (n, 2, 3) in 3D");
-  header.is_big_endian = match[1] == ">" || (match[1] == "=" && std::endian::native == std::endian::big);
-  header.kind = *match[2].first;
-  header.number_bytes = static_cast<std::size_t>(*match[3].first - '0');
+  header.type.is_big_endian = match[1] == ">" || (match[1] == "=" && std::endian::native == std::endian::big);
+  header.type.kind = *match[2].first;
+  header.type.bytes = static_cast<std::size_t>(*match[3].first - '0');
   header.is_column_major = match[4] == "True";
   header.rows = std::strtoull(match[5].str().c_str(), nullptr, 10);  // the most there can be if it is more
   header.is_corners = match[7].matched;
@@ -104,17 +101,6 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
     refuse(name, fmt::format("has {} bytes behind its header and claims {} rows", rest, match[5].str()),
            fmt::format("{} bytes a row", header.row_bytes()));
   return header;
-}
-
-/// A float of half precision (IEEE 754's binary16).
-double value_of_half(std::uint64_t bits) {
-  const int exponent = static_cast<int>(bits >> 10 & 31);
-  const int digits = static_cast<int>(bits & 1023);
-  const double sign = (bits & 0x8000) != 0 ? -1 : 1;
-  if (exponent == 31)
-    return digits != 0 ? std::numeric_limits<double>::quiet_NaN()
-                       : sign * std::numeric_limits<double>::infinity();
-  return sign * (exponent == 0 ? std::ldexp(digits, -24) : std::ldexp(1024 + digits, exponent - 25));
 }
 
 /// The boxes of an array whose rows are all there.
@@ -154,8 +140,8 @@ class NpyFrame final : public FrameReader<D, Real> {
   /// Reads the next `count` rows.
   void read(std::size_t count, std::vector<Box<D, Real>>& boxes) {
     constexpr bool is_big_endian = std::endian::native == std::endian::big;
-    const bool is_plain = !header_.is_column_major && header_.kind == 'f' &&
-                          header_.number_bytes == sizeof(Real) && header_.is_big_endian == is_big_endian;
+    const bool is_plain = !header_.is_column_major && header_.type.kind == 'f' &&
+                          header_.type.bytes == sizeof(Real) && header_.type.is_big_endian == is_big_endian;
     boxes.resize(count);
     const std::size_t first = std::exchange(next_row_, next_row_ + count);
     if (is_plain && count > 0)
@@ -183,23 +169,16 @@ class NpyFrame final : public FrameReader<D, Real> {
     const std::size_t place = !header_.is_column_major ? (2 * row + corner) * D + axis
                               : header_.is_corners     ? (2 * axis + corner) * header_.rows + row
                                                        : (corner * D + axis) * header_.rows + row;
-    const std::size_t size = header_.number_bytes;
-    const char* const bytes = input_->bytes().data() + header_.bytes + place * size;
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < size; ++i)
-      bits = bits << 8 | static_cast<unsigned char>(bytes[header_.is_big_endian ? i : size - 1 - i]);
-    if (header_.kind == 'f')
-      return size == 8   ? std::bit_cast<double>(bits)
-             : size == 4 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
-                         : value_of_half(bits);
-    const std::size_t unused = 64 - 8 * size;
-    const std::int64_t value = static_cast<std::int64_t>(bits << unused) >> unused;
-    constexpr std::int64_t most = std::int64_t{1} << 53;
-    if (header_.kind == 'u' && bits <= std::uint64_t{most}) return static_cast<double>(bits);
-    if (header_.kind == 'i' && value >= -most && value <= most) return static_cast<double>(value);
+    const NumberType& type = header_.type;
+    const std::uint64_t bits = bits_at(input_->bytes().data() + header_.bytes + place * type.bytes, type);
+    constexpr std::uint64_t most = std::uint64_t{1} << 53;
+    const std::int64_t integer = integer_of(bits, type);
+    const bool is_negative = type.kind == 'i' && integer < 0;
+    if (type.kind == 'f' || (is_negative ? 0 - static_cast<std::uint64_t>(integer) : bits) <= most)
+      return value_of(bits, type);
     throw FileError(fmt::format("{}: row {} holds {}; expected at most 2^53, up to which a double is exact",
                                 input_->name(), row,
-                                header_.kind == 'u' ? fmt::to_string(bits) : fmt::to_string(value)));
+                                type.kind == 'u' ? fmt::to_string(bits) : fmt::to_string(integer)));
   }
 
   [[noreturn]] void refuse_box(std::size_t row, const Box<D, Real>& box) const {
@@ -224,7 +203,7 @@ class NpyFrame final : public FrameReader<D, Real> {
 
 AnyFrameReader open_npy(std::unique_ptr<Input> input, const ReadOptions&) {
   const NpyHeader header = read_header(input->bytes(), input->name());
-  const bool are_floats = header.kind == 'f' && header.number_bytes <= 4;
+  const bool are_floats = header.type.kind == 'f' && header.type.bytes <= 4;
   return for_boxes_of(header.dimension, are_floats ? Precision::float32 : Precision::float64,
                       [&]<int D, typename Real>() -> AnyFrameReader {
                         return std::make_unique<NpyFrame<D, Real>>(std::move(input), header);

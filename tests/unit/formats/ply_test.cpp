@@ -146,7 +146,7 @@ TEST(Ply, IsRefusedNamingTheByteOfItsNumbers) {
   EXPECT_THAT(with("2 97", "-2 97"), HasSubstr("a list of -2 numbers"));
   EXPECT_THAT(with("3 0 1 2 1", "2 0 1 1"), HasSubstr("face 0 has 2 corners; expected at least 3"));
   EXPECT_THAT(with("3 0 1 2", "3 0 1 4"), HasSubstr("face 0 names the vertex 4; expected one below 4"));
-  EXPECT_THAT(with("3 0 1 2", "3 0 1 2.0"), HasSubstr("'2.0'; expected a whole number"));
+  EXPECT_THAT(with("3 0 1 2", "3 0 1 2.5"), HasSubstr("the number 2.5; expected a whole number"));
   EXPECT_THAT(with("0.1 1.5", "0.1 1e99"), HasSubstr("'1e99'; expected a number"));
   EXPECT_THAT(with("5\n", "5 6\n"), HasSubstr("expected the end of the file"));
 }

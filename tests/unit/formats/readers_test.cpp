@@ -147,7 +147,8 @@ TEST_F(Csv, RefusesWhatIsWrongNamingFileAndLine) {
   EXPECT_THAT(refusal_of(framed + "1,1.5,0,0,1,1\n"), HasSubstr("column box is '1.5'"));
   EXPECT_THAT(refusal_of(framed + "1,4000000000,0,0,1,1\n"), HasSubstr("expected a box from 0 to 2"));
   EXPECT_THAT(refusal_of(framed + "0,1,0,0,1,1\n"), HasSubstr("expected each box once in a frame"));
-  EXPECT_THAT(refusal_of(framed + "1,1,0,0,1,1\n1,1,0,0,1,1\n"), HasSubstr("bad.csv:5: column box is '1'"));
+  EXPECT_THAT(refusal_of(framed + "1,1,0,0,1,1\n1,1,0,0,1,1\n"),
+              HasSubstr("bad.csv:5: box 1 is there again in frame 1"));
   EXPECT_THAT(refusal_of(framed + "2,0,0,0,1,1\n"),
               AllOf(HasSubstr("column frame is '2'"), HasSubstr("expected 0 or 1")));
   EXPECT_THAT(refusal_of(framed + "1,0,0,0,1,1\n0,0,0,0,1,1\n"), HasSubstr("expected 1 or 2"));

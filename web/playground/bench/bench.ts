@@ -33,8 +33,7 @@ export class Bench {
   private async answer(request: Request): Promise<void> {
     switch (request.kind) {
       case "file":
-        this.file = recordedScene(request.recorded);
-        this.sceneKey = "";
+        this.open(request.name, request.bytes);
         return;
       case "setup":
         this.arrange(request.setup);
@@ -53,6 +52,14 @@ export class Bench {
         });
         return;
     }
+  }
+
+  private open(name: string, bytes: Uint8Array): void {
+    const { dimension, frames, warning } = this.engine.read(name, bytes);
+    this.file = recordedScene({ dimension, frames });
+    this.sceneKey = "";
+    const boxes = frames[0]!.length / (2 * dimension);
+    this.send({ kind: "opened", opened: { name, boxes, frames: frames.length, warning } });
   }
 
   /** The last frame's time and held box. (Its boxes were handed over.) */

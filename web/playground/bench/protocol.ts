@@ -2,7 +2,6 @@
 import type { Algorithm, Outline, Statistics } from "../engine/types.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
 import type { Edit } from "../scene/edits.ts";
-import type { Recorded } from "../scene/frames.ts";
 import type { Bounds, Dimension } from "../scene/scene.ts";
 
 export interface PanelChoice {
@@ -31,7 +30,7 @@ export interface Start {
 
 export type Request =
   | { kind: "setup"; setup: Setup }
-  | { kind: "file"; recorded: Recorded }
+  | { kind: "file"; name: string; bytes: Uint8Array<ArrayBuffer> }
   | { kind: "frame"; time: number; held: Edit | null }
   | { kind: "measure"; counts: number[]; specs: string[] }
   | { kind: "duel" };
@@ -106,8 +105,18 @@ export interface Duel {
   others: { spec: string; milliseconds: number }[];
 }
 
+/** A file that was read. */
+export interface Opened {
+  name: string;
+  boxes: number;
+  frames: number;
+  /** How it was read, where that is not certain. */
+  warning: string;
+}
+
 export type Reply =
   | { kind: "ready"; algorithms: Algorithm[] }
+  | { kind: "opened"; opened: Opened }
   | { kind: "shown"; shown: Shown }
   | { kind: "measured"; measured: Measured | null }
   | { kind: "duel"; duel: Duel }

@@ -28,6 +28,10 @@
 
 #include "core/number_text.hpp"
 #include "kernels/observed_tests.hpp"
+#ifndef BROADSIDE_OBSERVE
+#include "lab/formats/csv/csv_rows.hpp"
+#include "lab/formats/descriptions.hpp"
+#endif
 #include "lab/scenes/descriptions.hpp"
 #include "paper/listings/descriptions.hpp"
 
@@ -249,6 +253,48 @@ void make_scene(std::size_t count, std::uint32_t seed) {
   throw InvalidSpec("no scene '" + spec.name + "'; expected one of: " + names);
 }
 
+#ifndef BROADSIDE_OBSERVE  // what only one of the two modules has
+
+/// Opens a file by its content, as the program does, in the formats whose readers take no other library.
+lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
+  for (const lab::Format& format : {lab::readers::trace(), lab::readers::mesh(), lab::readers::map()}) {
+    if (format.recognises(file->beginning(), "")) return format.open(std::move(file), {});
+  }
+  if (file->beginning().starts_with("\x1F\x8B"))
+    throw lab::FileError(file->name() + ": is compressed by gzip; expected it decompressed, or the program");
+  return lab::readers::open_csv(std::move(file), {});
+}
+
+/// The boxes of all frames, as floats; their numbers are the dimension and then how many each frame has.
+void read_frames(lab::AnyFrameReader frames, const std::string& name) {
+  constexpr std::size_t most_boxes = 500'000;
+  constexpr std::size_t most_numbers = 60'000'000;
+  frames = lab::with_precision(std::move(frames), lab::Precision::float32, name);
+  const auto read = [&]<int D, typename Real>(lab::FrameReader<D, Real>& reader) {
+    std::vector<Box<D, Real>> boxes = reader.first();
+    answers.numbers.push_back(D);
+    lab::Step<D, Real> step;
+    do {
+      if (boxes.size() > most_boxes || answers.boxes.size() > most_numbers)
+        throw lab::FileError(name + ": " + std::to_string(boxes.size()) + " boxes in frame " +
+                             std::to_string(answers.numbers.size() - 1) +
+                             "; the playground takes up to 500,000, and 60 million numbers in all frames. The program "
+                             "takes more.");
+      answers.numbers.push_back(static_cast<double>(boxes.size()));
+      for (const Box<D, Real>& box : boxes) {
+        for (const Real number : box.min) answers.boxes.push_back(static_cast<float>(number));
+        for (const Real number : box.max) answers.boxes.push_back(static_cast<float>(number));
+      }
+      if (!reader.next(step)) break;
+      lab::apply(step, boxes);
+    } while (true);
+    answers.text = reader.warning();
+  };
+  std::visit([&](const auto& reader) { read(*reader); }, frames);
+}
+
+#endif
+
 /// Does what an exported function is for, and answers what went wrong.
 template <typename Body>
 int answer(Body body) {
@@ -345,6 +391,18 @@ BROADSIDE_EXPORT(list_scenes)()->int {
     });
   });
 }
+
+#ifndef BROADSIDE_OBSERVE
+/// Reads a file whose name is the text's first line, and whose bytes follow it.
+BROADSIDE_EXPORT(read_file)()->int {
+  return answer([] {
+    const std::size_t end = input.text.find('\n');
+    const std::string name = input.text.substr(0, end);
+    const std::string_view bytes = std::string_view(input.text).substr(end + 1);
+    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes)), name);
+  });
+}
+#endif
 
 BROADSIDE_EXPORT(make_boxes)(std::uint32_t count, std::uint32_t seed, int dimension)->int {
   return answer_in(dimension, [&]<int D>() { make_scene<D>(count, seed); });

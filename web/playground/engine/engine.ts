@@ -2,6 +2,7 @@
 import engineBytes from "../../../build/playground/engine/engine.wasm";
 import observingBytes from "../../../build/playground/engine/observing.wasm";
 
+import type { Recorded } from "../scene/frames.ts";
 import { EngineModule } from "./module.ts";
 import type { Algorithm, Engine, Frame, Observation, Outline, Scene, Search, Statistics, Tracker } from "./types.ts";
 
@@ -101,6 +102,20 @@ class LoadedEngine implements Engine {
     const scenes = JSON.parse(this.#plain.text()) as { name: string; summary: string; dimensions: number[] }[];
     return scenes.flatMap(({ name, summary, dimensions }) =>
       dimensions.map((dimension) => ({ name, summary, dimension })));
+  }
+
+  read(name: string, bytes: Uint8Array): Recorded & { warning: string } {
+    const line = new TextEncoder().encode(name.replaceAll("\n", " ") + "\n");
+    const text = new Uint8Array(line.length + bytes.length);
+    text.set(line);
+    text.set(bytes, line.length);
+    this.#plain.putBytes(text);
+    this.#plain.call((exports) => exports.read_file());
+    const [dimension = 2, ...counts] = this.#plain.numbers() as [2 | 3, ...number[]];
+    const all = this.#plain.boxes();
+    let begin = 0;
+    const frames = counts.map((count) => all.slice(begin, begin += 2 * dimension * count));
+    return { dimension, frames, warning: this.#plain.text() };
   }
 
   scene(spec: string, count: number, seed: number, dimension: 2 | 3 = 2): Float32Array<ArrayBuffer> {

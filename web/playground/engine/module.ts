@@ -25,6 +25,8 @@ interface Exports {
   free_tracker(tracker: number): void;
   list_scenes(): number;
   make_boxes(count: number, seed: number, dimension: number): number;
+  /** Not of the observing module. */
+  read_file(): number;
 }
 
 /** What the package's module takes, and what else the standard library asks of the system: files, arguments and a clock,
@@ -55,7 +57,10 @@ export class EngineModule {
   }
 
   putText(text: string): void {
-    const bytes = new TextEncoder().encode(text);
+    this.putBytes(new TextEncoder().encode(text));
+  }
+
+  putBytes(bytes: Uint8Array): void {
     const at = this.#exports.input_text(bytes.length);
     new Uint8Array(this.#exports.memory.buffer, at, bytes.length).set(bytes);
   }

@@ -3,6 +3,8 @@
 // Boxes are packed: the minima of one box and then its maxima, so 4 numbers a box in 2D and 6 in 3D. An id is a box's
 // place in the array, from 0.
 
+import type { Recorded } from "../scene/frames.ts";
+
 /** What a search counted. */
 export interface Statistics {
   tests: number;       // pairs of boxes compared
@@ -87,6 +89,8 @@ export interface Engine {
   /** The lab's generators; one with two dimensions is there twice. */
   scenes(): Scene[];
   scene(spec: string, count: number, seed: number, dimension?: 2 | 3): Float32Array<ArrayBuffer>;
+  /** The boxes of a file, by the program's own readers (docs/formats.md); the warning says how it was read. */
+  read(name: string, bytes: Uint8Array): Recorded & { warning: string };
 }
 
 /**

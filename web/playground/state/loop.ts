@@ -3,7 +3,7 @@
 import { effect } from "@preact/signals";
 
 import type { Client } from "../bench/client.ts";
-import type { Reply, Setup } from "../bench/protocol.ts";
+import type { Opened, Reply, Setup } from "../bench/protocol.ts";
 import {
   algorithms, clock, duel, duelling, duration, held, latest, measured, measuring, problem, setup, shown, state, told,
 } from "./store.ts";
@@ -38,7 +38,8 @@ export class Loop {
   private telling = false;
   private toldAt = -Infinity;
 
-  constructor(private readonly client: Client, private readonly paint: () => void) {
+  constructor(private readonly client: Client, private readonly paint: () => void,
+              private readonly opened: (file: Opened) => void) {
     effect(() => {
       void setup.value;
       void held.value;
@@ -63,6 +64,9 @@ export class Loop {
     switch (reply.kind) {
       case "ready":
         algorithms.value = reply.algorithms;
+        break;
+      case "opened":
+        this.opened(reply.opened);
         break;
       case "shown":
         this.underway = false;

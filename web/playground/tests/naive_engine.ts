@@ -32,6 +32,22 @@ const algorithms = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree"
   tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", default: "auto", type: "number", min: 0 }] : [],
 }));
 
+/** Of a table with the columns frame, box and bounds, in order; or of a point of GeoJSON. */
+function framesOf(name: string, text: string): Float32Array<ArrayBuffer>[] {
+  if (text.startsWith("{")) {
+    const [x, y] = (JSON.parse(text) as { coordinates: [number, number] }).coordinates;
+    return [Float32Array.from([x, y, x, y])];
+  }
+  if (!text.startsWith("frame,box,")) throw new Error(`${name}:1: no such columns`);
+  const frames: number[][] = [];
+  for (const line of text.trim().split("\n").slice(1)) {
+    const [frame = 0, box = 0, ...bounds] = line.split(",").map(Number);
+    frames[frame] ??= [...frames[frame - 1] ?? []];
+    frames[frame].splice(4 * box, 4, ...bounds);
+  }
+  return frames.map((frame) => Float32Array.from(frame));
+}
+
 export async function loadEngine(): Promise<Engine> {
   return {
     algorithms: () => algorithms,
@@ -61,5 +77,6 @@ export async function loadEngine(): Promise<Engine> {
     advise: () => "",
     scenes: () => [],
     scene: () => new Float32Array(),
+    read: (name, bytes) => ({ dimension: 2, frames: framesOf(name, new TextDecoder().decode(bytes)), warning: "" }),
   };
 }

@@ -88,7 +88,7 @@ export function App({ stage }: { stage: Stage }) {
           </>
         )}
       </main>
-      {hovering.value && <div class="drop-here" aria-hidden="true">Drop a CSV, trace, PLY or GeoJSON</div>}
+      {hovering.value && <div class="drop-here" aria-hidden="true">Drop a CSV, trace, PLY, OBJ or GeoJSON</div>}
       {speaking}
     </>
   );

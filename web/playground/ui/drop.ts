@@ -1,9 +1,8 @@
 // Files that are dropped on the page or chosen. They stay in it.
 import { batch, signal } from "@preact/signals";
 
-import { readBoxes } from "../files/read.ts";
+import type { Opened } from "../bench/protocol.ts";
 import { fileScene } from "../scene/catalogue.ts";
-import { numbersPerBox } from "../scene/scene.ts";
 import { bench } from "../state/client.ts";
 import { changeScene, chooseScene, fileName, patch, problem, say } from "../state/store.ts";
 import { plural } from "./numbers.ts";
@@ -12,23 +11,25 @@ import { wholeView } from "./view.ts";
 /** Whether a file hovers over the page. */
 export const hovering = signal(false);
 
+/** Has the bench read a file, which then answers that it is opened, or why not. */
 export async function openFile(file: File): Promise<void> {
   try {
-    const recorded = readBoxes(new Uint8Array(await file.arrayBuffer()), file.name);
-    bench().send({ kind: "file", recorded });
-    const count = recorded.frames[0]!.length / numbersPerBox(recorded.dimension);
-    batch(() => {
-      fileName.value = file.name;
-      patch({ mode: "play" });
-      chooseScene(fileScene);
-      // Another file of the same name is another scene.
-      changeScene({ count, seed: Math.floor(performance.now()) });
-      wholeView();
-    });
-    say(`${file.name}: ${plural(count, "box")}, ${plural(recorded.frames.length, "frame")}`);
+    bench().send({ kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
   } catch (error) {
     problem.value = error instanceof Error ? error.message : String(error);
   }
+}
+
+export function showFile({ name, boxes, frames, warning }: Opened): void {
+  batch(() => {
+    fileName.value = name;
+    patch({ mode: "play" });
+    chooseScene(fileScene);
+    // Another file of the same name is another scene.
+    changeScene({ count: boxes, seed: Math.floor(performance.now()) });
+    wholeView();
+  });
+  say(`${name}: ${plural(boxes, "box")}, ${plural(frames, "frame")}${warning === "" ? "" : `. ${warning}`}`);
 }
 
 export function acceptDrops(): void {

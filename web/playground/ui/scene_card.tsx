@@ -65,7 +65,7 @@ export function SceneCard() {
           }} />
         </label>
       </div>
-      <p class="note">CSV, trace, PLY or GeoJSON; or drop it anywhere on the page.</p>
+      <p class="note">CSV, trace, PLY, OBJ or GeoJSON; or drop it anywhere on the page.</p>
     </Card>
   );
 }

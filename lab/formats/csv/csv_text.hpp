@@ -17,64 +17,30 @@ enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks =
 /// The separator of a line: the first of semicolon, comma and tab that it has, and blanks otherwise.
 Separator separator_of(std::string_view line);
 
-/// Whether a character may stand around a value.
-constexpr bool is_padding(char c, Separator separator) noexcept {
-  return c == ' ' || (c == '\t' && separator != Separator::tab);
-}
-
-/// The fields of one line, from left to right. Spaces and a pair of double quotes around a value are not part
-/// of it.
-class CsvFields {
- public:
-  CsvFields(const char* begin, const char* end, Separator separator);
-  CsvFields(std::string_view line, Separator separator)
-      : CsvFields(line.data(), line.data() + line.size(), separator) {}
-
-  /// Whether there was another field; `field` is then that one.
-  bool next(std::string_view& field);
-
-  /// What the field taken last says: two quotes in one that stood in quotes are one.
-  void read_text(std::string_view field, std::string& text) const;
-
-  /// Whether the field taken last stood in quotes.
-  bool is_quoted() const noexcept { return is_quoted_; }
-
-  /// Where the next field begins.
-  const char* at() const noexcept { return at_; }
-
-  /// Whether there is a next field. A line has at least one, which may be empty.
-  bool more() const noexcept { return more_; }
-
- private:
-  bool take_quoted(std::string_view& field);
-  void skip_padding();
-  bool take_separator();
-
-  const char* at_;
-  const char* end_;
-  Separator separator_;
-  bool more_ = true;
-  bool is_quoted_ = false;
+/// A field of a line, without the spaces and the pair of double quotes around its value.
+struct CsvField {
+  std::string_view text;
+  bool is_quoted = false;
 };
+
+/// Cuts a line into its fields, at least one.
+void split(std::string_view line, Separator separator, std::vector<CsvField>& fields);
+
+/// The texts of a line's fields.
+std::vector<std::string_view> fields_of(std::string_view line, Separator separator);
+
+/// What a field says: two quotes in one that stood in quotes are one.
+std::string unquoted(const CsvField& field);
 
 /// Appends a field to a line with commas: in quotes where it could be read as anything else.
 void append_csv_field(std::string& line, std::string_view field);
 
-/// Whether a quoted field of the line goes on in the next line.
-bool has_open_quote(std::string_view line, Separator separator);
-
-/// All fields of a line.
-std::vector<std::string_view> fields_of(std::string_view line, Separator separator);
-
-/// Whether all of `text` is a number, which may be infinite but not a NaN, in the range of a `Number`;
-/// `value` is then the nearest one.
-bool parse_number(std::string_view text, float& value);
-bool parse_number(std::string_view text, double& value);
-bool parse_number(std::string_view text, std::uint32_t& value);
+/// Whether a quoted field of a line goes on in the next line.
+bool has_open_quote(std::string_view line, const std::vector<CsvField>& fields);
 
 /// Whether `value` is exactly what `text` says, if that is a whole number without point or exponent; true of
-/// any other text.
-bool is_whole_number_of(std::string_view text, double value);
+/// any other text. So are identifiers and fixed-point coordinates written, which must not lose digits.
+bool is_held(std::string_view text, double value);
 
 /// A file's lines, one after the other. A copy goes on from the same place.
 class CsvLines {
@@ -83,11 +49,7 @@ class CsvLines {
   explicit CsvLines(Input& input);
 
   /// Whether there was another line; line() is then that one, without its end.
-  bool next() {
-    if (rest_.empty()) return false;
-    take();
-    return true;
-  }
+  bool next();
 
   std::string_view line() const noexcept { return line_; }
 
@@ -111,8 +73,6 @@ class CsvLines {
   [[noreturn]] void refuse(std::uint64_t line, const std::string& found, const std::string& expected) const;
 
  private:
-  void take();
-
   Input* input_;  // not a reference, so that lines can be assigned
   std::uint64_t passed_ = 0;
   std::string_view before_slice_;  // what was left out; its lines are counted where they are told
