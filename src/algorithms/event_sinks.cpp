@@ -1,8 +1,6 @@
 // append_moved().
 #include "algorithms/event_sinks.hpp"
 
-#include "core/nan_box.hpp"
-
 namespace broadside::algorithm {
 
 template <int D>

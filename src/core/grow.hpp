@@ -28,10 +28,20 @@ void shrink(Vectors&... vectors) {
   (vectors.shrink_to_fit(), ...);
 }
 
-/// The bytes that vectors have reserved.
+/// The bytes that vectors, or arrays of vectors, have reserved.
+template <typename Vectors>
+std::size_t bytes_of(const Vectors& vectors) noexcept {
+  if constexpr (requires { vectors.capacity(); }) {
+    return vectors.capacity() * sizeof(typename Vectors::value_type);
+  } else {
+    std::size_t bytes = 0;
+    for (const auto& vector : vectors) bytes += bytes_of(vector);
+    return bytes;
+  }
+}
 template <typename... Vectors>
 std::size_t bytes_of(const Vectors&... vectors) noexcept {
-  return (std::size_t{0} + ... + (vectors.capacity() * sizeof(typename Vectors::value_type)));
+  return (std::size_t{0} + ... + bytes_of(vectors));
 }
 
 /// Clears vectors and releases their memory. `vector = {}` would assign an empty list and keep the memory.

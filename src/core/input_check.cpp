@@ -2,13 +2,8 @@
 #include "core/input_check.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
-
-#include "broadside/error.hpp"
 
 #include "core/float_environment.hpp"
 #include "core/lean.hpp"

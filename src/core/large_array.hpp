@@ -53,15 +53,4 @@ void renew(LargeArray<T>& array, std::size_t size) {
   array.resize(size);
 }
 
-/// Makes room in a vector, whose new memory is to come in large pages.
-template <typename Vector>
-void reserve_large(Vector& vector, std::size_t size) {
-  if (size <= vector.capacity()) return;
-  Vector larger;
-  larger.reserve(size);
-  prefer_large_pages(larger.data(), larger.capacity() * sizeof(typename Vector::value_type));
-  larger.insert(larger.end(), vector.begin(), vector.end());
-  vector.swap(larger);
-}
-
 }  // namespace broadside::core

@@ -1,4 +1,4 @@
-// Whether this is a lean build.
+// What this build leaves out: whether it is a lean one, and which dimensions its algorithms have.
 #pragma once
 
 namespace broadside::core {
@@ -15,5 +15,17 @@ inline constexpr bool is_lean = false;
 
 /// A text that describes an algorithm to users; empty in lean builds.
 constexpr const char* unless_lean(const char* text) noexcept { return is_lean ? "" : text; }
+
+/// Whether BROADSIDE_DIMENSIONS lists D: CMakeLists.txt defines the macros.
+template <int D>
+inline constexpr bool has_dimension = true;
+#if defined(BROADSIDE_WITHOUT_2D)
+template <>
+inline constexpr bool has_dimension<2> = false;
+#endif
+#if defined(BROADSIDE_WITHOUT_3D)
+template <>
+inline constexpr bool has_dimension<3> = false;
+#endif
 
 }  // namespace broadside::core

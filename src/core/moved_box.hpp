@@ -1,8 +1,9 @@
 // MovedBox: a box that changed from one frame to the next, as structures and kernels take it, and where they
-// write what it meets.
+// write what it meets. nan_box(): the sentinel for "no box here".
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "broadside/box.hpp"
 #include "broadside/executor.hpp"
@@ -13,7 +14,17 @@ namespace broadside::core {
 /// Sentinel: a box that has no slot in a structure, or a chain without a first block.
 inline constexpr std::uint32_t no_slot = 0xffffffffU;
 
-/// Made by append_moved() of the interface. At least one of `before` and `now` is present.
+/// A box of NaNs: overlaps nothing, not even an infinite box, without asking whether it is present. So it
+/// pads unused SIMD lanes. The absent box would not do: it overlaps an infinite one.
+template <int D>
+constexpr Box<D> nan_box() noexcept {
+  Box<D> box{};
+  box.min.fill(std::numeric_limits<float>::quiet_NaN());
+  box.max.fill(std::numeric_limits<float>::quiet_NaN());
+  return box;
+}
+
+/// Made by append_moved(). At least one of `before` and `now` is present.
 template <int D>
 struct MovedBox {
   Box<D> before;  ///< nan_box() if it was absent

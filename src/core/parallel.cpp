@@ -11,13 +11,10 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
-#include "core/delivery.hpp"
 #include "core/filter_sink.hpp"
 #include "core/float_environment.hpp"
-#include "core/lean.hpp"
 
 namespace broadside {
 

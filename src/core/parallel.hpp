@@ -11,8 +11,8 @@
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 
+#include "core/delivery.hpp"
 #include "core/lean.hpp"
-#include "core/pair_blocks.hpp"
 
 namespace broadside::core {
 
@@ -20,6 +20,8 @@ namespace broadside::core {
 struct Range {
   std::size_t begin;
   std::size_t end;
+
+  std::size_t size() const noexcept { return end - begin; }
 };
 
 /// Shares work among workers. A worker is one task of the executor, which takes piece after piece; it runs in

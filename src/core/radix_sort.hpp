@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grow.hpp"
 #include "core/large_array.hpp"
 #include "core/parallel.hpp"
 
@@ -38,10 +39,7 @@ class RadixSort {
   std::span<const KeyedPlace> sort(Parallel& parallel);
 
   /// The bytes held.
-  std::size_t bytes() const noexcept {
-    return (places_.capacity() + other_.capacity()) * sizeof(KeyedPlace) +
-           counts_.capacity() * sizeof(std::uint32_t);
-  }
+  std::size_t bytes() const noexcept { return bytes_of(places_, other_, counts_); }
 
  private:
   void sort_by_ranges(Parallel& parallel, int digit);

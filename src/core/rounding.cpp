@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 #include "core/sample.hpp"
@@ -135,17 +134,11 @@ float QuantileRounding::operator()(double value) const {
 template <int D>
 std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) {
   std::array<std::vector<double>, D> minima;
-  const std::size_t tries = std::min(boxes.size(), 4 * max_fitted);
-  std::size_t taken = 0;
-  for (std::size_t i = 0; i < tries && taken < max_fitted; ++i) {
-    // A copy, since another thread may change the caller's; a NaN has no median.
-    const Box<D, double> box = boxes[tries == boxes.size() ? i : sampled_place(i, boxes.size())];
-    if (!is_present(box)) continue;
-    ++taken;
+  for_present_sample(boxes, max_fitted, [&minima](const Box<D, double>& box) {
     for (int axis = 0; axis < D; ++axis) {
       if (std::isfinite(box.min[axis])) minima[axis].push_back(box.min[axis]);
     }
-  }
+  });
   std::array<LinearRounding, D> fit;
   for (int axis = 0; axis < D; ++axis) fit[axis] = fit_axis(minima[axis]);
   return fit;

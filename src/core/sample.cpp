@@ -1,9 +1,6 @@
 // A sample of the boxes, axis by axis: the signals from which algorithms choose their tunables.
 #include "core/sample.hpp"
 
-#include <algorithm>
-#include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -73,7 +70,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
     maxima_.clear();
     extents_.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      const Box<D>& box = boxes[count == boxes.size() ? i : sampled_place(i, boxes.size())];
+      const Box<D>& box = boxes[sampled_place(i, count, boxes.size())];
       const float min = without_nan(box.min[axis]);
       const float max = without_nan(box.max[axis]);
       sample.minima.push_back(min);
@@ -103,6 +100,15 @@ std::array<int, D> Sample<D>::axes_by_overlap() const {
   std::iota(axes.begin(), axes.end(), 0);
   // Not a stable sort, which takes memory.
   std::ranges::sort(axes, {}, [this](int axis) { return std::pair(axes_[axis].overlap, axis); });
+  return axes;
+}
+
+template <int D>
+std::array<int, D> Sample<D>::axes_from(int first) const {
+  std::array<int, D> axes = axes_by_overlap();
+  for (int i = D - 1; i > 0; --i) {
+    if (axes[i] == first) std::swap(axes[i], axes[i - 1]);
+  }
   return axes;
 }
 

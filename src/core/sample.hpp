@@ -21,7 +21,7 @@ struct AxisSample {
 
   float low = 0;           ///< the finite bounds between which the sampled boxes lie, except far outliers
   float high = 0;          ///<
-  float extent = 0;        ///< the median of the boxes' extents, at most FLT_MAX
+  float extent = 0;        ///< the median of the boxes' extents, at max_count FLT_MAX
   double mean_extent = 0;  ///< and their mean, an extent counting as no more than the bounds' distance
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
@@ -41,6 +41,25 @@ inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
   return static_cast<std::size_t>(fraction * std::uint64_t{boxes} >> 32);
 }
 
+/// The same where `count` of them are sampled: all in order if there are no more.
+inline std::size_t sampled_place(std::size_t i, std::size_t count, std::size_t boxes) {
+  return count == boxes ? i : sampled_place(i, boxes);
+}
+
+/// Calls `take(box)` for up to `max_count` of the boxes that are present, sampled from all.
+template <int D, typename Real, typename Take>
+void for_present_sample(std::span<const Box<D, Real>> boxes, std::size_t max_count, Take take) {
+  const std::size_t tries = std::min(boxes.size(), 4 * max_count);
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < tries && taken < max_count; ++i) {
+    // A copy, since another thread may change the caller's.
+    const Box<D, Real> box = boxes[sampled_place(i, tries, boxes.size())];
+    if (!is_present(box)) continue;
+    take(box);
+    ++taken;
+  }
+}
+
 /// A sample of at most some hundred boxes: the same for the same boxes, spread over the array without a
 /// period that a regular scene could share. Cost O(1) for large arrays.
 template <int D>
@@ -53,6 +72,9 @@ class Sample {
 
   /// The axes, the one with the least overlap first: the best to sweep along.
   std::array<int, D> axes_by_overlap() const;
+
+  /// The same with the axis `first` before the others, unless it is -1.
+  std::array<int, D> axes_from(int first) const;
 
  private:
   std::array<AxisSample, D> axes_;

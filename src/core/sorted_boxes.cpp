@@ -16,15 +16,8 @@ std::span<const SortedBox<D>> SortedBoxes<D>::sort(std::span<const Box<D>> boxes
   renew(sorted_, boxes.size());
   parallel.for_ranges(boxes.size(), [&](Range range, std::size_t) {
     SortedBox<D>* out = sorted_.data() + range.begin;
-    for (const KeyedPlace& place : order.subspan(range.begin, range.end - range.begin)) {
-      const Box<D>& box = boxes[place.place];
-      for (int axis = 0; axis < D; ++axis) {
-        out->box.min[axis] = box.min[axes[axis]];
-        out->box.max[axis] = box.max[axes[axis]];
-      }
-      out->id = BoxId{place.place};
-      ++out;
-    }
+    for (const KeyedPlace& place : order.subspan(range.begin, range.size()))
+      *out++ = {turned(boxes[place.place], axes), BoxId{place.place}};
   });
   return sorted_;
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
@@ -13,6 +15,17 @@
 
 namespace broadside::core {
 
+/// The box with axis a being `axes[a]` of its own.
+template <int D>
+Box<D> turned(const Box<D>& box, const std::type_identity_t<std::array<int, D>>& axes) {
+  Box<D> turned;
+  for (int axis = 0; axis < D; ++axis) {
+    turned.min[axis] = box.min[axes[axis]];
+    turned.max[axis] = box.max[axes[axis]];
+  }
+  return turned;
+}
+
 /// A box, its axes in a sweep's order (axis 0 is swept along), and its place in the caller's array.
 template <int D>
 struct SortedBox {
@@ -20,12 +33,18 @@ struct SortedBox {
   BoxId id;
 };
 
+/// A sorted box in a node of a tree. Bit a of `dedup_mask` is set if the box begins before the node's region
+/// on axis a; the rest as in a run of the kernels.
+struct SortedReference {
+  std::uint32_t place;  ///< among the sorted boxes
+  std::uint32_t dedup_mask;
+};
+
 /// Sorts boxes by where they begin on the swept axis; keeps its memory from one sort to the next.
 template <int D>
 class SortedBoxes {
  public:
-  /// The boxes with axis a being `axes[a]` of the caller's, ascending by min[0], ties in the caller's order.
-  /// Valid until the next call.
+  /// The boxes, turned, ascending by min[0], ties in the caller's order. Valid until the next call.
   std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes,
                                      Parallel& parallel);
   std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes) {

@@ -3,7 +3,6 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "core/dimensions.hpp"
 #include "core/lean.hpp"
 
 namespace broadside::core {

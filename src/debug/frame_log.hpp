@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <list>
+#include <utility>
 #include <vector>
 
 #include "broadside/debug/history.hpp"
 
-namespace broadside::core {
+#include "core/grow.hpp"
+
+namespace broadside::debug {
 
 /// Keeps one earlier frame whole, and what changed since. The oldest changes become a part of the
 /// whole frame when there are more of them than allowed, or when they take more bytes than allowed.
@@ -18,21 +21,46 @@ class FrameLog {
 
   /// Makes room for a frame, in which `frame.changed` says what changed, and `toggled` which pairs became
   /// ignored or no longer are. It counts when add() has taken it.
-  void prepare(const Frame<D, Real>& frame, const std::vector<Pair>& toggled);
+  void prepare(const Frame<D, Real>& frame, const std::vector<Pair>& toggled) {
+    Step<D, Real> step{frame.boxes.size(), {frame.changed.begin(), frame.changed.end()}, {}, {}, toggled};
+    for (const BoxId id : step.changed) {
+      const bool is_there = index(id) < frame.boxes.size();
+      step.boxes.push_back(is_there ? frame.boxes[index(id)] : absent_box<D, Real>());
+      if (!frame.filters.empty()) step.filters.push_back(is_there ? frame.filters[index(id)] : Filter{});
+    }
+    if (count_ == 0) {
+      first_ = {};
+      first_.next(step);
+      return;
+    }
+    while (!steps_.empty() && (steps_.size() >= max_frames_ || bytes_ + bytes_of(step) > max_bytes_)) {
+      Replay<D, Real> second = first_;  // a step that is taken by halves could not be taken again
+      second.next(steps_.front());
+      first_ = std::move(second);
+      bytes_ -= bytes_of(steps_.front());
+      steps_.pop_front();
+    }
+    prepared_.clear();
+    prepared_.push_back(std::move(step));
+  }
 
   /// Takes the frame that was prepared last.
-  void add() noexcept;
+  void add() noexcept {
+    if (count_++ == 0) return;
+    bytes_ += bytes_of(prepared_.front());
+    steps_.splice(steps_.end(), prepared_);
+  }
 
   /// The frames that are kept.
-  History<D, Real> history() const;
+  History<D, Real> history() const { return history_of(first_.frame(), {steps_.begin(), steps_.end()}); }
 
   /// The number of frames taken.
   std::size_t count() const noexcept { return count_; }
 
-  std::size_t bytes() const noexcept { return bytes_; }
-
  private:
-  static std::size_t bytes_of(const Step<D, Real>& step) noexcept;
+  static std::size_t bytes_of(const Step<D, Real>& step) noexcept {
+    return sizeof step + core::bytes_of(step.changed, step.boxes, step.filters, step.toggled);
+  }
 
   std::size_t max_frames_;
   std::size_t max_bytes_;
@@ -43,4 +71,4 @@ class FrameLog {
   std::size_t count_ = 0;
 };
 
-}  // namespace broadside::core
+}  // namespace broadside::debug

@@ -1,9 +1,8 @@
 // Histories played again, and written for people.
 #include "broadside/debug/history.hpp"
 
-#include <algorithm>
-
 #include "core/input_check.hpp"
+#include "debug/tracker_fault.hpp"
 
 namespace broadside {
 namespace {
@@ -18,10 +17,6 @@ void add_lines(std::string& text, std::size_t count, std::size_t max_items, cons
 std::string text_of(const Filter& filter) {
   return ", category " + std::to_string(filter.category) + ", mask " + std::to_string(filter.mask) +
          ", group " + std::to_string(filter.group) + (filter.is_static ? ", static" : "");
-}
-
-std::string text_of(Pair pair) {
-  return "(" + std::to_string(index(pair.first)) + ", " + std::to_string(index(pair.second)) + ")";
 }
 
 /// One box with its place, and its filter if there is one.
@@ -57,7 +52,7 @@ std::string text_of(const History<D, Real>& history, std::size_t max_items) {
   const auto add_pairs = [&](const char* what, std::span<const Pair> pairs) {
     if (pairs.empty()) return;
     text += what;
-    add_lines(text, pairs.size(), max_items, " ", [&](std::size_t i) { return text_of(pairs[i]); });
+    add_lines(text, pairs.size(), max_items, " ", [&](std::size_t i) { return debug::text_of(pairs[i]); });
   };
   add_pairs("\n  ignored:", history.ignored);
   for (std::size_t frame = 1; frame <= std::min(history.steps.size(), max_items); ++frame) {

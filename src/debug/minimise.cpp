@@ -2,10 +2,8 @@
 #include "broadside/debug/minimise.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace broadside {
 namespace {

@@ -1,24 +1,60 @@
-// What a tracker reports wrongly, by the definition, and the smallest history in which it does.
+// The pairs of a frame by the definition, what a tracker reports wrongly, and the smallest history in which
+// it does.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadside/debug/history.hpp"
+#include "broadside/debug/minimise.hpp"
+#include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-namespace broadside::core {
+namespace broadside::debug {
+
+using Pairs = std::vector<Pair>;
+
+/// Every pair of present boxes that overlap, accept each other and are not ignored; sorted. n^2 / 2 tests.
+template <int D, typename Real>
+Pairs pairs_by_definition(const Frame<D, Real>& frame) {
+  Pairs pairs;
+  const std::span<const Box<D, Real>> boxes = frame.boxes;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (!is_present(boxes[i])) continue;
+    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+      if (!overlap(boxes[i], boxes[j]) || !is_present(boxes[j])) continue;
+      if (!frame.filters.empty() && !accepts(frame.filters[i], frame.filters[j])) continue;
+      const Pair pair{BoxId(i), BoxId(j)};
+      if (frame.ignored == nullptr || !frame.ignored->contains(pair)) pairs.push_back(pair);
+    }
+  }
+  return pairs;
+}
 
 /// The pairs that began and those that ended, each sorted.
 struct EventPairs {
-  std::vector<Pair> begun;
-  std::vector<Pair> ended;
+  Pairs begun;
+  Pairs ended;
 
   friend bool operator==(const EventPairs&, const EventPairs&) = default;
 };
+
+/// Has a tracker take a frame, and sets `events` to what it reports.
+template <int D, typename Real>
+void take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, EventPairs& events) {
+  events = {};
+  PairCollector begun(events.begun);
+  PairCollector ended(events.ended);
+  tracker.update(frame, begun, ended);
+}
 
 /// A pair that was reported wrongly.
 struct Fault {
@@ -27,24 +63,88 @@ struct Fault {
   bool reported;  ///< although it did not; else not, although it did
 };
 
-/// Such as "reported that the pair (1, 2) began".
-std::string text_of(const Fault& fault);
+/// Such as "(1, 2)", and "reported that the pair (1, 2) began".
+inline std::string text_of(Pair pair) {
+  return "(" + std::to_string(index(pair.first)) + ", " + std::to_string(index(pair.second)) + ")";
+}
+
+inline std::string text_of(const Fault& fault) {
+  return std::string(fault.reported ? "reported" : "did not report") + " that the pair " +
+         text_of(fault.pair) + (fault.began ? " began" : " ended");
+}
+
+inline Pairs without(const Pairs& pairs, const Pairs& some) {
+  Pairs rest;
+  std::ranges::set_difference(pairs, some, std::back_inserter(rest));
+  return rest;
+}
 
 /// The events that lead from the pairs of one frame to those of the next, both sorted.
-EventPairs events_between(const std::vector<Pair>& before, const std::vector<Pair>& now);
+inline EventPairs events_between(const Pairs& before, const Pairs& now) {
+  return {without(now, before), without(before, now)};
+}
+
+/// The first event that was reported and did not happen, or the other way round, or was reported twice.
+inline std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, bool began) noexcept {
+  const auto [found, expected] = std::ranges::mismatch(reported, happened);
+  if (found == reported.end() && expected == happened.end()) return std::nullopt;
+  const bool is_reported = expected == happened.end() || (found != reported.end() && *found < *expected);
+  return Fault{is_reported ? *found : *expected, began, is_reported};
+}
 
 /// The first pair whose events are not those expected.
-std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expected) noexcept;
+inline std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expected) noexcept {
+  const auto began = first_fault(events.begun, expected.begun, true);
+  const auto ended = first_fault(events.ended, expected.ended, false);
+  if (began && ended) return began->pair <= ended->pair ? began : ended;
+  return began ? began : ended;
+}
 
 /// What a tracker does wrong in a history's last frame. If it throws, that is another failure, and none here.
 template <int D, typename Real>
-std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history);
+std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history) {
+  try {
+    Replay<D, Real> replay(history);
+    Pairs held;
+    EventPairs events;
+    take_events(tracker, replay.frame(), events);
+    for (const Step<D, Real>& step : history.steps) {
+      const Pairs still = without(held, events.ended);
+      held.clear();
+      std::ranges::set_union(still, events.begun, std::back_inserter(held));
+      take_events(tracker, replay.next(step), events);
+    }
+    return fault_of(events, events_between(held, pairs_by_definition(replay.frame())));
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
 
 /// The smallest history found in whose last frame what `make` makes is at fault; empty if it is not on this
 /// one. Compares about that many pairs of boxes, and no clock is asked: another machine finds the same one.
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
                                                const std::function<Tracker<D, Real>()>& make,
-                                               std::uint64_t max_tests);
+                                               std::uint64_t max_tests) {
+  std::uint64_t tests = 0;
+  const auto fails = [&](const History<D, Real>& some) {
+    std::uint64_t changes = some.boxes.size();
+    for (const Step<D, Real>& step : some.steps) changes += step.changed.size();
+    const std::uint64_t places = places_of(some);
+    // What a tracker does is not known: as if it took a hundred tests a change.
+    tests += places * places / 2 + 100 * changes;
+    Tracker<D, Real> tracker = make();
+    return fault_at_the_end(tracker, some).has_value();
+  };
+  Replay<D, Real> replay(history);
+  for (const Step<D, Real>& step : history.steps) replay.next(step);
+  History<D, Real> alone = history_of(replay.frame());
+  if (fails(alone))
+    history = std::move(alone);
+  else if (!fails(history))
+    return std::nullopt;
+  minimise(history, fails, [&] { return tests > max_tests; });
+  return history;
+}
 
-}  // namespace broadside::core
+}  // namespace broadside::debug

@@ -1,7 +1,6 @@
 // FilterGroups: the boxes of a search, grouped by filter.
 #include "find/filter_groups.hpp"
 
-#include <algorithm>
 #include <bit>
 
 namespace broadside::find {

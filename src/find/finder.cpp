@@ -2,23 +2,18 @@
 #include "broadside/finder.hpp"
 
 #include <array>
-#include <atomic>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/error.hpp"
 
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 #include "core/lean.hpp"
 #include "core/message.hpp"
-#include "core/parallel.hpp"
-#include "find/callers_sink.hpp"
-#include "find/checked_searcher.hpp"
 #include "find/search.hpp"
 
 namespace broadside {
@@ -37,6 +32,55 @@ void check_filters(const PairFilters& filters, std::size_t left, std::size_t rig
   check_filters(filters.right_filters, right, " right");
 }
 
+/// Stands between a search and its caller's sink, which no filter may look through.
+class CallersSink final : public PairSink {
+ public:
+  explicit CallersSink(PairSink& target) : target_(&target) {}
+  explicit CallersSink(std::unique_ptr<PairSink> owned) : target_(owned.get()), owned_(std::move(owned)) {}
+
+  std::unique_ptr<PairSink> empty_clone() const override {
+    const core::CallersEnvironment environment;
+    std::unique_ptr<PairSink> clone = target_->empty_clone();
+    return clone == nullptr ? nullptr : std::make_unique<CallersSink>(std::move(clone));
+  }
+
+  void merge(PairSink& clone) override {
+    const core::CallersEnvironment environment;
+    target_->merge(*static_cast<CallersSink&>(clone).target_);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    const core::CallersEnvironment environment;
+    target_->put(pairs);
+  }
+
+  PairSink* target_;
+  std::unique_ptr<PairSink> owned_;
+};
+
+/// Delivers the pairs of search(sink) to the caller's sink, in the caller's environment, and flushes it. What
+/// a failed search has left there is forgotten. Returns what the search returns.
+template <typename Search>
+auto deliver(const core::DefaultEnvironment& environment, PairSink& pairs, const Search& search) {
+  try {
+    if (!environment.is_foreign()) {
+      const auto result = search(pairs);
+      pairs.flush();
+      return result;
+    }
+    CallersSink sink(pairs);
+    const auto result = search(sink);
+    sink.flush();
+    const core::CallersEnvironment callers;
+    pairs.flush();
+    return result;
+  } catch (...) {
+    pairs.discard();
+    throw;
+  }
+}
+
 }  // namespace
 
 template <int D, typename Real>
@@ -53,7 +97,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     check_filters(filters.filters, view.size(), "");
     const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
     const std::size_t absent = check(boxes);
-    return find::deliver(environment, pairs, [&](PairSink& sink) {
+    return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find(boxes, {filters, workers, nullptr, absent}, sink);
     });
   }
@@ -66,7 +110,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
     const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
     const std::size_t absent = check(left, right);
-    return find::deliver(environment, pairs, [&](PairSink& sink) {
+    return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_between(left, right, {filters, workers, nullptr, absent}, sink);
     });
   }
@@ -80,7 +124,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
                                         "; expected no more than there are"}));
     }
     const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
-    return find::deliver(environment, pairs, [&](PairSink& sink) {
+    return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, sink);
     });
   }
@@ -101,33 +145,19 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   }
 
   std::size_t check(std::span<const Box<D, Real>> boxes) {
-    const std::size_t absent = count_absent(boxes, "");
+    const std::size_t absent = search_.count_absent(boxes, workers, bad_input);
     quarantined_.clear();
     if (absent > 0) list_invalid(boxes, 0);
     return absent;
   }
 
   std::size_t check(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right) {
-    const std::size_t absent_left = count_absent(left, "left ");
-    const std::size_t absent_right = count_absent(right, "right ");
+    const std::size_t absent_left = search_.count_absent(left, workers, bad_input, "left ");
+    const std::size_t absent_right = search_.count_absent(right, workers, bad_input, "right ");
     quarantined_.clear();
     if (absent_left > 0) list_invalid(left, 0);
     if (absent_right > 0) list_invalid(right, left.size());
     return absent_left + absent_right;
-  }
-
-  /// Checks the boxes, and returns how many are absent or quarantined. Each range that throws names its first
-  /// box at fault; the first such range's exception is the one thrown.
-  std::size_t count_absent(std::span<const Box<D, Real>> boxes, const char* which) const {
-    if (workers.threads == 1) return core::check_boxes(boxes, 0, bad_input, which);
-    core::Parallel parallel;
-    parallel.start(workers, boxes.size());
-    std::atomic<std::size_t> absent = 0;
-    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input, which),
-                       std::memory_order_relaxed);
-    });
-    return absent;
   }
 
   /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
@@ -156,7 +186,7 @@ Finder<D, Real>::Finder(const Spec& spec) : Finder(algorithm::require_algorithm(
 template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
   if (searcher == nullptr) throw std::invalid_argument("Finder was given a null searcher; expected one");
-  state_ = std::make_unique<State>(find::checked<D>(std::move(searcher)), false, 1);
+  state_ = std::make_unique<State>(find::checked(std::move(searcher)), false, 1);
 }
 
 template <int D, typename Real>

@@ -1,12 +1,17 @@
 // Search: absent boxes, two sets in one, doubles and filters around a Searcher.
 #include "find/search.hpp"
 
-#include <algorithm>
 #include <atomic>
+#include <cstdint>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
+#include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"
+#include "core/input_check.hpp"
+#include "core/lean.hpp"
+#include "core/message.hpp"
 #include "core/pair_set.hpp"
 #include "core/parallel.hpp"
 #include "kernels/observed_tests.hpp"
@@ -46,21 +51,73 @@ struct PassNotIgnored {
   const core::PairSet* ignored;
 };
 
+/// Passes pairs of two boxes below `boxes` on, and throws for the first other one.
+class IdCheck final : public core::FilterSink {
+ public:
+  IdCheck(std::size_t boxes, PairSink& target) : FilterSink(target), boxes_(boxes) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<IdCheck>(boxes_, target);
+  }
+
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    for (const Pair pair : pairs) {
+      if (index(pair.first) < index(pair.second) && index(pair.second) < boxes_) continue;
+      throw std::logic_error(
+          core::message({"a searcher wrote the pair (", index(pair.first), ", ", index(pair.second), ") of ",
+                         boxes_, " boxes; expected two different places below their number"}));
+    }
+    target().put(pairs);
+  }
+
+  std::size_t boxes_;
+};
+
+template <int D>
+class CheckedSearcher final : public Searcher<D> {
+ public:
+  explicit CheckedSearcher(std::unique_ptr<Searcher<D>> searcher) : searcher_(std::move(searcher)) {}
+
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    return core::search_through(IdCheck(input.boxes.size(), pairs),
+                                [&](PairSink& sink) { return searcher_->search(input, sink); });
+  }
+
+  std::string explanation() const override { return searcher_->explanation(); }
+
+ private:
+  std::unique_ptr<Searcher<D>> searcher_;
+};
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher) {
+  return std::make_unique<CheckedSearcher<D>>(std::move(searcher));
+}
+
+template <int D>
+std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings) {
+  std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);
+  if (core::is_lean || algorithm.kind != AlgorithmKind::own || algorithm::is_linked(algorithm.name))
+    return searcher;
+  return checked(std::move(searcher));
+}
+
 template <int D, typename Real>
-std::size_t count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+std::size_t Search<D, Real>::count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
+                                          BadInput bad_input, const char* which) {
+  if (workers.threads == 1) return core::check_boxes(boxes, 0, bad_input, which);
   core::Parallel parallel;
   parallel.start(workers, boxes.size());
   std::atomic<std::size_t> absent = 0;
   parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-    std::size_t of_range = 0;
-    for (std::size_t i = range.begin; i < range.end; ++i)
-      of_range += static_cast<std::size_t>(!is_present(boxes[i]));
-    absent.fetch_add(of_range, std::memory_order_relaxed);
+    absent.fetch_add(core::check_boxes(boxes.first(range.end), range.begin, bad_input, which),
+                     std::memory_order_relaxed);
   });
   return absent;
 }
-
-}  // namespace
 
 template <int D, typename Real>
 Search<D, Real>::Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles)
@@ -84,7 +141,8 @@ template <int D, typename Real>
 std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Real>> boxes,
                                                        const SearchOptions<D>& options, PairSink& pairs) {
   const std::span<const Filter> filters = options.filters.filters;
-  const std::size_t absent = options.absent ? *options.absent : count_absent(boxes, options.workers);
+  const std::size_t absent =
+      options.absent ? *options.absent : count_absent(boxes, options.workers, BadInput::quarantine);
   if (absent == 0) return search_present(boxes, 0, options, BoxFilters(filters), pairs);
   present_.clear();
   ids_.clear();
@@ -105,7 +163,7 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   present_.clear();
   ids_.clear();
   if (options.absent == 0) {
-    core::reserve_large(present_, left.size() + right.size());
+    present_.reserve(left.size() + right.size());
     present_.insert(present_.end(), left.begin(), left.end());
     present_.insert(present_.end(), right.begin(), right.end());
     return find_across(present_, left.size(), options, pairs);
@@ -161,7 +219,7 @@ std::optional<Statistics> Search<D, Real>::search_in_groups(const SearchInput<D>
 /// Appends the present ones of `boxes` to present_ and their places to ids_.
 template <int D, typename Real>
 void Search<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
-  core::reserve_large(present_, present_.size() + boxes.size());
+  present_.reserve(present_.size() + boxes.size());
   ids_.reserve(ids_.size() + boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Box<D, Real> box = boxes[i];  // a copy, since another thread may change the caller's
@@ -171,6 +229,10 @@ void Search<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
   }
 }
 
+template std::unique_ptr<Searcher<2>> checked(std::unique_ptr<Searcher<2>>);
+template std::unique_ptr<Searcher<3>> checked(std::unique_ptr<Searcher<3>>);
+template std::unique_ptr<Searcher<2>> searcher_of<2>(const Algorithm&, const Settings&);
+template std::unique_ptr<Searcher<3>> searcher_of<3>(const Algorithm&, const Settings&);
 template class Search<2, float>;
 template class Search<2, double>;
 template class Search<3, float>;

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
+#include "broadside/error.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
@@ -19,6 +21,16 @@
 #include "find/grouped_search.hpp"
 
 namespace broadside::find {
+
+/// A searcher of the user's that throws std::logic_error for the first pair with an id out of range:
+/// everything behind a searcher reads arrays by the ids that it writes.
+template <int D>
+std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher);
+
+/// The searcher of an algorithm by its settings, checked if a user registered the algorithm. The library's
+/// own ones and the peers of the comparison are tested, and not slowed down.
+template <int D>
+std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings);
 
 /// How one search is made.
 template <int D>
@@ -38,6 +50,11 @@ class Search {
  public:
   /// `tests_doubles`: as in Algorithm.
   Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles);
+
+  /// Checks boxes as core::check_boxes() does, and returns how many are absent or quarantined. Of several
+  /// workers, each names the first box at fault of its range, and the first such exception is thrown.
+  static std::size_t count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
+                                  BadInput bad_input, const char* which = "");
 
   /// Every pair of one set.
   std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
@@ -73,7 +90,7 @@ class Search {
   DoubleSearch<D> doubles_;
   std::unique_ptr<GroupedSearch<D>> groups_;  // null until boxes have filters
   bool is_filtered_ = false;                  // whether boxes had filters in the last search
-  std::vector<Box<D, Real>> present_;         // the boxes without the absent ones; unused if there are none
+  core::LargeArray<Box<D, Real>> present_;    // the boxes without the absent ones; unused if there are none
   std::vector<BoxId> ids_;                    // their places in the caller's array
 };
 

@@ -8,7 +8,6 @@
 #include "broadside/box.hpp"
 
 #include "core/moved_box.hpp"
-#include "core/nan_box.hpp"
 
 namespace broadside::kernels {
 

@@ -1,10 +1,10 @@
 // BlockPool: blocks of sixteen boxes in chains, for structures that stay from frame to frame.
 #pragma once
 
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <hwy/cache_control.h>
@@ -13,12 +13,29 @@
 #include "broadside/pair.hpp"
 
 #include "kernels/block.hpp"
-#include "kernels/shared_bits.hpp"
 
 namespace broadside::kernels {
 
 /// Brings memory that will be read or written into the cache, while other work goes on.
 inline void prefetch(const void* memory) { hwy::Prefetch(static_cast<const char*>(memory)); }
+
+/// Sets or clears bits of a word of which other threads set and clear others. Nothing is ordered by it: what
+/// joins the threads orders what they wrote.
+inline void set_shared(std::uint16_t& word, std::uint16_t bits) noexcept {
+#ifdef __cpp_lib_atomic_ref
+  std::atomic_ref(word).fetch_or(bits, std::memory_order_relaxed);
+#else  // libc++ before 19
+  __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
+#endif
+}
+
+inline void clear_shared(std::uint16_t& word, std::uint16_t bits) noexcept {
+#ifdef __cpp_lib_atomic_ref
+  std::atomic_ref(word).fetch_and(static_cast<std::uint16_t>(~bits), std::memory_order_relaxed);
+#else
+  __atomic_fetch_and(&word, static_cast<std::uint16_t>(~bits), __ATOMIC_RELAXED);
+#endif
+}
 
 /// Data about a block that a search can read without its boxes.
 struct BlockHead {
@@ -70,6 +87,11 @@ class BlockPool {
     *link = heads_[block].next;
     heads_[block] = {no_slot, no_slot, 0, 0};
     free_.push_back(block);
+  }
+
+  /// The slot of a block's first lane that is among `lanes`, as bits.
+  static std::uint32_t slot(std::uint32_t block, std::uint32_t lanes) {
+    return block * width + static_cast<std::uint32_t>(std::countr_zero(lanes));
   }
 
   /// Puts a box into the first lane of the block that is free. Its slot.

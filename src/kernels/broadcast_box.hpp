@@ -18,7 +18,7 @@
 #include "broadside/box.hpp"
 
 #include "kernels/block.hpp"
-#include "kernels/mask.hpp"
+#include "kernels/compress.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {

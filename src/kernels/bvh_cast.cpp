@@ -257,18 +257,10 @@ void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& fo
 }  // namespace
 
 // What the dispatch below can name: no templates.
-bool met_2(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
-  return met(tree, cast, found);
-}
-bool met_3(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
-  return met(tree, cast, found);
-}
-void first_met_2(const BvhView<2>& tree, const CastQuery<2>& cast, FoundBoxes& found) {
-  first_met(tree, cast, found);
-}
-void first_met_3(const BvhView<3>& tree, const CastQuery<3>& cast, FoundBoxes& found) {
-  first_met(tree, cast, found);
-}
+constexpr auto& met_2 = met<2>;
+constexpr auto& met_3 = met<3>;
+constexpr auto& first_met_2 = first_met<2>;
+constexpr auto& first_met_3 = first_met<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

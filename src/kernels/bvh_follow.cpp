@@ -4,14 +4,13 @@
 // branches, which no predictor could foresee.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_follow.cpp"
-#include "kernels/bvh_follow.hpp"
-
 #include <algorithm>
 #include <utility>
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/bvh.hpp"
 #include "kernels/bvh_lanes.hpp"
 #include "kernels/pair_writer.hpp"
 #include "kernels/run.hpp"
@@ -128,17 +127,17 @@ class Follow {
   std::uint64_t told_ = 0;
 };
 
+template <int D>
+std::uint64_t follow_moved(const WritableBvh<D>& tree, std::span<const MovedBox<D>> moved,
+                           std::uint8_t* calls_for, PairSink& begun, PairSink& ended) {
+  return Follow<D>(tree, begun, ended).run(moved, calls_for);
+}
+
 }  // namespace
 
 // What the dispatch below can name: no templates.
-std::uint64_t follow_2(const WritableBvh<2>& tree, std::span<const MovedBox<2>> moved,
-                       std::uint8_t* calls_for, PairSink& begun, PairSink& ended) {
-  return Follow<2>(tree, begun, ended).run(moved, calls_for);
-}
-std::uint64_t follow_3(const WritableBvh<3>& tree, std::span<const MovedBox<3>> moved,
-                       std::uint8_t* calls_for, PairSink& begun, PairSink& ended) {
-  return Follow<3>(tree, begun, ended).run(moved, calls_for);
-}
+constexpr auto& follow_2 = follow_moved<2>;
+constexpr auto& follow_3 = follow_moved<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -254,20 +254,10 @@ JoinWork join_leaves(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit
 }  // namespace
 
 // What the dispatch below can name: no templates.
-JoinWork join_2(const PackedBvh<2>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
-                PairSink& pairs) {
-  return join_leaves(tree, leaves, limit, scratch, pairs);
-}
-JoinWork join_3(const PackedBvh<3>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,
-                PairSink& pairs) {
-  return join_leaves(tree, leaves, limit, scratch, pairs);
-}
-void set_bounds_2(const PackedBvh<2>& tree, std::size_t parent, NodeRange nodes) {
-  bound_level(tree, parent, nodes);
-}
-void set_bounds_3(const PackedBvh<3>& tree, std::size_t parent, NodeRange nodes) {
-  bound_level(tree, parent, nodes);
-}
+constexpr auto& join_2 = join_leaves<2>;
+constexpr auto& join_3 = join_leaves<3>;
+constexpr auto& set_bounds_2 = bound_level<2>;
+constexpr auto& set_bounds_3 = bound_level<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,7 +1,10 @@
-// Compressing numbers to the front of a vector, for files that Highway compiles for each instruction set.
+// Masks as bits, and numbers compressed to the front of a vector, for files that Highway compiles for each
+// instruction set.
 //
-// Highway 1.0 looks the order up in a table as well, but in one that g++ copies to the stack at each call: a
-// kilobyte with AVX2, which took three quarters of a sweep's time.
+// Highway 1.0 stores a mask of WebAssembly's to memory and reads it back as numbers, which took a third of a
+// sweep's time. There is an instruction. It looks the order of compressed numbers up in a table as well, but
+// in one that g++ copies to the stack at each call: a kilobyte with AVX2, which took three quarters of that
+// time.
 //
 // Included once an instruction set, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_COMPRESS) == defined(HWY_TARGET_TOGGLE)
@@ -17,10 +20,41 @@
 
 #include <hwy/highway.h>
 
-#include "kernels/mask.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Bit i is lane i, of at most sixteen.
+template <typename Tag>
+HWY_INLINE std::uint32_t bits_of(Tag tag, hn::Mask<Tag> mask) {
+#if HWY_TARGET == HWY_WASM
+  static_assert(hn::MaxLanes(tag) == 4);
+  return wasm_i32x4_bitmask(mask.raw);
+#else
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(tag, mask, bytes.data());
+  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
+#endif
+}
+
+/// How many lanes are true.
+template <typename Tag>
+HWY_INLINE std::size_t count_true(Tag tag, hn::Mask<Tag> mask) {
+#if HWY_TARGET == HWY_WASM
+  return hwy::PopCount(bits_of(tag, mask));
+#else
+  return hn::CountTrue(tag, mask);
+#endif
+}
+
+template <typename Tag>
+HWY_INLINE bool all_false(Tag tag, hn::Mask<Tag> mask) {
+#if HWY_TARGET == HWY_WASM
+  return bits_of(tag, mask) == 0;
+#else
+  return hn::AllFalse(tag, mask);
+#endif
+}
 
 /// For each set of `Lanes` lanes, as bits, which lanes are in it, in order; beyond them the first lane. Each
 /// lane is `Size` bytes: the places of its bytes.
@@ -45,9 +79,7 @@ inline constexpr LanesInSet<4, 4> bytes_of_4;
 
 /// The numbers whose lanes are in `mask`, in order, at the front; what follows them is unspecified.
 template <typename Tag>
-HWY_INLINE hwy::HWY_NAMESPACE::Vec<Tag> compress(Tag tag, hwy::HWY_NAMESPACE::Vec<Tag> numbers,
-                                                 hwy::HWY_NAMESPACE::Mask<Tag> mask) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE hn::Vec<Tag> compress(Tag tag, hn::Vec<Tag> numbers, hn::Mask<Tag> mask) {
   static_assert(sizeof(hn::TFromD<Tag>) == 4);
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   constexpr std::size_t vector_size = 0;  // an instruction does it

@@ -7,7 +7,6 @@
 #define HWY_TARGET_INCLUDE "kernels/moved.cpp"
 #include "kernels/moved.hpp"
 
-#include <array>
 #include <bit>
 #include <utility>
 
@@ -219,33 +218,27 @@ void search_run(const Run<D>& run, std::size_t begin, std::size_t end, const Mov
   }
 }
 
+template <int D>
+core::ChangeWork find_in_blocks(const BlocksView<D>& blocks, std::span<const MovedBox<D>> moved,
+                                std::span<const BlockTask> tasks, const core::ChangeSinks& sinks) {
+  return Search<D>(blocks, moved, sinks).in_blocks(tasks);
+}
+
+template <int D>
+core::ChangeWork find_in_cells(const CellsView<D>& cells, std::span<const MovedBox<D>> moved,
+                               const core::ChangeSinks& sinks) {
+  return Search<D>(cells.blocks, moved, sinks).in_cells(cells);
+}
+
 }  // namespace
 
 // What the dispatch below can name: no templates.
-core::ChangeWork in_blocks_2(const BlocksView<2>& blocks, std::span<const MovedBox<2>> moved,
-                             std::span<const BlockTask> tasks, const core::ChangeSinks& sinks) {
-  return Search<2>(blocks, moved, sinks).in_blocks(tasks);
-}
-core::ChangeWork in_blocks_3(const BlocksView<3>& blocks, std::span<const MovedBox<3>> moved,
-                             std::span<const BlockTask> tasks, const core::ChangeSinks& sinks) {
-  return Search<3>(blocks, moved, sinks).in_blocks(tasks);
-}
-core::ChangeWork in_cells_2(const CellsView<2>& cells, std::span<const MovedBox<2>> moved,
-                            const core::ChangeSinks& sinks) {
-  return Search<2>(cells.blocks, moved, sinks).in_cells(cells);
-}
-core::ChangeWork in_cells_3(const CellsView<3>& cells, std::span<const MovedBox<3>> moved,
-                            const core::ChangeSinks& sinks) {
-  return Search<3>(cells.blocks, moved, sinks).in_cells(cells);
-}
-void in_run_2(const Run<2>& run, std::size_t begin, std::size_t end, const MovedBox<2>& moved,
-              const core::ChangeSinks& sinks) {
-  search_run(run, begin, end, moved, sinks);
-}
-void in_run_3(const Run<3>& run, std::size_t begin, std::size_t end, const MovedBox<3>& moved,
-              const core::ChangeSinks& sinks) {
-  search_run(run, begin, end, moved, sinks);
-}
+constexpr auto& in_blocks_2 = find_in_blocks<2>;
+constexpr auto& in_blocks_3 = find_in_blocks<3>;
+constexpr auto& in_cells_2 = find_in_cells<2>;
+constexpr auto& in_cells_3 = find_in_cells<3>;
+constexpr auto& in_run_2 = search_run<2>;
+constexpr auto& in_run_3 = search_run<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -86,18 +86,11 @@ void flag_overlaps(std::span<const Box<D, Real>> boxes, std::span<const Pair> pa
 
 }  // namespace
 
-void flags_2(std::span<const Box<2>> boxes, std::span<const Pair> pairs, std::uint8_t* flags) {
-  flag_overlaps(boxes, pairs, flags);
-}
-void flags_3(std::span<const Box<3>> boxes, std::span<const Pair> pairs, std::uint8_t* flags) {
-  flag_overlaps(boxes, pairs, flags);
-}
-void double_flags_2(std::span<const DoubleBox2> boxes, std::span<const Pair> pairs, std::uint8_t* flags) {
-  flag_overlaps(boxes, pairs, flags);
-}
-void double_flags_3(std::span<const DoubleBox3> boxes, std::span<const Pair> pairs, std::uint8_t* flags) {
-  flag_overlaps(boxes, pairs, flags);
-}
+// What the dispatch below can name: no templates.
+constexpr auto& flags_2 = flag_overlaps<2, float>;
+constexpr auto& flags_3 = flag_overlaps<3, float>;
+constexpr auto& double_flags_2 = flag_overlaps<2, double>;
+constexpr auto& double_flags_3 = flag_overlaps<3, double>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

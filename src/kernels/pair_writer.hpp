@@ -19,7 +19,6 @@
 
 #include "kernels/compress.hpp"
 #include "kernels/last_test.hpp"
-#include "kernels/mask.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {

@@ -218,41 +218,41 @@ std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, LastTest last_test,
   return std::uint64_t{a.size} * b.size;
 }
 
+template <int D>
+std::uint64_t sweep_within(const Run<D>& run, PairSink& pairs) {
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_run(run, last_test, pairs); });
+}
+
+template <int D>
+std::uint64_t sweep_between(const Run<D>& a, const Run<D>& b, PairSink& pairs) {
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return sweep_runs(a, b, last_test, pairs); });
+}
+
+template <int D>
+std::uint64_t compare_within(const Run<D>& run, PairSink& pairs) {
+  return with_last_test(run.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_run(run, last_test, pairs); });
+}
+
+template <int D>
+std::uint64_t compare_between(const Run<D>& a, const Run<D>& b, PairSink& pairs) {
+  return with_last_test(a.doubles,
+                        [&](auto last_test) HWY_ATTR { return compare_runs(a, b, last_test, pairs); });
+}
+
 }  // namespace
 
 // What the dispatch below can name: no templates.
-std::uint64_t sweep_run_2(const Run<2>& run, PairSink& pairs) {
-  return with_last_test(run.doubles,
-                        [&](auto last_test) HWY_ATTR { return sweep_run(run, last_test, pairs); });
-}
-std::uint64_t sweep_run_3(const Run<3>& run, PairSink& pairs) {
-  return with_last_test(run.doubles,
-                        [&](auto last_test) HWY_ATTR { return sweep_run(run, last_test, pairs); });
-}
-std::uint64_t sweep_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return with_last_test(a.doubles,
-                        [&](auto last_test) HWY_ATTR { return sweep_runs(a, b, last_test, pairs); });
-}
-std::uint64_t sweep_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return with_last_test(a.doubles,
-                        [&](auto last_test) HWY_ATTR { return sweep_runs(a, b, last_test, pairs); });
-}
-std::uint64_t compare_run_2(const Run<2>& run, PairSink& pairs) {
-  return with_last_test(run.doubles,
-                        [&](auto last_test) HWY_ATTR { return compare_run(run, last_test, pairs); });
-}
-std::uint64_t compare_run_3(const Run<3>& run, PairSink& pairs) {
-  return with_last_test(run.doubles,
-                        [&](auto last_test) HWY_ATTR { return compare_run(run, last_test, pairs); });
-}
-std::uint64_t compare_runs_2(const Run<2>& a, const Run<2>& b, PairSink& pairs) {
-  return with_last_test(a.doubles,
-                        [&](auto last_test) HWY_ATTR { return compare_runs(a, b, last_test, pairs); });
-}
-std::uint64_t compare_runs_3(const Run<3>& a, const Run<3>& b, PairSink& pairs) {
-  return with_last_test(a.doubles,
-                        [&](auto last_test) HWY_ATTR { return compare_runs(a, b, last_test, pairs); });
-}
+constexpr auto& sweep_run_2 = sweep_within<2>;
+constexpr auto& sweep_run_3 = sweep_within<3>;
+constexpr auto& sweep_runs_2 = sweep_between<2>;
+constexpr auto& sweep_runs_3 = sweep_between<3>;
+constexpr auto& compare_run_2 = compare_within<2>;
+constexpr auto& compare_run_3 = compare_within<3>;
+constexpr auto& compare_runs_2 = compare_between<2>;
+constexpr auto& compare_runs_3 = compare_between<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

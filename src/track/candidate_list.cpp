@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <span>
 #include <tuple>
 #include <utility>
 
@@ -17,7 +16,6 @@
 #include "core/sort_pairs.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "track/candidate_limit.hpp"
-#include "track/pair_difference.hpp"
 
 namespace broadside::track {
 namespace {
@@ -251,9 +249,8 @@ void CandidateList<D, Real>::test_candidates(std::span<const Box<D, Real>> boxes
   holds_.resize(candidates_.size());
   parallel_.start(workers, candidates_.size() / pairs_per_box);
   parallel_.for_ranges(candidates_.size(), [&](core::Range range, std::size_t) {
-    kernels::set_overlap_flags(
-        boxes, std::span<const Pair>(candidates_).subspan(range.begin, range.end - range.begin),
-        holds_.data() + range.begin);
+    kernels::set_overlap_flags(boxes, std::span<const Pair>(candidates_).subspan(range.begin, range.size()),
+                               holds_.data() + range.begin);
   });
 }
 
@@ -285,9 +282,7 @@ void CandidateList<D, Real>::release() noexcept {
 
 template <int D, typename Real>
 std::size_t CandidateList<D, Real>::bytes() const noexcept {
-  return (before_.capacity() + now_.capacity()) * sizeof(Box<D, Real>) + left_.capacity() * sizeof(BoxId) +
-         flags_.capacity() + holds_.capacity() + held_.capacity() +
-         (candidates_.capacity() + begun_.capacity() + ended_.capacity() + spare_.capacity()) * sizeof(Pair);
+  return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
 }
 
 template class CandidateList<2, float>;

@@ -14,10 +14,14 @@
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 
+#include "core/grow.hpp"
 #include "core/parallel.hpp"
 #include "find/search.hpp"
 
 namespace broadside::track {
+
+/// Pairs that are tested in the time that a search takes for a box.
+inline constexpr std::size_t pairs_per_box = 8;
 
 inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
@@ -49,7 +53,7 @@ class FindAnew {
   void forget() noexcept;
 
   std::string explanation() const { return search_.explanation(); }
-  std::size_t bytes() const noexcept { return (pairs_.capacity() + found_.capacity()) * sizeof(Pair); }
+  std::size_t bytes() const noexcept { return core::bytes_of(pairs_, found_); }
 
  private:
   std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, std::span<const Filter> filters,

@@ -18,23 +18,19 @@ namespace {
 constexpr std::size_t tried_movers = 64;
 
 template <int D>
-std::vector<StructureCosts> costs_of(const std::vector<Structure<D>>& structures) {
+std::vector<StructureCosts> costs_of(const std::vector<FollowerChoice<D>>& structures) {
   std::vector<StructureCosts> costs;
-  for (const Structure<D>& structure : structures) costs.push_back(structure.costs);
+  for (const FollowerChoice<D>& structure : structures)
+    costs.push_back({structure.costs, structure.max_boxes});
   return costs;
 }
 
 }  // namespace
 
-template <int D>
-bool TrackerPlan<D>::may_enlarge() const noexcept {
-  const auto compares_all = [](const Structure<D>& structure) { return structure.costs.compares_all(); };
-  return !core::is_lean && update == Update::automatic && !std::ranges::all_of(structures, compares_all);
-}
-
 template <int D, typename Real>
 FollowOrFind<D, Real>::FollowOrFind(TrackerPlan<D> plan)
     : structures_(std::move(plan.structures)),
+      settings_(std::move(plan.settings)),
       explains_(plan.explains),
       policy_(plan.update, plan.find_costs, costs_of(structures_), !std::is_same_v<Real, float>) {
   if (plan.follower) follower_ = followed(std::move(plan.follower));
@@ -71,7 +67,7 @@ std::optional<Statistics> FollowOrFind<D, Real>::follow(const Change<D, Real>& c
 template <int D, typename Real>
 auto FollowOrFind<D, Real>::follower() -> Followed& {
   if (!follower_ || follower_number_ != policy_.current()) {
-    follower_ = followed(structures_[policy_.current()].make());
+    follower_ = followed(structures_[policy_.current()].make(*settings_));
     follower_number_ = policy_.current();
   }
   return *follower_;
@@ -146,7 +142,7 @@ void FollowOrFind<D, Real>::forget() noexcept {
 
 template <int D, typename Real>
 bool FollowOrFind<D, Real>::has_compared_all() const noexcept {
-  return was_followed_ && structures_[policy_.current()].costs.compares_all();
+  return was_followed_ && structures_[policy_.current()].max_boxes > 0;
 }
 
 template <int D, typename Real>
@@ -182,8 +178,6 @@ std::size_t FollowOrFind<D, Real>::bytes() const noexcept {
   return (find_anew_ ? find_anew_->bytes() : 0) + (follower_ ? follower_->bytes() : 0);
 }
 
-template struct TrackerPlan<2>;
-template struct TrackerPlan<3>;
 template class FollowOrFind<2, float>;
 template class FollowOrFind<3, float>;
 template class FollowOrFind<2, double>;

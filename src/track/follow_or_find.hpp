@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,27 +19,17 @@
 
 namespace broadside::track {
 
-/// A structure that may follow boxes.
-template <int D>
-struct Structure {
-  std::string name;
-  std::function<std::unique_ptr<Follower<D>>()> make;
-  StructureCosts costs{};
-};
-
 /// What a tracker brings its pairs up to date by.
 template <int D>
 struct TrackerPlan {
   Update update = Update::automatic;
-  std::vector<Structure<D>> structures{};   ///< may be empty
-  std::unique_ptr<Follower<D>> follower{};  ///< of the first structure, if it is made already
-  std::unique_ptr<Searcher<D>> searcher{};  ///< may be null where `update` is `follow`
-  bool tests_doubles = false;               ///< whether the searcher does
+  std::vector<FollowerChoice<D>> structures{};  ///< may be empty
+  std::optional<Settings> settings{};           ///< to make structures by
+  std::unique_ptr<Follower<D>> follower{};      ///< of the first structure, if it is made already
+  std::unique_ptr<Searcher<D>> searcher{};      ///< may be null where `update` is `follow`
+  bool tests_doubles = false;                   ///< whether the searcher does
   FindCosts find_costs{};
   bool explains = true;  ///< whether there is more than one way
-
-  /// Whether boxes may be enlarged: where structures other than one that compares all are followed by choice.
-  bool may_enlarge() const noexcept;
 };
 
 /// Three of a tracker's ways: a structure that compares all boxes, one that follows them, and finding anew.
@@ -95,7 +84,8 @@ class FollowOrFind {
   Followed& follower();
   static std::unique_ptr<Followed> followed(std::unique_ptr<Follower<D>> follower);
 
-  std::vector<Structure<D>> structures_;
+  std::vector<FollowerChoice<D>> structures_;
+  std::optional<Settings> settings_;
   bool explains_;
   FollowPolicy policy_;
   std::unique_ptr<Followed> follower_;  // null: none was needed yet

@@ -1,6 +1,7 @@
 // FrameStates: the boxes and filters of the last whole frame and of the one that is being taken.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,8 @@
 #include "broadside/follower.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/grow.hpp"
+#include "core/input_check.hpp"
 #include "core/parallel.hpp"
 
 namespace broadside::track {
@@ -20,16 +23,97 @@ class FrameStates {
  public:
   /// Takes the next frame. `takes_all`: every box counts as changed. `lists_once`: no box is listed twice,
   /// and each is valid or absent.
-  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, core::Parallel& parallel);
+  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, core::Parallel& parallel) {
+    const std::size_t size = std::max(frame.boxes.size(), known_);
+    const bool had_filters = !filters_before_.empty();
+    core::resize_by_eighths(before_, size, absent_box<D, Real>());
+    core::resize_by_eighths(now_, size, absent_box<D, Real>());
+    if (!frame.filters.empty() || had_filters) {
+      core::resize_by_eighths(filters_before_, size);
+      core::resize_by_eighths(filters_now_, size);
+    } else {
+      filters_now_.clear();
+    }
+    // Flags are all 0 between two updates, unless the last one failed.
+    if (takes_all) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
+    core::resize_by_eighths(flags_, size);
+    changed_.clear();
+    invalid_.clear();
+    const auto copy = [this, boxes = frame.boxes, filters = frame.filters](std::size_t place) {
+      flags_[place] = 1;
+      now_[place] = place < boxes.size() ? boxes[place] : absent_box<D, Real>();
+      if (!filters_now_.empty()) filters_now_[place] = place < filters.size() ? filters[place] : Filter{};
+    };
+    const auto take_once = [&](std::size_t place) {
+      if (flags_[place] != 0) return;
+      copy(place);
+      changed_.push_back(BoxId(place));
+      if (core::is_invalid(now_[place])) {
+        now_[place] = absent_box<D, Real>();
+        invalid_.push_back(BoxId(place));
+      }
+    };
+    if (takes_all || frame.filters.empty() == had_filters) {
+      for (std::size_t i = 0; i < size; ++i) take_once(i);
+      return;
+    }
+    if (lists_once) {
+      changed_.assign(frame.changed.begin(), frame.changed.end());
+      parallel.for_ranges(changed_.size(), [&](core::Range range, std::size_t) {
+        for (std::size_t i = range.begin; i < range.end; ++i) copy(index(changed_[i]));
+      });
+    } else {
+      for (const BoxId id : frame.changed) {
+        // Another thread may have written to the list since it was checked.
+        if (index(id) < size) take_once(index(id));
+      }
+    }
+    for (std::size_t i = std::min(known_, frame.boxes.size()); i < size; ++i) take_once(i);
+  }
 
   /// What differs between the two frames, once one is taken.
-  Change<D, Real> change(bool rebuild, const Workers& workers) const noexcept;
+  Change<D, Real> change(bool rebuild, const Workers& workers) const noexcept {
+    return {.before = before_,
+            .now = now_,
+            .changed = changed_,
+            .flags = flags_,
+            .rebuild = rebuild,
+            .filters_before = filters_before_,
+            .filters_now = filters_now_,
+            .workers = workers};
+  }
 
   /// Takes the memory that keep() needs.
   void prepare_to_keep() { quarantined_.reserve(quarantined_.size() + invalid_.size()); }
 
   /// Makes the frame that was taken the last whole one.
-  void keep(const Frame<D, Real>& frame, core::Parallel& parallel) noexcept;
+  void keep(const Frame<D, Real>& frame, core::Parallel& parallel) noexcept {
+    const std::size_t size = frame.boxes.size();
+    if (!quarantined_.empty() || !invalid_.empty()) {
+      std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
+      quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
+      std::ranges::sort(quarantined_);
+    }
+    const auto keep_changed = [this](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        before_[index(changed_[i])] = now_[index(changed_[i])];
+        flags_[index(changed_[i])] = 0;
+      }
+    };
+    try {
+      parallel.for_ranges(changed_.size(), keep_changed);
+    } catch (...) {  // the executor's, after some of its tasks
+      keep_changed({0, changed_.size()}, 0);
+    }
+    if (!filters_now_.empty()) {
+      for (const BoxId id : changed_) filters_before_[index(id)] = filters_now_[index(id)];
+      filters_before_.resize(frame.filters.size());
+    }
+    before_.resize(size);
+    now_.resize(size);
+    flags_.resize(size);
+    known_ = size;
+  }
 
   /// How many boxes there are to be changed: those of the last frame, whether or not it was a whole one.
   std::size_t size() const noexcept { return before_.size(); }
@@ -43,7 +127,10 @@ class FrameStates {
   /// The places of the last whole frame's invalid boxes, ascending.
   std::span<const BoxId> quarantined() const noexcept { return quarantined_; }
 
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return core::bytes_of(before_, now_, filters_before_, filters_now_, changed_, flags_, invalid_,
+                          quarantined_);
+  }
 
  private:
   std::vector<Box<D, Real>> before_;

@@ -1,43 +1,86 @@
 // IgnoredChange: the ignored pairs of the last whole frame, and those that become ignored or no longer are.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "broadside/filter.hpp"
 #include "broadside/follower.hpp"
-#include "broadside/tracker.hpp"
+#include "broadside/pair.hpp"
+
+#include "core/grow.hpp"
+#include "core/sort_pairs.hpp"
 
 namespace broadside::track {
 
 class IgnoredChange {
  public:
-  /// Takes the set of the next frame. `takes_all`: every difference is looked for, not only what is listed.
-  template <int D, typename Real>
-  void take(const Frame<D, Real>& frame, bool takes_all) {
-    take(frame.ignored, frame.ignored_changed, takes_all);
+  /// Takes the set of the next frame, or null, and the pairs listed as changed. `takes_all`: every difference
+  /// is looked for, not only what is listed.
+  void take(const IgnoredPairs* now, std::span<const Pair> listed, bool takes_all) {
+    has_set_ = now != nullptr;
+    newly_ = 0;
+    toggled_.clear();
+    const auto take_one = [&](Pair pair) {
+      if (pair.second < pair.first) std::swap(pair.first, pair.second);
+      const bool is_ignored = now != nullptr && now->contains(pair);
+      if (is_ignored != pairs_.contains(pair)) toggled_.push_back(pair);
+    };
+    if (takes_all || has_set_ != had_set_) {
+      pairs_.for_each(take_one);
+      if (now != nullptr) now->for_each(take_one);
+    } else {
+      for (const Pair pair : listed) take_one(pair);
+    }
+    core::sort_unique(toggled_, sorting_);
   }
 
   /// Drops the events of ignored pairs, and adds events of pairs that became ignored or no longer are.
   template <int D, typename Real>
-  void apply(const Change<D, Real>& change, std::vector<Pair>& begun, std::vector<Pair>& ended) const;
+  void apply(const Change<D, Real>& change, std::vector<Pair>& begun, std::vector<Pair>& ended) const {
+    if (toggled_.empty() && pairs_.empty()) return;
+    const auto is_dropped = [this](Pair pair) {
+      return pairs_.contains(pair) || std::ranges::binary_search(toggled_, pair);
+    };
+    std::erase_if(begun, is_dropped);
+    std::erase_if(ended, is_dropped);
+    for (const Pair pair : toggled_) {
+      if (index(pair.second) >= change.now.size()) continue;
+      if (pairs_.contains(pair)) {
+        if (change.holds(pair.first, pair.second)) begun.push_back(pair);
+      } else {
+        if (change.held(pair.first, pair.second)) ended.push_back(pair);
+      }
+    }
+  }
 
   /// Makes the set of the next frame that of the last whole one, in two steps: the first takes memory and can
   /// be undone, the second does neither.
-  void insert();
-  void undo_insert() noexcept;
-  void keep() noexcept;
+  void insert() {
+    const auto middle = std::partition(toggled_.begin(), toggled_.end(),
+                                       [this](Pair pair) { return !pairs_.contains(pair); });
+    newly_ = static_cast<std::size_t>(middle - toggled_.begin());
+    for (const Pair pair : std::span(toggled_).first(newly_)) pairs_.insert(pair);
+  }
+
+  void undo_insert() noexcept {
+    for (const Pair pair : std::span(toggled_).first(newly_)) pairs_.erase(pair);
+  }
+
+  void keep() noexcept {
+    for (const Pair pair : std::span(toggled_).subspan(newly_)) pairs_.erase(pair);
+    had_set_ = has_set_;
+  }
 
   /// The set of the last whole frame, or null if it had none.
   const IgnoredPairs* last() const noexcept { return had_set_ ? &pairs_ : nullptr; }
 
-  std::size_t bytes() const noexcept {
-    return (toggled_.capacity() + sorting_.capacity()) * sizeof(Pair) + pairs_.bytes();
-  }
+  std::size_t bytes() const noexcept { return core::bytes_of(toggled_, sorting_) + pairs_.bytes(); }
 
  private:
-  void take(const IgnoredPairs* now, std::span<const Pair> listed, bool takes_all);
-
   IgnoredPairs pairs_;         // those of the last whole frame
   bool had_set_ = false;       // whether that had a set
   bool has_set_ = false;       // whether the next frame has

@@ -3,21 +3,23 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "broadside/algorithm.hpp"
-#include "broadside/error.hpp"
-#include "broadside/sinks.hpp"
 
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
+#include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/lean.hpp"
+#include "core/parallel.hpp"
 #include "core/sort_pairs.hpp"
 #include "core/tunables.hpp"
-#include "find/checked_searcher.hpp"
-#include "track/tracker_state.hpp"
+#include "find/search.hpp"
+#include "track/frame_states.hpp"
+#include "track/ignored_change.hpp"
+#include "track/updater.hpp"
 
 namespace broadside {
 namespace {
@@ -41,11 +43,9 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
   plan.tests_doubles = algorithm.tests_doubles;
   plan.find_costs = algorithm.in<D>().find_costs;
   if (is_float || algorithm.gives_candidates) {
-    for (const FollowerChoice<D>& choice : algorithm.in<D>().followers) {
-      plan.structures.push_back({choice.name,
-                                 [make = choice.make, settings] { return make(settings); },
-                                 {choice.costs, choice.max_boxes}});
-    }
+    const auto& followers = algorithm.in<D>().followers;
+    plan.structures.assign(followers.begin(), followers.end());
+    plan.settings = settings;
   }
   if (plan.structures.empty())
     plan.update = Update::rebuild;
@@ -60,70 +60,72 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
 
 }  // namespace
 
+/// What every tracker does around bringing its pairs up to date.
 template <int D, typename Real>
-void Tracker<D, Real>::State::check(const Frame<D, Real>& frame) const {
-  core::check_frame(frame, frames_.size(), is_dirty_, bad_input);
-}
+class BROADSIDE_HIDDEN Tracker<D, Real>::State {
+ public:
+  State(track::TrackerPlan<D> plan, std::size_t threads)
+      : workers{.threads = threads}, updater(std::move(plan)) {}
 
-template <int D, typename Real>
-std::optional<Statistics> Tracker<D, Real>::State::update(const Frame<D, Real>& frame, bool lists_once,
-                                                          PairSink& begun, PairSink& ended) {
-  const bool rebuild = std::exchange(is_dirty_, true);  // until the end of this update
-  parallel_.start(workers, frame.changed.size() / changes_per_box);
-  frames_.take(frame, rebuild, lists_once, parallel_);
-  ignored_.take(frame, rebuild);
-  find_events(frames_.change(rebuild, workers));
-  deliver(begun, ended);
-  frames_.keep(frame, parallel_);
-  is_dirty_ = false;
-  return statistics_;
-}
-
-/// Sets begun_ and ended_.
-template <int D, typename Real>
-void Tracker<D, Real>::State::find_events(const Change<D, Real>& change) {
-  begun_.clear();
-  ended_.clear();
-  {
-    PairCollector begun_pairs(begun_);
-    PairCollector ended_pairs(ended_);
-    statistics_ = updater_.update(change, begun_pairs, ended_pairs);
-    begun_pairs.flush();
-    ended_pairs.flush();
+  /// Takes a frame. `lists_once`: each changed box is listed once, and is valid or absent.
+  std::optional<Statistics> update(const Frame<D, Real>& frame, bool lists_once, PairSink& begun_sink,
+                                   PairSink& ended_sink) {
+    const bool rebuild = std::exchange(is_dirty, true);  // until the end of this update
+    parallel.start(workers, frame.changed.size() / changes_per_box);
+    frames.take(frame, rebuild, lists_once, parallel);
+    ignored.take(frame.ignored, frame.ignored_changed, rebuild);
+    find_events(frames.change(rebuild, workers));
+    deliver(begun_sink, ended_sink);
+    frames.keep(frame, parallel);
+    is_dirty = false;
+    return statistics;
   }
-  ignored_.apply(change, begun_, ended_);
-  core::sort_unique(begun_, sorting_);
-  core::sort_unique(ended_, sorting_);
-}
 
-/// All memory is taken before the events are delivered, so that nothing can fail after them.
-template <int D, typename Real>
-void Tracker<D, Real>::State::deliver(PairSink& begun, PairSink& ended) {
-  try {
-    ignored_.insert();
-    frames_.prepare_to_keep();
-    const core::CallersEnvironment callers;
-    begun.put(begun_);
-    ended.put(ended_);
-  } catch (...) {
-    ignored_.undo_insert();
-    begun.discard();
-    ended.discard();
-    throw;
+  /// Sets `begun` and `ended`.
+  void find_events(const Change<D, Real>& change) {
+    begun.clear();
+    ended.clear();
+    {
+      PairCollector begun_pairs(begun);
+      PairCollector ended_pairs(ended);
+      statistics = updater.update(change, begun_pairs, ended_pairs);
+      begun_pairs.flush();
+      ended_pairs.flush();
+    }
+    ignored.apply(change, begun, ended);
+    core::sort_unique(begun, sorting);
+    core::sort_unique(ended, sorting);
   }
-  ignored_.keep();
-}
 
-template <int D, typename Real>
-Frame<D, Real> Tracker<D, Real>::State::last_frame() const noexcept {
-  return {frames_.last_boxes(), {}, frames_.last_filters(), ignored_.last(), {}};
-}
+  /// All memory is taken before the events are delivered, so that nothing can fail after them.
+  void deliver(PairSink& begun_sink, PairSink& ended_sink) {
+    try {
+      ignored.insert();
+      frames.prepare_to_keep();
+      const core::CallersEnvironment callers;
+      begun_sink.put(begun);
+      ended_sink.put(ended);
+    } catch (...) {
+      ignored.undo_insert();
+      begun_sink.discard();
+      ended_sink.discard();
+      throw;
+    }
+    ignored.keep();
+  }
 
-template <int D, typename Real>
-std::size_t Tracker<D, Real>::State::bytes() const noexcept {
-  return frames_.bytes() + ignored_.bytes() + updater_.bytes() +
-         (begun_.capacity() + ended_.capacity() + sorting_.capacity()) * sizeof(Pair);
-}
+  BadInput bad_input = BadInput::reject;
+  Workers workers;
+  track::FrameStates<D, Real> frames;
+  track::IgnoredChange ignored;
+  track::Updater<D, Real> updater;
+  std::optional<Statistics> statistics;
+  std::vector<Pair> begun;
+  std::vector<Pair> ended;
+  std::vector<Pair> sorting;
+  core::Parallel parallel;
+  bool is_dirty = true;  // the last update did not end, or there was none
+};
 
 template <int D, typename Real>
 Tracker<D, Real>::Tracker(const Algorithm& algorithm, const Spec& spec) {
@@ -140,7 +142,7 @@ Tracker<D, Real>::Tracker(std::unique_ptr<Searcher<D>> searcher) {
   if (!searcher) throw std::invalid_argument("Tracker was given a null searcher; expected a searcher");
   track::TrackerPlan<D> plan;
   plan.update = Update::rebuild;
-  plan.searcher = find::checked<D>(std::move(searcher));
+  plan.searcher = find::checked(std::move(searcher));
   plan.explains = false;
   state_ = std::make_unique<State>(std::move(plan), 1);
 }
@@ -167,7 +169,7 @@ template <int D, typename Real>
 std::optional<Statistics> Tracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun,
                                                    PairSink& ended) {
   const core::DefaultEnvironment environment;
-  state_->check(frame);
+  core::check_frame(frame, state_->frames.size(), state_->is_dirty, state_->bad_input);
   return state_->update(frame, false, begun, ended);
 }
 
@@ -190,27 +192,29 @@ void Tracker<D, Real>::set_bad_input(BadInput bad_input) noexcept {
 
 template <int D, typename Real>
 std::span<const BoxId> Tracker<D, Real>::quarantined() const noexcept {
-  return state_->quarantined();
+  return state_->frames.quarantined();
 }
 
 template <int D, typename Real>
 Frame<D, Real> Tracker<D, Real>::last_frame() const noexcept {
-  return state_->last_frame();
+  return {state_->frames.last_boxes(), {}, state_->frames.last_filters(), state_->ignored.last(), {}};
 }
 
 template <int D, typename Real>
 const BoxIndex<D, Real>* Tracker<D, Real>::box_index() const noexcept {
-  return state_->box_index();
+  return state_->is_dirty ? nullptr : state_->updater.box_index();
 }
 
 template <int D, typename Real>
 std::string Tracker<D, Real>::explanation() const {
-  return state_->explanation();
+  return state_->updater.explanation();
 }
 
 template <int D, typename Real>
 std::size_t Tracker<D, Real>::bytes() const noexcept {
-  return core::is_lean ? 0 : state_->bytes();
+  if constexpr (core::is_lean) return 0;
+  return state_->frames.bytes() + state_->ignored.bytes() + state_->updater.bytes() +
+         core::bytes_of(state_->begun, state_->ended, state_->sorting);
 }
 
 template <int D, typename Real>

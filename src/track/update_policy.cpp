@@ -62,14 +62,11 @@ constexpr std::size_t max_pause_after_limit = 16 * max_pause;
 
 }  // namespace
 
-FollowPolicy::FollowPolicy(Update update, const FindCosts& finding, std::vector<StructureCosts> structures,
-                           bool shares_candidates)
-    : update_(update),
-      finding_(finding),
-      structures_(std::move(structures)),
-      shares_candidates_(shares_candidates),
-      of_box_(finding.box) {
-  for (const StructureCosts& structure : structures_) of_mover_.push_back(structure.costs.mover);
+FollowPolicy::FollowPolicy(Update update, const FindCosts& finding,
+                           const std::vector<StructureCosts>& structures, bool shares_candidates)
+    : update_(update), finding_(finding), of_box_(finding.box), shared_candidates_{shares_candidates} {
+  for (const StructureCosts& structure : structures)
+    structures_.push_back({structure, structure.costs.mover});
   // The structure that compares all is for special cases.
   const auto usual =
       std::find_if_not(structures_.begin(), structures_.end(), std::mem_fn(&StructureCosts::compares_all));
@@ -96,10 +93,10 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   if (saving <= 0) return goes_on;
   // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
   // soon as it would have paid: so little is lost where few and many boxes move in alternation.
-  saved_ += saving;
-  const double patience = best == current_ ? 1 : patience_;
-  if (saved_ < patience * static_cast<double>(boxes) * structures_[best].costs.start) return goes_on;
-  saved_ = 0;
+  change_.saved += saving;
+  const double patience = best == current_ ? 1 : change_.patience;
+  if (change_.saved < patience * static_cast<double>(boxes) * structures_[best].costs.start) return goes_on;
+  change_.saved = 0;
   if (best != current_) use(best);
   return true;
 }
@@ -121,11 +118,11 @@ void FollowPolicy::take_count(std::size_t boxes) {
 }
 
 double FollowPolicy::cost_of_mover(std::size_t structure) const {
-  const StructureCosts& known = structures_[structure];
+  const KnownStructure& known = structures_[structure];
   const double alone = known.compares_all()
                            ? known.costs.mover_alone + known.costs.further_test * static_cast<double>(boxes_)
-                           : of_mover_[structure];
-  return alone + of_shared_candidates_;
+                           : known.of_mover;
+  return alone + shared_candidates_.of_mover;
 }
 
 void FollowPolicy::found(std::size_t boxes, std::size_t pairs, const std::optional<Statistics>& statistics) {
@@ -142,30 +139,31 @@ void FollowPolicy::found(std::size_t boxes, std::size_t pairs, const std::option
 
 void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>& statistics) {
   follows_ = true;
-  if (cheapest() == current_) saved_ = 0;
+  if (cheapest() == current_) change_.saved = 0;
   if (!statistics) return;
-  seen_movers_ += changed;
+  seen_.movers += changed;
   seen_.tests += statistics->tests;
-  seen_.hits += statistics->hits;
-  if (seen_movers_ < telling_movers) return;
-  for (std::size_t i = 0; i < structures_.size(); ++i)
-    of_mover_[i] += forgotten * (structures_[i].costs.mover - of_mover_[i]);
-  const auto movers = static_cast<double>(std::exchange(seen_movers_, 0));
-  const Statistics seen = std::exchange(seen_, {});
+  seen_.candidates += statistics->hits;
+  if (seen_.movers < telling_movers) return;
+  for (KnownStructure& known : structures_)
+    known.of_mover += forgotten * (known.costs.mover - known.of_mover);
+  const Seen seen = std::exchange(seen_, {});
+  const auto movers = static_cast<double>(seen.movers);
   const double tests = static_cast<double>(seen.tests) / movers;
-  const double candidates = static_cast<double>(seen.hits) / movers;
+  const double candidates = static_cast<double>(seen.candidates) / movers;
   const FollowCosts& costs = structures_[current_].costs;
-  of_mover_[current_] = costs.mover_alone + costs.test * std::min(tests, usual_tests) +
-                        costs.further_test * std::max(0.0, tests - usual_tests);
-  if (shares_candidates_)
-    of_shared_candidates_ = cost_of_shared_candidate * candidates;
+  double& of_mover = structures_[current_].of_mover;
+  of_mover = costs.mover_alone + costs.test * std::min(tests, usual_tests) +
+             costs.further_test * std::max(0.0, tests - usual_tests);
+  if (shared_candidates_.exist)
+    shared_candidates_.of_mover = cost_of_shared_candidate * candidates;
   else
-    of_mover_[current_] += cost_of_candidate * std::max(0.0, candidates - usual_candidates);
+    of_mover += cost_of_candidate * std::max(0.0, candidates - usual_candidates);
 }
 
 void FollowPolicy::lost() noexcept {
   follows_ = false;
-  saved_ = 0;
+  change_.saved = 0;
 }
 
 std::size_t FollowPolicy::cheapest() const {
@@ -180,8 +178,7 @@ std::size_t FollowPolicy::cheapest() const {
 void FollowPolicy::use(std::size_t structure) {
   follows_ = false;
   current_ = structure;
-  patience_ *= 2;
-  seen_movers_ = 0;
+  change_.patience *= 2;
   seen_ = {};
 }
 

@@ -29,7 +29,7 @@ class FollowPolicy {
  public:
   /// `shares_candidates`: the same pairs have to be looked at again in every structure, as those of boxes of
   /// doubles do.
-  FollowPolicy(Update update, const FindCosts& finding, std::vector<StructureCosts> structures,
+  FollowPolicy(Update update, const FindCosts& finding, const std::vector<StructureCosts>& structures,
                bool shares_candidates = false);
 
   /// Whether the next frame is to be followed, in the structure of number current(). `rebuild` says that
@@ -51,7 +51,7 @@ class FollowPolicy {
   void use(std::size_t structure);
 
   /// After all structures were tried: a change to another is not yet one of many.
-  void settle() noexcept { patience_ = 1; }
+  void settle() noexcept { change_.patience = 1; }
 
   Update update() const noexcept { return update_; }
 
@@ -68,22 +68,42 @@ class FollowPolicy {
   double cost_of_mover(std::size_t structure) const;
   void take_count(std::size_t boxes);
 
+  struct KnownStructure : StructureCosts {
+    double of_mover;  // the cost of a mover when it was last used, or the expected one
+  };
+
+  /// Candidates that have to be looked at in every structure, and what those of a mover cost.
+  struct SharedCandidates {
+    bool exist;
+    double of_mover = 0;
+  };
+
+  /// Hysteresis: a change must have paid for itself, more so after each change of structures, so that they do
+  /// not take turns.
+  struct ChangeOfWay {
+    double saved = 0;  // what following, or another structure, would have saved since it was last done
+    double patience = 1;
+  };
+
+  /// What the structure took since it was last weighed.
+  struct Seen {
+    std::uint64_t movers = 0;
+    std::uint64_t tests = 0;
+    std::uint64_t candidates = 0;
+  };
+
   Update update_;
   FindCosts finding_;
-  std::vector<StructureCosts> structures_;
-  bool shares_candidates_;
-  std::vector<double> of_mover_;     // by structure: the cost of a mover when it was last used, or expected
-  double of_shared_candidates_ = 0;  // what a mover's candidates cost besides, in any structure
-  double of_box_;                    // the cost of finding all pairs anew, a box
-  std::size_t boxes_ = 0;            // of the last frame
+  double of_box_;  // the cost of finding all pairs anew, a box
+  std::vector<KnownStructure> structures_;
+  SharedCandidates shared_candidates_;
+  std::size_t boxes_ = 0;  // of the last frame
   bool are_few_ = false;
+  std::size_t break_even_ = 0;
   bool follows_ = false;
   std::size_t current_ = 0;
-  double saved_ = 0;     // what following would have saved since it was last done, or another structure
-  double patience_ = 1;  // hysteresis: grows with each change of structures, so that they do not take turns
-  std::uint64_t seen_movers_ = 0;  // since the structure was last weighed
-  Statistics seen_{};              // likewise
-  std::size_t break_even_ = 0;
+  ChangeOfWay change_;
+  Seen seen_;
 };
 
 /// What a frame of enlarged boxes took.

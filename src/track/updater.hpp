@@ -1,13 +1,19 @@
 // Updater: brings the pairs of a tracker up to date in one of four ways, and says in which.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "broadside/follower.hpp"
 
+#include "core/lean.hpp"
+#include "core/number_text.hpp"
+#include "track/candidate_limit.hpp"
 #include "track/candidate_list.hpp"
 #include "track/follow_or_find.hpp"
 #include "track/update_policy.hpp"
@@ -20,14 +26,34 @@ namespace broadside::track {
 template <int D, typename Real>
 class Updater {
  public:
-  explicit Updater(TrackerPlan<D> plan);
+  explicit Updater(TrackerPlan<D> plan)
+      : may_enlarge_(may_enlarge(plan)),
+        policy_(std::ranges::any_of(plan.structures, compares_all)),
+        pairs_(std::move(plan)) {}
 
   /// Writes the events of a change, in any order. One may be written more than once. After an exception the
   /// next change must be a rebuild.
-  std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+    // Lean builds, which are to be small, do not enlarge boxes.
+    if constexpr (core::is_lean) return pairs_.update(change, begun, ended);
+    was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
+    if (was_enlarged_) return statistics_;
+    update_exactly(change, begun, ended);
+    if (may_enlarge_ && !change.rebuild && !pairs_.has_compared_all() &&
+        policy_.tries(change.now.size(), change.changed.size()))
+      enlarge(change);
+    return statistics_;
+  }
 
   /// Which way the last update went and why, in a sentence; empty where there is one way.
-  std::string explanation() const;
+  std::string explanation() const {
+    if (!was_enlarged_) return pairs_.explanation();
+    const EnlargedFrame& frame = candidates_.last();
+    return std::to_string(frame.candidates) + " pairs of boxes enlarged by " +
+           core::text_of(std::round(1000 * static_cast<double>(candidates_.margins().relative)) / 10) +
+           " % of their shortest side were tested, since only " + std::to_string(frame.left) + " of the " +
+           std::to_string(frame.changed) + " boxes that changed left their enlarged ones";
+  }
 
   /// An index of the last frame's boxes, where one is kept anyway; or null. One over enlarged boxes would
   /// answer queries wrongly.
@@ -38,10 +64,82 @@ class Updater {
   std::size_t bytes() const noexcept { return pairs_.bytes() + candidates_.bytes(); }
 
  private:
-  bool update_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
-  void update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
-  void enlarge(const Change<D, Real>& change);
-  void stop_enlarging() noexcept;
+  static bool compares_all(const FollowerChoice<D>& structure) { return structure.max_boxes > 0; }
+
+  /// Whether boxes may be enlarged: where structures other than one that compares all are followed by choice.
+  static bool may_enlarge(const TrackerPlan<D>& plan) {
+    return !core::is_lean && plan.update == Update::automatic &&
+           !std::ranges::all_of(plan.structures, compares_all);
+  }
+
+  /// Returns false if there would be too many candidates. It has then reported no event of this frame, and
+  /// the enlarged boxes are gone.
+  bool update_enlarged(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+    try {
+      statistics_ = candidates_.update(change, pairs_, begun, ended);
+    } catch (const LimitPassed&) {
+      policy_.limit_passed();
+      stop_enlarging();
+      return false;
+    }
+    if (change.changed.empty()) return true;
+    // Fewer candidates are allowed once pairs have ended.
+    const bool exceeds_limit = candidates_.exceeds_limit();
+    if (exceeds_limit) policy_.limit_passed();
+    if (exceeds_limit || !policy_.goes_on(candidates_.last())) stop_enlarging();
+    return true;
+  }
+
+  void update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+    if (boxes_ == Boxes::exact) {
+      statistics_ = pairs_.update(change, begun, ended);
+      return;
+    }
+    candidates_.release();
+    pairs_.forget();
+    pairs_.limit_pairs(no_limit);
+    boxes_ = Boxes::exact;
+    Change<D, Real> exact = change;
+    exact.rebuild = true;
+    statistics_ = pairs_.update(exact, begun, ended);
+  }
+
+  /// Enlarges the boxes after a frame that was handled otherwise, if they moved little enough.
+  void enlarge(const Change<D, Real>& change) {
+    const auto margins = CandidateList<D, Real>::margins_for(change);
+    if (!margins) return;
+    Statistics statistics = statistics_.value_or(Statistics{});
+    bool changes_pairs = false;
+    const auto give_up = [&] {
+      if (changes_pairs) boxes_ = Boxes::ending;
+      stop_enlarging();
+    };
+    try {
+      statistics.tests += candidates_.start(change, *margins, pairs_, changes_pairs);
+      boxes_ = Boxes::enlarged;
+      policy_.started();
+    } catch (const LimitPassed&) {
+      statistics.tests += candidates_.candidate_count();  // those that are known
+      policy_.limit_passed();
+      give_up();
+    } catch (const std::bad_alloc&) {
+      // The frame itself is whole.
+      policy_.out_of_memory();
+      give_up();
+    } catch (...) {  // thrown by a checkpoint or an executor
+      policy_.interrupted();
+      give_up();
+      throw;
+    }
+    statistics_ = statistics;
+  }
+
+  /// From the next frame on, pairs are those of the boxes themselves.
+  void stop_enlarging() noexcept {
+    if (boxes_ == Boxes::enlarged) boxes_ = Boxes::ending;
+    candidates_.release();
+    if (boxes_ == Boxes::ending) pairs_.forget();
+  }
 
   /// The boxes that `pairs_` knows.
   enum class Boxes : std::uint8_t {

@@ -19,7 +19,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
-#include "debug/definition.hpp"
+#include "debug/tracker_fault.hpp"
 #include "history_bytes.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/trace/trace.hpp"
@@ -290,7 +290,7 @@ void check_followed(Tracker<D, Real>& tracker, const std::vector<Box<D, Real>>& 
   tracker.update(frame, begun_sink, ended_sink);
   for (const Pair pair : ended) expect(pairs.erase(pair) == 1, "a pair ended that did not hold");
   for (const Pair pair : begun) expect(pairs.insert(pair).second, "a pair began that held");
-  expect(std::ranges::equal(pairs, core::pairs_by_definition(frame)), "the pairs are wrong");
+  expect(std::ranges::equal(pairs, debug::pairs_by_definition(frame)), "the pairs are wrong");
 }
 
 template <int D, typename Real>

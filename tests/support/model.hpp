@@ -19,7 +19,6 @@
 #include "broadside/sinks.hpp"
 
 #include "core/moved_box.hpp"
-#include "core/nan_box.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/rng.hpp"

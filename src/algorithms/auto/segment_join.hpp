@@ -5,7 +5,6 @@
 // auto hands a search over to it when another algorithm makes far too many tests.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,6 +15,7 @@
 #include "broadside/searcher.hpp"
 
 #include "core/large_array.hpp"
+#include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 #include "core/sorted_boxes.hpp"
 #include "kernels/run.hpp"
@@ -34,19 +34,10 @@ class SegmentJoin {
                   Checkpoint& checkpoint, PairSink& pairs);
 
  private:
-  /// A box in a node. Bit a of `dedup_mask` is set if the box begins before the node's region on axis a; the
-  /// rest as in a run.
-  struct Reference {
-    std::uint32_t place;  // among the sorted boxes
-    std::uint32_t dedup_mask;
-  };
+  using Reference = core::SortedReference;
 
   /// References that follow each other on the stack, in the order of the sorted boxes.
-  struct List {
-    std::size_t begin;
-    std::size_t end;
-    std::size_t size() const { return end - begin; }
-  };
+  using List = core::Range;
 
   /// The lists of a node: its pairs are those of `a` with `b`, or of `a` with itself.
   struct Node {

@@ -3,8 +3,8 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "algorithms/brute_force/brute_force_follower.hpp"
 #include "algorithms/follow_costs.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/registry.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"

@@ -3,13 +3,13 @@
 // The paper's flag and previous state are in the Change; what is kept here is one copy of all boxes as a
 // structure of arrays. Changed boxes are taken one after the other, and each one's place is brought up to
 // date when it has been compared, so an event of two changed boxes shows when the second one is taken.
-#include "algorithms/brute_force/brute_force_follower.hpp"
-
 #include <algorithm>
 #include <array>
 #include <vector>
 
 #include "algorithms/event_sinks.hpp"
+#include "algorithms/followers.hpp"
+#include "core/grow.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -44,12 +44,7 @@ class BruteForceFollower final : public Follower<D> {
         .tests = std::uint64_t{moved_.size()} * size, .references = size, .hits = events.candidates()};
   }
 
-  std::size_t bytes() const noexcept override {
-    std::size_t bytes = ids_.capacity() * sizeof(BoxId) + moved_.capacity() * sizeof(core::MovedBox<D>);
-    for (int axis = 0; axis < D; ++axis)
-      bytes += (min_[axis].capacity() + max_[axis].capacity()) * sizeof(float);
-    return bytes;
-  }
+  std::size_t bytes() const noexcept override { return core::bytes_of(min_, max_, ids_, moved_); }
 
  private:
   /// Makes the arrays as long as the frame; new places are absent.

@@ -11,16 +11,16 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
-#include "algorithms/bvh/bvh_follower.hpp"
 #include "algorithms/bvh/packer.hpp"
 #include "algorithms/follow_costs.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/waste.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
 #include "kernels/bvh_join.hpp"
-#include "kernels/waste.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -120,7 +120,7 @@ class BvhSearcher final : public Searcher<D> {
     parts_.resize(part_count());
     const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t max_tests,
                              std::size_t worker, PairSink& sink) {
-      const kernels::JoinLimit limit = {max_tests, kernels::tests_per_pair, parallel_.checkpoint(worker)};
+      const kernels::JoinLimit limit = {max_tests, tests_per_pair, parallel_.checkpoint(worker)};
       parts_[part] = kernels::join(tree_, leaves, limit, scratch_[worker].data(), sink);
       return parts_[part].tests;
     };
@@ -130,7 +130,7 @@ class BvhSearcher final : public Searcher<D> {
           for (std::size_t part = parts.begin; part < parts.end; ++part) {
             const kernels::NodeRange leaves = leaves_of({part, part + 1});
             const std::uint64_t boxes = (leaves.end - leaves.begin) * kernels::fan_out;
-            of_parts.tests += join(part, leaves, kernels::tests_per_box * boxes, worker, sink);
+            of_parts.tests += join(part, leaves, tests_per_box * boxes, worker, sink);
           }
           return of_parts;
         });

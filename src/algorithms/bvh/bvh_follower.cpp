@@ -4,16 +4,15 @@
 // Boxes move one after the other: each is compared with all others as these stand at its turn. So a pair of
 // boxes that both moved may be seen to begin and to end again; only such pairs are tested twice. When the
 // boxes that moved are compared with far more others than after the last build, the tree is built anew.
-#include "algorithms/bvh/bvh_follower.hpp"
-
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "algorithms/bvh/index.hpp"
 #include "algorithms/event_sinks.hpp"
-#include "kernels/bvh_follow.hpp"
+#include "algorithms/followers.hpp"
+#include "core/grow.hpp"
+#include "kernels/bvh.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -94,8 +93,7 @@ class BvhFollower final : public Follower<D> {
   const BoxIndex<D, float>* box_index() const noexcept override { return &index_; }
 
   std::size_t bytes() const noexcept override {
-    return index_.bytes() + moved_.capacity() * sizeof(kernels::MovedBox<D>) +
-           packed_.capacity() * sizeof(Box<D>) + calls_for_.capacity();
+    return index_.bytes() + core::bytes_of(packed_, moved_, calls_for_);
   }
 
  private:

@@ -6,8 +6,9 @@
 #include "algorithms/bvh/dynamic_bvh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
+
+#include "core/grow.hpp"
 
 namespace broadside::algorithm {
 
@@ -270,9 +271,7 @@ kernels::WritableBvh<D> DynamicBvh<D>::writable() {
 
 template <int D>
 std::size_t DynamicBvh<D>::bytes() const noexcept {
-  const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
-  return packer_.bytes() + held(packed_) + held(ids_) + held(children_) + held(nodes_) + held(info_) +
-         held(free_) + held(slots_) + held(lists_[0]) + held(lists_[1]);
+  return packer_.bytes() + core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_);
 }
 
 template class DynamicBvh<2>;

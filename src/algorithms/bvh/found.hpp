@@ -22,62 +22,26 @@ namespace broadside::algorithm {
 template <typename Real>
 inline constexpr bool is_float = std::is_same_v<Real, float>;
 
-/// Boxes that may overlap a box.
-template <int D, typename Real>
-class Overlapping final : public kernels::FoundBoxes {
+/// Hands what a function makes of the boxes on to a visitor: `take_one(boxes, i, to)` sets `to` to what is
+/// found with box i of `boxes`, and returns whether it is.
+template <typename Found, typename TakeOne>
+class VisitedBoxes final : public kernels::FoundBoxes {
  public:
-  Overlapping(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, Visitor<BoxId>& visitor,
-              const QueryOptions<BoxId>& options)
-      : boxes_(boxes), box_(box), visitor_(visitor), options_(options) {}
+  VisitedBoxes(Visitor<Found>& visitor, const TakeOne& take_one) : visitor_(visitor), take_one_(take_one) {}
 
   bool take() override {
     std::size_t size = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const BoxId id{ids[i]};
-      result_[size] = id;
-      bool counts = boxes_.may_find(id, options_);
-      if constexpr (!is_float<Real>) counts = counts && overlap(box_, boxes_.exact(id));
-      size += static_cast<std::size_t>(counts);
-    }
+    for (std::size_t i = 0; i < count; ++i)
+      size += static_cast<std::size_t>(take_one_(*this, i, result_[size]));
     count = 0;
     full = std::min(2 * full, max_found);
     return size == 0 || visitor_.visit({result_.data(), size});
   }
 
  private:
-  const BvhIndex<D, Real>& boxes_;
-  const Box<D, Real>& box_;
-  Visitor<BoxId>& visitor_;
-  const QueryOptions<BoxId>& options_;
-  std::array<BoxId, max_found + 2 * kernels::fan_out> result_;
-};
-
-/// Boxes that a cast may meet.
-template <int D, typename Real>
-class Met final : public kernels::FoundBoxes {
- public:
-  Met(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
-      const QueryOptions<BoxId>& options)
-      : boxes_(boxes), cast_(cast), visitor_(visitor), options_(options) {}
-
-  bool take() override {
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!boxes_.may_find(BoxId{ids[i]}, options_)) continue;
-      if (const std::optional<Real> enter = boxes_.t_enter_of(cast_, *this, i))
-        result_[size++] = {BoxId{ids[i]}, *enter};
-    }
-    count = 0;
-    full = std::min(2 * full, max_found);
-    return size == 0 || visitor_.visit({result_.data(), size});
-  }
-
- private:
-  const BvhIndex<D, Real>& boxes_;
-  const BoxCast<D, Real>& cast_;
-  Visitor<Hit<Real>>& visitor_;
-  const QueryOptions<BoxId>& options_;
-  std::array<Hit<Real>, max_found + 2 * kernels::fan_out> result_;
+  Visitor<Found>& visitor_;
+  const TakeOne& take_one_;
+  std::array<Found, max_found + 2 * kernels::fan_out> result_;
 };
 
 /// The first box that a cast meets; of several, the one with the least id.

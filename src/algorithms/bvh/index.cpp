@@ -154,7 +154,13 @@ template <int D, typename Real>
 bool BvhIndex<D, Real>::find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
                                          const QueryOptions& options) const {
   if (is_empty()) return true;
-  Overlapping<D, Real> found(*this, box, visitor, options);
+  const auto take = [&](const FoundBoxes& boxes, std::size_t i, BoxId& to) {
+    to = BoxId{boxes.ids[i]};
+    bool counts = may_find(to, options);
+    if constexpr (!is_float<Real>) counts = counts && overlap(box, exact_[to]);
+    return counts;
+  };
+  VisitedBoxes found(visitor, take);
   return kernels::find_overlapping(tree_.view(), in_tree(box), found) && found.take();
 }
 
@@ -164,7 +170,13 @@ bool BvhIndex<D, Real>::find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real
   if (is_empty()) return true;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
-  Met<D, Real> found(*this, cast, visitor, options);
+  const auto take = [&](const FoundBoxes& boxes, std::size_t i, Hit<Real>& to) {
+    if (!may_find(BoxId{boxes.ids[i]}, options)) return false;
+    const std::optional<Real> enter = t_enter_of(cast, boxes, i);
+    if (enter) to = {BoxId{boxes.ids[i]}, *enter};
+    return enter.has_value();
+  };
+  VisitedBoxes found(visitor, take);
   found.t_max = algorithm::in_tree(cast.t_max, exponent);
   return kernels::find_met(tree_.view(), query, found) && found.take();
 }

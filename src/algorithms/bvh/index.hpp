@@ -12,6 +12,7 @@
 
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/dynamic_bvh.hpp"
+#include "core/grow.hpp"
 #include "core/lean.hpp"
 #include "kernels/bvh_query.hpp"
 
@@ -64,18 +65,16 @@ class BvhIndex {
 
   std::size_t bytes() const noexcept {
     if constexpr (core::is_lean) return 0;
-    return own_filters_.capacity() * sizeof(Filter) + changed_.capacity() * sizeof(BoxId) + tree_.bytes() +
-           exact_.capacity() * sizeof(Box<D, Real>);
+    return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
   }
 
-  /// For the kernels' sinks: whether a query may find the box, the box itself (of doubles), and the parameter
-  /// at which box `found.ids[i]` is hit.
+  /// For the kernels' sinks: whether a query may find the box, and the parameter at which box `found.ids[i]`
+  /// is hit.
   bool may_find(BoxId id, const QueryOptions& options) const noexcept {
     if (options.except && id == *options.except) return false;
     return options.filter == nullptr ||
            accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
   }
-  const Box<D, Real>& exact(BoxId id) const noexcept { return exact_[index(id)]; }
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
                                  std::size_t i) const;
 

@@ -14,7 +14,7 @@
 #include <numeric>
 #include <utility>
 
-#include "algorithms/bvh/buckets.hpp"
+#include "core/grow.hpp"
 #include "core/prefix_sum.hpp"
 
 namespace broadside::algorithm {
@@ -25,6 +25,39 @@ using kernels::fan_out;
 /// Sizes beyond which a box belongs to the next class, in units of a typical one.
 constexpr std::array<float, 4> class_borders = {4, 32, 256, 2048};
 constexpr std::size_t classes = class_borders.size() + 1;
+
+constexpr std::size_t max_bvh_buckets = 2048;
+
+/// The root of `value` >= 0 of that degree, 1 to 3, in operations that are rounded alike everywhere: which
+/// leaf a box is in must not depend on the machine.
+double root(double value, int degree) {
+  if (degree == 1 || !(value > 0)) return value;
+  if (degree == 2) return std::sqrt(value);
+  double guess = std::sqrt(std::sqrt(value));
+  for (int step = 0; step < 64; ++step) guess -= (guess - value / guess / guess) / 3;
+  return guess;
+}
+
+/// Buckets of equal width for the coordinates on one axis.
+struct Buckets {
+  Buckets(float least, float greatest, std::size_t max_count) : low(least) {
+    const float width = greatest - least;
+    if (!(width > 0) || max_count < 2) return;
+    scale = static_cast<float>(max_count) / width;
+    count = static_cast<std::uint32_t>(max_count);
+    if (!std::isfinite(scale)) scale = std::numeric_limits<float>::max();
+  }
+
+  std::uint32_t operator()(float value) const {
+    const float at = (value - low) * scale;
+    // A NaN goes into the first one, too.
+    return at > 0 ? static_cast<std::uint32_t>(std::min(at, static_cast<float>(count - 1))) : 0;
+  }
+
+  float low;
+  float scale = 0;
+  std::uint32_t count = 1;
+};
 
 }  // namespace
 
@@ -261,11 +294,9 @@ void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf 
 
 template <int D>
 std::size_t BvhPacker<D>::bytes() const noexcept {
-  const auto held = [](const auto& memory) { return memory.capacity() * sizeof(memory[0]); };
-  std::size_t bytes =
-      held(keys_) + held(counts_) + held(group_ends_) + held(entries_) + held(scratch_) + levels_.bytes();
+  std::size_t bytes = core::bytes_of(keys_, counts_, group_ends_, entries_, scratch_) + levels_.bytes();
   for (const Scratch& scratch : scratch_)
-    bytes += held(scratch.buckets) + held(scratch.order) + scratch.radix.bytes();
+    bytes += core::bytes_of(scratch.buckets, scratch.order) + scratch.radix.bytes();
   return bytes;
 }
 

@@ -41,9 +41,6 @@ class BvhPacker {
   /// The tree built last. A caller that changes its levels must keep what PackedBvh promises.
   const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
 
-  /// Local ids on level 0, one for each place; the caller maps them to its own. 0 marks padding.
-  std::span<BoxId> ids() noexcept { return levels_.ids(); }
-
   /// The bytes held; about half are only needed while building.
   std::size_t bytes() const noexcept;
 

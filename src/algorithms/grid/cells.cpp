@@ -179,10 +179,7 @@ void HierarchicalCells<D>::close_hole(std::uint32_t slot) {
 
 template <int D>
 std::size_t HierarchicalCells<D>::bytes() const noexcept {
-  return pool_.bytes() +
-         (first_.capacity() + counts_.capacity() + slot_.capacity() + stale_.capacity()) *
-             sizeof(std::uint32_t) +
-         levels_.bytes();
+  return pool_.bytes() + core::bytes_of(first_, counts_, slot_, stale_) + levels_.bytes();
 }
 
 template class HierarchicalCells<2>;

@@ -12,18 +12,18 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
 #include "algorithms/follow_costs.hpp"
-#include "algorithms/grid/grid_follower.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/grid/layout.hpp"
 #include "algorithms/grid/sweep.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/waste.hpp"
 #include "core/large_array.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
@@ -31,7 +31,6 @@
 #include "core/sample.hpp"
 #include "core/tunables.hpp"
 #include "kernels/run.hpp"
-#include "kernels/waste.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -121,7 +120,7 @@ class GridSearcher final : public Searcher<D> {
     const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
                                               begin_[layout_.slab_begin(slab) * length]);
     const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
-    return static_cast<std::uint64_t>(share * static_cast<double>(kernels::tests_per_box * boxes)) + 1;
+    return static_cast<std::uint64_t>(share * static_cast<double>(tests_per_box * boxes)) + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {
@@ -234,7 +233,7 @@ class GridSearcher final : public Searcher<D> {
 template <int D>
 Strategies<D> grid_strategies() {
   return {.searcher = make_strategy<GridSearcher<D>>,
-          .followers = {{"grid", make_strategy<GridFollower<D>>, grid_following<D>}},
+          .followers = {{"grid", make_grid_follower<D>, grid_following<D>}},
           .find_costs = grid_finding<D>,
           .outline = core::outline_by(&GridSearcher<D>::lay_out)};
 }

@@ -5,15 +5,20 @@
 // earlier one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and
 // only a difference is written. Several threads share a batch: first they move its boxes, then they search
 // for them, so that no entry changes while it is read.
-#include "algorithms/grid/grid_follower.hpp"
-
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "broadside/sinks.hpp"
 
 #include "algorithms/event_sinks.hpp"
+#include "algorithms/followers.hpp"
+#include "algorithms/grid/cells.hpp"
 #include "core/filter_sink.hpp"
+#include "core/grow.hpp"
+#include "core/parallel.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -43,151 +48,177 @@ void prefetch_ahead(const HierarchicalCells<D>& cells, const Boxes& boxes, std::
   if (i + steps < boxes.size()) cells.prefetch_entry(id_of(boxes[i + steps]));
 }
 
+/// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
+/// longer suit the boxes, and their searches have cost that much more than usual.
+template <int D>
+class GridFollower final : public Follower<D> {
+ public:
+  explicit GridFollower(const Settings& settings) : cells_(settings.optional_number("cell")) {}
+
+  std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) override {
+    if (change.rebuild || needs_rebuild(change)) build(change);
+    cells_.reserve(change.now.size());
+    parallel_.start(change.workers, change.changed.size() * boxes_per_mover);
+    if (parts_.size() < parallel_.range_count()) parts_.resize(parallel_.range_count());
+    settle(change);
+    core::ChangeWork work;
+    std::uint64_t candidates = 0;
+    std::size_t queries = 0;
+    for (std::size_t at = 0; at < change.changed.size(); at += batch) {
+      move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)));
+      search(change, begun, ended);
+      for (const Part& part : parts()) {
+        work += part.work;
+        candidates += part.candidates;
+        queries += part.boxes.size();
+      }
+    }
+    cells_.drop_stale();
+    std::swap(moved_, moving_);
+    weigh(work, queries);
+    return Statistics{
+        .tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells(), .hits = candidates};
+  }
+
+  std::size_t bytes() const noexcept override {
+    std::size_t bytes = cells_.bytes() + core::bytes_of(moved_, moving_);
+    for (const Part& part : parts_) bytes += core::bytes_of(part.boxes, part.begun, part.ended);
+    return bytes;
+  }
+
+ private:
+  /// What each of several threads moves and finds.
+  struct Part {
+    std::vector<core::MovedBox<D>> boxes;
+    std::vector<Pair> begun;
+    std::vector<Pair> ended;
+    core::ChangeWork work;
+    std::uint64_t candidates = 0;  // pairs looked at in both frames
+  };
+
+  /// Sets the boxes that moved before and do not now to where they are at rest.
+  void settle(const Change<D>& change) {
+    parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const BoxId id = moved_[i];
+        prefetch_ahead(cells_, moved_, i);
+        const Box<D>& box = change.now[index(id)];
+        if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
+      }
+    });
+    moving_.clear();
+  }
+
+  /// Lists these boxes in parts_ and moves them, each to its cell: several threads those that stay in theirs,
+  /// and then one the others.
+  void move(const Change<D>& change, std::span<const BoxId> ids) {
+    parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
+      std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
+      boxes.clear();
+      append_moved(change, ids.subspan(range.begin, range.size()), boxes);
+      if (parallel_.workers() == 1) return;
+      for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
+    });
+    for (Part& part : parts()) {
+      for (std::size_t i = 0; i < part.boxes.size(); ++i) {
+        core::MovedBox<D>& box = part.boxes[i];
+        prefetch_ahead(cells_, part.boxes, i);
+        if (box.slot == kernels::no_slot) cells_.move(box);
+        if (box.is_present) moving_.push_back(box.id);
+      }
+    }
+  }
+
+  /// Finds what the boxes in parts_ meet.
+  void search(const Change<D>& change, PairSink& begun, PairSink& ended) {
+    const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
+      EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
+      part.work = kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes),
+                                        events.sinks());
+      events.flush();
+      part.candidates = events.candidates();
+    };
+    if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
+    // A sink with a limit must count while threads search, not after they have filled their lists.
+    const core::FilterSink* const limit = core::FilterSink::of(begun);
+    parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
+      for (Part& part : parts().subspan(range.begin, range.size())) {
+        part.begun.clear();
+        part.ended.clear();
+        PairCollector its_begun(part.begun);
+        PairCollector its_ended(part.ended);
+        const auto limited = limit != nullptr ? limit->onto(its_begun) : nullptr;
+        search(part, limited ? *limited : static_cast<PairSink&>(its_begun), its_ended, worker);
+        if (limited) limited->flush();
+        its_begun.flush();
+        its_ended.flush();
+      }
+    });
+    for (const Part& part : parts()) {
+      (limit != nullptr ? limit->target() : begun).put(part.begun);
+      ended.put(part.ended);
+    }
+  }
+
+  /// Whether the cells were laid out for far more or fewer boxes than there are, or are found to be slow.
+  bool needs_rebuild(const Change<D>& change) const {
+    std::size_t boxes = cells_.boxes();
+    // Arrivals and departures are counted only where enough boxes changed to matter.
+    if (change.changed.size() > boxes / 4) {
+      for (const BoxId id : change.changed) {
+        const bool was = is_present(change.before[index(id)]);
+        const bool is = is_present(change.now[index(id)]);
+        if (was != is) boxes = was ? boxes - 1 : boxes + 1;
+      }
+    }
+    constexpr std::size_t few = 64;
+    if (boxes > 4 * built_for_ + few || boxes + few < built_for_ / 8) return true;
+    return excess_ > static_cast<double>(boxes + few);
+  }
+
+  void build(const Change<D>& change) {
+    cells_.build(change.before, change.now);
+    built_for_ = static_cast<std::size_t>(std::ranges::count_if(change.now, is_present<D, float>));
+    moved_.clear();
+    usual_blocks_ = 0;
+    first_queries_ = 0;
+    excess_ = 0;
+  }
+
+  void weigh(const core::ChangeWork& work, std::size_t queries) {
+    const auto blocks = static_cast<double>(work.blocks);
+    const auto count = static_cast<double>(queries);
+    if (first_queries_ < telling_queries) {
+      const auto before = static_cast<double>(first_queries_);
+      usual_blocks_ = queries == 0 ? usual_blocks_ : (usual_blocks_ * before + blocks) / (before + count);
+      first_queries_ += queries;
+    } else {
+      excess_ += std::max(0.0, blocks - 2 * usual_blocks_ * count);
+    }
+  }
+
+  /// Those of this update.
+  std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
+
+  HierarchicalCells<D> cells_;
+  std::vector<BoxId> moved_;  // whose entries cover more than where they are
+  std::vector<BoxId> moving_;
+  core::Parallel parallel_;
+  std::vector<Part> parts_;  // of those that move, by range
+  std::size_t built_for_ = 0;
+  double usual_blocks_ = 0;  // a query, since the cells were laid out
+  std::uint64_t first_queries_ = 0;
+  double excess_ = 0;  // blocks looked at beyond what is usual
+};
+
 }  // namespace
 
 template <int D>
-std::optional<Statistics> GridFollower<D>::follow(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  if (change.rebuild || needs_rebuild(change)) build(change);
-  cells_.reserve(change.now.size());
-  parallel_.start(change.workers, change.changed.size() * boxes_per_mover);
-  if (parts_.size() < parallel_.range_count()) parts_.resize(parallel_.range_count());
-  settle(change);
-  core::ChangeWork work;
-  std::uint64_t candidates = 0;
-  std::size_t queries = 0;
-  for (std::size_t at = 0; at < change.changed.size(); at += batch) {
-    move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)));
-    search(change, begun, ended);
-    for (const Part& part : parts()) {
-      work += part.work;
-      candidates += part.candidates;
-      queries += part.boxes.size();
-    }
-  }
-  cells_.drop_stale();
-  std::swap(moved_, moving_);
-  weigh(work, queries);
-  return Statistics{
-      .tests = work.tests, .references = cells_.boxes(), .cells = cells_.cells(), .hits = candidates};
+std::unique_ptr<Follower<D>> make_grid_follower(const Settings& settings) {
+  return std::make_unique<GridFollower<D>>(settings);
 }
 
-/// Sets the boxes that moved before and do not now to where they are at rest.
-template <int D>
-void GridFollower<D>::settle(const Change<D>& change) {
-  parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      const BoxId id = moved_[i];
-      prefetch_ahead(cells_, moved_, i);
-      const Box<D>& box = change.now[index(id)];
-      if (change.flags[index(id)] == 0 || change.before[index(id)] == box) cells_.settle(id, box);
-    }
-  });
-  moving_.clear();
-}
-
-/// Lists these boxes in parts_ and moves them, each to its cell: several threads those that stay in theirs,
-/// and then one the others.
-template <int D>
-void GridFollower<D>::move(const Change<D>& change, std::span<const BoxId> ids) {
-  parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
-    std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
-    boxes.clear();
-    append_moved(change, ids.subspan(range.begin, range.end - range.begin), boxes);
-    if (parallel_.workers() == 1) return;
-    for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
-  });
-  for (Part& part : parts()) {
-    for (std::size_t i = 0; i < part.boxes.size(); ++i) {
-      core::MovedBox<D>& box = part.boxes[i];
-      prefetch_ahead(cells_, part.boxes, i);
-      if (box.slot == kernels::no_slot) cells_.move(box);
-      if (box.is_present) moving_.push_back(box.id);
-    }
-  }
-}
-
-/// Finds what the boxes in parts_ meet.
-template <int D>
-void GridFollower<D>::search(const Change<D>& change, PairSink& begun, PairSink& ended) {
-  const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
-    EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
-    part.work =
-        kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
-    events.flush();
-    part.candidates = events.candidates();
-  };
-  if (parallel_.workers() == 1) return search(parts_.front(), begun, ended, 0);
-  // A sink with a limit must count while threads search, not after they have filled their lists.
-  const core::FilterSink* const limit = core::FilterSink::of(begun);
-  parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
-    for (Part& part : parts().subspan(range.begin, range.end - range.begin)) {
-      part.begun.clear();
-      part.ended.clear();
-      PairCollector its_begun(part.begun);
-      PairCollector its_ended(part.ended);
-      const auto limited = limit != nullptr ? limit->onto(its_begun) : nullptr;
-      search(part, limited ? *limited : static_cast<PairSink&>(its_begun), its_ended, worker);
-      if (limited) limited->flush();
-      its_begun.flush();
-      its_ended.flush();
-    }
-  });
-  for (const Part& part : parts()) {
-    (limit != nullptr ? limit->target() : begun).put(part.begun);
-    ended.put(part.ended);
-  }
-}
-
-/// Whether the cells were laid out for far more or fewer boxes than there are, or are found to be slow.
-template <int D>
-bool GridFollower<D>::needs_rebuild(const Change<D>& change) const {
-  std::size_t boxes = cells_.boxes();
-  // Arrivals and departures are counted only where enough boxes changed to matter.
-  if (change.changed.size() > boxes / 4) {
-    for (const BoxId id : change.changed) {
-      const bool was = is_present(change.before[index(id)]);
-      const bool is = is_present(change.now[index(id)]);
-      if (was != is) boxes = was ? boxes - 1 : boxes + 1;
-    }
-  }
-  constexpr std::size_t few = 64;
-  if (boxes > 4 * built_for_ + few || boxes + few < built_for_ / 8) return true;
-  return excess_ > static_cast<double>(boxes + few);
-}
-
-template <int D>
-void GridFollower<D>::build(const Change<D>& change) {
-  cells_.build(change.before, change.now);
-  built_for_ = static_cast<std::size_t>(std::ranges::count_if(change.now, is_present<D, float>));
-  moved_.clear();
-  usual_blocks_ = 0;
-  first_queries_ = 0;
-  excess_ = 0;
-}
-
-template <int D>
-void GridFollower<D>::weigh(const core::ChangeWork& work, std::size_t queries) {
-  const auto blocks = static_cast<double>(work.blocks);
-  const auto count = static_cast<double>(queries);
-  if (first_queries_ < telling_queries) {
-    const auto before = static_cast<double>(first_queries_);
-    usual_blocks_ = queries == 0 ? usual_blocks_ : (usual_blocks_ * before + blocks) / (before + count);
-    first_queries_ += queries;
-  } else {
-    excess_ += std::max(0.0, blocks - 2 * usual_blocks_ * count);
-  }
-}
-
-template <int D>
-std::size_t GridFollower<D>::bytes() const noexcept {
-  std::size_t bytes = cells_.bytes() + (moved_.capacity() + moving_.capacity()) * sizeof(BoxId);
-  for (const Part& part : parts_)
-    bytes += part.boxes.capacity() * sizeof(core::MovedBox<D>) +
-             (part.begun.capacity() + part.ended.capacity()) * sizeof(Pair);
-  return bytes;
-}
-
-template class GridFollower<2>;
-template class GridFollower<3>;
+template std::unique_ptr<Follower<2>> make_grid_follower(const Settings&);
+template std::unique_ptr<Follower<3>> make_grid_follower(const Settings&);
 
 }  // namespace broadside::algorithm

@@ -1,9 +1,6 @@
 // How many levels there are, and how long their cells.
 #include "algorithms/grid/levels.hpp"
 
-#include <algorithm>
-#include <limits>
-
 #include "algorithms/grid/layout.hpp"
 
 namespace broadside::algorithm {
@@ -30,11 +27,7 @@ std::size_t whole_root(std::size_t count) {
 template <int D>
 void CellLevels<D>::choose(std::span<const Box<D>> like) {
   sampled_.clear();
-  const std::size_t tries = std::min(like.size(), 4 * max_sampled);
-  for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled; ++i) {
-    const Box<D>& box = like[tries == like.size() ? i : core::sampled_place(i, like.size())];
-    if (is_present(box)) sampled_.push_back(box);
-  }
+  core::for_present_sample(like, max_sampled, [this](const Box<D>& box) { sampled_.push_back(box); });
   sample_.take(sampled_, max_sampled);
   const auto spread = static_cast<float>(whole_root<D>(like.size()));
   for (int axis = 0; axis < D; ++axis) {

@@ -11,9 +11,10 @@
 #include <limits>
 #include <utility>
 
+#include "algorithms/waste.hpp"
 #include "core/prefix_sum.hpp"
+#include "core/sorted_boxes.hpp"
 #include "kernels/sweep.hpp"
-#include "kernels/waste.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -43,12 +44,7 @@ class CountingSink final : public PairSink {
  private:
   void consume(std::span<const Pair> pairs) override {
     count_ += pairs.size();
-    while (!pairs.empty()) {
-      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
-      std::ranges::copy(some, target_->room(some.size()));
-      target_->commit(some.size());
-      pairs = pairs.subspan(some.size());
-    }
+    target_->put(pairs);
   }
 
   PairSink* target_;
@@ -85,7 +81,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
       // Pairs are counted once tests are many.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
       const bool is_counting = work > max_tests;
-      if (is_counting && work > max_tests + max_tests / 4 + kernels::tests_per_pair * counted.count())
+      if (is_counting && work > max_tests + max_tests / 4 + tests_per_pair * counted.count())
         return statistics_;
       if (!sweep_cell(lists, layout.column_border(column), row_border, max_tests,
                       is_counting ? static_cast<PairSink&>(counted) : pairs))
@@ -129,7 +125,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   run_.set_size(count);
   kernels::Run<D> run = run_.view(doubles_, slack);
   run.checkpoint = checkpoint_;
-  if (kernels::is_wasteful(run, max_tests)) return false;
+  if (is_wasteful(run, max_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;
 }
@@ -271,12 +267,7 @@ void GridSweep<D>::sort(const Lists& lists, std::size_t count) {
   run_.clear();
   for (const core::KeyedPlace& place : radix_.sort()) {
     const CellEntry<D>& entry = filed_at(place.place);
-    Box<D> box;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = entry.box.min[axes_[axis]];
-      box.max[axis] = entry.box.max[axes_[axis]];
-    }
-    run_.append(box, entry.id, entry.dedup_mask);
+    run_.append(core::turned(entry.box, axes_), entry.id, entry.dedup_mask);
   }
 }
 

@@ -5,10 +5,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/grow.hpp"
+
 namespace broadside::algorithm {
+
+using kernels::block_size;
+using kernels::no_slot;
+
 template <int D>
 void QuadtreeNodes<D>::build(std::span<const Box<D>> boxes) {
-  chains_.pool().clear();
+  pool_.clear();
   nodes_.clear();
   free_.clear();
   grown_.clear();
@@ -36,7 +42,33 @@ std::uint32_t QuadtreeNodes<D>::insert(std::uint32_t node, const Box<D>& box, Bo
     ++kept_;
   else if (to.count > std::max(capacity_, to.split_at))
     grown_.push_back(node);
-  return chains_.insert(to.block, node, box, id);
+  return put_in_chain(node, box, id);
+}
+
+/// Puts a box into the first slot of a node's chain that is free.
+template <int D>
+std::uint32_t QuadtreeNodes<D>::put_in_chain(std::uint32_t node, const Box<D>& box, BoxId id) {
+  std::uint32_t& first = nodes_[node].block;
+  std::uint32_t block = first;
+  while (block != no_slot && pool_.is_full(block)) block = pool_.head(block).next;
+  if (block == no_slot) {
+    pool_.add_block(first, node);
+    block = first;
+  }
+  return pool_.insert(block, box, id);
+}
+
+template <int D>
+std::uint32_t QuadtreeNodes<D>::find(std::uint32_t node, BoxId id) const {
+  const kernels::BlocksView<D> view = pool_.view();
+  for (std::uint32_t block = nodes_[node].block; block != no_slot; block = view.heads[block].next) {
+    std::uint32_t found = 0;
+    for (std::uint32_t lane = 0; lane < block_size; ++lane)
+      found |= static_cast<std::uint32_t>(view.blocks[block].id[lane] == index(id)) << lane;
+    found &= view.heads[block].used;
+    if (found != 0) return pool_.slot(block, found);
+  }
+  return no_slot;
 }
 
 template <int D>
@@ -44,7 +76,8 @@ void QuadtreeNodes<D>::erase(std::uint32_t node, std::uint32_t slot) {
   QuadtreeNode<D>& from = nodes_[node];
   --from.count;
   --references_;
-  chains_.erase(from.block, slot);
+  pool_.erase(slot);
+  if (pool_.head(slot / block_size).used == 0) pool_.remove_block(from.block, slot / block_size);
   if (!from.is_leaf())
     --kept_;
   else if (from.parent != no_node && from.count <= capacity_ / child_count)
@@ -67,10 +100,7 @@ void QuadtreeNodes<D>::tidy(std::span<const Box<D>> boxes) {
 
 template <int D>
 std::size_t QuadtreeNodes<D>::bytes() const noexcept {
-  return chains_.pool().bytes() + nodes_.capacity() * sizeof(QuadtreeNode<D>) +
-         homes_.capacity() * sizeof(QuadtreeHome) + masks_.capacity() +
-         (free_.capacity() + grown_.capacity() + shrunk_.capacity() + ids_.capacity()) *
-             sizeof(std::uint32_t);
+  return pool_.bytes() + core::bytes_of(nodes_, free_, homes_, grown_, shrunk_, ids_, masks_);
 }
 
 /// Inserts the boxes of ids_ from `begin` on into a node that is an empty leaf, and removes them from ids_.
@@ -175,7 +205,7 @@ void QuadtreeNodes<D>::put(std::uint32_t node, std::uint32_t id, const Box<D>& b
   ++to.count;
   ++references_;
   if (!to.is_leaf()) ++kept_;
-  const std::uint32_t slot = chains_.insert(to.block, node, box, BoxId(id));
+  const std::uint32_t slot = put_in_chain(node, box, BoxId(id));
   QuadtreeHome& home = homes_[id];
   if (home.node != no_node || !to.is_leaf()) home.several = 1;
   if (home.node != no_node) return;
@@ -217,10 +247,15 @@ void QuadtreeNodes<D>::drain(std::uint32_t node) {
   references_ -= from.count;
   if (!from.is_leaf()) kept_ -= from.count;
   from.count = 0;
-  chains_.drain(from.block, [&](BoxId id) {
-    if (homes_[index(id)].node == node) homes_[index(id)].node = no_node;
-    ids_.push_back(index(id));
-  });
+  while (from.block != no_slot) {
+    const std::uint32_t block = from.block;
+    for (std::uint32_t used = pool_.head(block).used; used != 0; used &= used - 1) {
+      const std::uint32_t id = index(pool_.id(pool_.slot(block, used)));
+      if (homes_[id].node == node) homes_[id].node = no_node;
+      ids_.push_back(id);
+    }
+    pool_.remove_block(from.block, block);
+  }
 }
 
 template <int D>

@@ -11,7 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "algorithms/quadtree/chains.hpp"
+#include "kernels/block_pool.hpp"
 
 namespace broadside::algorithm {
 
@@ -93,11 +93,11 @@ class QuadtreeNodes {
   QuadtreeHome& home(std::uint32_t id) { return homes_[id]; }
 
   /// A box's slot in a node.
-  std::uint32_t find(std::uint32_t node, BoxId id) const { return chains_.find(nodes_[node].block, id); }
+  std::uint32_t find(std::uint32_t node, BoxId id) const;
 
   std::uint32_t insert(std::uint32_t node, const Box<D>& box, BoxId id);
   void erase(std::uint32_t node, std::uint32_t slot);
-  kernels::BlockPool<D>& pool() { return chains_.pool(); }
+  kernels::BlockPool<D>& pool() { return pool_; }
 
   /// Splits nodes that have become too full and merges those that have emptied, since the last call.
   void tidy(std::span<const Box<D>> boxes);
@@ -127,6 +127,7 @@ class QuadtreeNodes {
                     std::span<const Box<D>> boxes) const;
   bool partition(const QuadtreeNode<D>& node, std::size_t begin, std::span<const Box<D>> boxes, Sizes& sizes);
   void put(std::uint32_t node, std::uint32_t id, const Box<D>& box);
+  std::uint32_t put_in_chain(std::uint32_t node, const Box<D>& box, BoxId id);
   std::uint32_t add_children(std::uint32_t parent);
   void drain(std::uint32_t node);
   void split(std::uint32_t node, std::span<const Box<D>> boxes);
@@ -135,7 +136,7 @@ class QuadtreeNodes {
   std::uint32_t capacity_;
   std::vector<QuadtreeNode<D>> nodes_;
   std::vector<std::uint32_t> free_;  // first children
-  QuadtreeChains<D> chains_;
+  kernels::BlockPool<D> pool_;  // a node's boxes: a chain, in which a box keeps its slot until it is erased
   std::vector<QuadtreeHome> homes_;
   std::size_t references_ = 0;
   std::size_t kept_ = 0;

@@ -22,8 +22,8 @@
 #include "broadside/debug/outline.hpp"
 
 #include "algorithms/follow_costs.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"
-#include "algorithms/quadtree/quadtree_follower.hpp"
 #include "algorithms/quadtree/split.hpp"
 #include "algorithms/registry.hpp"
 #include "core/lean.hpp"
@@ -193,7 +193,7 @@ class QuadtreeSearcher final : public Searcher<D> {
 
   void search_part(Worker& worker, std::size_t number, PairSink& pairs) const {
     const std::size_t begin = number == 0 ? 0 : parts_[number - 1].end;
-    const std::span<const QuadtreeReference> references =
+    const std::span<const core::SortedReference> references =
         std::span(part_references_).subspan(begin, parts_[number].end - begin);
     worker.stack.references.assign(references.begin(), references.end());
     if (parts_[number].kept_count == 0) {
@@ -267,7 +267,7 @@ class QuadtreeSearcher final : public Searcher<D> {
   core::Parallel parallel_;
   std::vector<Worker> workers_;
   std::vector<Part> parts_;
-  std::vector<QuadtreeReference> part_references_;
+  std::vector<core::SortedReference> part_references_;
   const Box<D, double>* doubles_ = nullptr;  // those of the search that runs
 };
 

@@ -7,16 +7,15 @@
 //
 // A frame has three parts. Movers are inserted wherever they go, as bounds of the old and the new box; then
 // all of them are compared; then they leave where they were. So two movers find each other.
-#include "algorithms/quadtree/quadtree_follower.hpp"
-
 #include <algorithm>
 #include <bit>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "algorithms/event_sinks.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/quadtree/nodes.hpp"
+#include "core/grow.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -62,9 +61,7 @@ class QuadtreeFollower final : public Follower<D> {
   }
 
   std::size_t bytes() const noexcept override {
-    return tree_.bytes() + movers_.capacity() * sizeof(core::MovedBox<D>) +
-           entries_.capacity() * sizeof(Entry) + (looks_.capacity() + above_.capacity()) * sizeof(Look) +
-           tasks_.capacity() * sizeof(kernels::BlockTask);
+    return tree_.bytes() + core::bytes_of(movers_, entries_, looks_, above_, tasks_);
   }
 
  private:

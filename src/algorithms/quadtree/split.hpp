@@ -17,13 +17,6 @@
 
 namespace broadside::algorithm {
 
-/// A box in a node. Bit a of `dedup_mask` is set if the box starts before the node's region on axis a; the
-/// rest as in a run.
-struct QuadtreeReference {
-  std::uint32_t place;  ///< among the sorted boxes
-  std::uint32_t dedup_mask;
-};
-
 /// Where a node is split; axes not in the list are not.
 template <int D>
 struct QuadtreeSplit {
@@ -74,7 +67,7 @@ class QuadtreeStack {
     }
     references.resize(top);
     for (std::size_t i = begin; i < end; ++i) {
-      const QuadtreeReference reference = references[i];
+      const core::SortedReference reference = references[i];
       for (std::uint32_t mask = children[i - begin], child = 0; mask != 0; mask >>= 1, ++child) {
         if ((mask & 1U) == 0) continue;
         std::uint32_t dedup_mask = reference.dedup_mask;
@@ -88,7 +81,7 @@ class QuadtreeStack {
     }
   }
 
-  core::LargeArray<QuadtreeReference> references;
+  core::LargeArray<core::SortedReference> references;
   std::vector<std::uint8_t> children;  ///< by reference of the node split last: bit c if it goes into child c
   std::size_t kept_count = 0;          ///< how many of them stay at the node: those without children
 

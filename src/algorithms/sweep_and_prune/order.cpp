@@ -92,13 +92,6 @@ void SweepOrder<D>::Arrays::set(std::size_t place, const Box<D>& box, BoxId box_
 }
 
 template <int D>
-std::size_t SweepOrder<D>::Arrays::bytes() const noexcept {
-  std::size_t bytes = id.capacity() * sizeof(BoxId);
-  for (int axis = 0; axis < D; ++axis) bytes += (min[axis].capacity() + max[axis].capacity()) * sizeof(float);
-  return bytes;
-}
-
-template <int D>
 std::size_t SweepOrder<D>::find(const SweepKey& wanted, std::size_t near) const {
   return gallop(size_, near, [&](std::size_t place) { return key(place) < wanted; });
 }
@@ -216,7 +209,7 @@ std::uint64_t SweepOrder<D>::find_changes(const core::MovedBox<D>& moved, float 
 
 template <int D>
 std::size_t SweepOrder<D>::bytes() const noexcept {
-  return arrays_.bytes() + other_.bytes() + (reach_.capacity() + high_reach_.capacity()) * sizeof(float);
+  return arrays_.bytes() + other_.bytes() + core::bytes_of(reach_, high_reach_);
 }
 
 template class SweepOrder<2>;

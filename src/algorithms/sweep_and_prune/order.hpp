@@ -1,7 +1,6 @@
 // Boxes kept in the order of a sweep from frame to frame.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/grow.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -88,7 +88,7 @@ class SweepOrder {
 
     void resize(std::size_t size);
     void set(std::size_t place, const Box<D>& box, BoxId box_id);
-    std::size_t bytes() const noexcept;
+    std::size_t bytes() const noexcept { return core::bytes_of(min, max, id); }
   };
 
   /// Those among the boxes that may touch [min, max] on the swept axis.

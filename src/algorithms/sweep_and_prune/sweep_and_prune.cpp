@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -18,17 +17,18 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/follow_costs.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/sweep_and_prune/sweep_and_prune_follower.hpp"
-#include "core/cell_lists.hpp"
+#include "algorithms/waste.hpp"
+#include "core/large_array.hpp"
 #include "core/lean.hpp"
 #include "core/parallel.hpp"
+#include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 #include "core/tunables.hpp"
 #include "kernels/sweep.hpp"
-#include "kernels/waste.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -82,10 +82,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
   /// Chooses the swept axis, the striped one and so on, and the stripes.
   std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
     sample_.take(boxes);
-    std::array<int, D> axes = sample_.axes_by_overlap();
-    for (int i = D - 1; i > 0; --i) {
-      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
-    }
+    const std::array<int, D> axes = sample_.axes_from(axis_);
     borders_.clear();
     choose_stripes(boxes.size(), sample_[axes[0]], sample_[axes[1]]);
     return axes;
@@ -121,7 +118,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
     for (const core::SortedBox<D>& box : sorted)
       buffer.append(box.box, box.id, kernels::side_bit(box.id, input.left_count));
     const kernels::Run<D> run = buffer.view(input.doubles);
-    if (input.successor != nullptr && kernels::is_wasteful(run, kernels::tests_per_box * run.size)) {
+    if (input.successor != nullptr && is_wasteful(run, tests_per_box * run.size)) {
       input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
       return {.references = run.size};
     }
@@ -144,25 +141,28 @@ class SweepAndPruneSearcher final : public Searcher<D> {
       return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
     };
     places_.resize(sorted.size());
-    stripes_.reset(borders_.size() + 1, parallel_.range_count());
+    const std::size_t stripes = borders_.size() + 1;
+    ends_.assign(stripes * parallel_.range_count(), 0);
     parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {
         places_[i] = {stripe_of(sorted[i].box.min[1]), stripe_of(sorted[i].box.max[1])};
         for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
-          stripes_.count(stripe, number);
+          ++ends_[number * stripes + stripe];
       }
     });
-    stripes_.prepare();
+    core::renew(listed_, core::prefix_sum(std::span<std::size_t>(ends_), stripes));
     parallel_.for_numbered_ranges(sorted.size(), [&](std::size_t number, core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {
         for (std::size_t stripe = places_[i].first; stripe <= places_[i].last; ++stripe)
-          stripes_.append(stripe, static_cast<std::uint32_t>(i), number);
+          listed_[ends_[number * stripes + stripe]++] = static_cast<std::uint32_t>(i);
       }
     });
-    const auto sweep = [&](core::Range stripes, std::size_t worker, PairSink& sink) {
+    const std::span<const std::size_t> ends = std::span(ends_).last(stripes);  // those of the last range
+    const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
       Statistics statistics;
-      for (std::size_t stripe = stripes.begin; stripe < stripes.end; ++stripe) {
-        const std::span<const std::uint32_t> list = stripes_.list(stripe);
+      for (std::size_t stripe = some.begin; stripe < some.end; ++stripe) {
+        const std::size_t begin = stripe == 0 ? 0 : ends[stripe - 1];
+        const std::span<const std::uint32_t> list = std::span(listed_).subspan(begin, ends[stripe] - begin);
         kernels::RunBuffer<D>& run = runs_[worker];
         run.clear();
         run.reserve(list.size());
@@ -177,7 +177,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
       }
       return statistics;
     };
-    return parallel_.search(borders_.size() + 1, pairs, sweep);
+    return parallel_.search(stripes, pairs, sweep);
   }
 
   /// The stripes in which a box begins and ends.
@@ -193,7 +193,9 @@ class SweepAndPruneSearcher final : public Searcher<D> {
   core::SortedBoxes<D> sorted_;
   std::vector<float> borders_;  // a stripe's first coordinate, from the second stripe on
   std::vector<Place> places_;
-  core::CellLists stripes_;
+  // By range and stripe: how many boxes; then where the next one is listed, which is at last the list's end.
+  core::LargeArray<std::size_t> ends_;
+  core::LargeArray<std::uint32_t> listed_;  // places of boxes, stripe by stripe
   core::Parallel parallel_;
   std::vector<kernels::RunBuffer<D>> runs_;  // by worker
 };

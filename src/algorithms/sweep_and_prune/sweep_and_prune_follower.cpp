@@ -3,16 +3,15 @@
 // Section VI-C of the paper, in the fastest of its ways: a mover is compared with the boxes that
 // touch its old or its new box on the axis, and then put into its new place by binary search, so that only
 // the boxes between its two places make way.
-#include "algorithms/sweep_and_prune/sweep_and_prune_follower.hpp"
-
 #include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "algorithms/event_sinks.hpp"
+#include "algorithms/followers.hpp"
 #include "algorithms/sweep_and_prune/order.hpp"
 #include "core/sample.hpp"
+#include "core/sorted_boxes.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -63,20 +62,11 @@ class SweepAndPruneFollower final : public Follower<D> {
   }
 
   std::size_t bytes() const noexcept override {
-    return order_.bytes() + moved_.capacity() * sizeof(core::MovedBox<D>) +
-           (entries_.capacity() + merged_.capacity() + coming_.capacity()) * sizeof(SweepEntry);
+    return order_.bytes() + core::bytes_of(moved_, entries_, merged_, coming_);
   }
 
  private:
-  /// Axes in the sweep's order.
-  Box<D> turned(const Box<D>& box) const {
-    Box<D> turned;
-    for (int axis = 0; axis < D; ++axis) {
-      turned.min[axis] = box.min[axes_[axis]];
-      turned.max[axis] = box.max[axes_[axis]];
-    }
-    return turned;
-  }
+  Box<D> turned(const Box<D>& box) const { return core::turned(box, axes_); }
 
   /// Removes boxes that went from the order, and merges new ones in.
   void merge(const Change<D>& change) {
@@ -101,7 +91,7 @@ class SweepAndPruneFollower final : public Follower<D> {
 
   void start(const Change<D>& change) {
     sample(change);
-    axes_ = best_axes();
+    axes_ = sample_.axes_from(axis_);
     entries_.clear();
     for (std::size_t i = 0; i < change.before.size(); ++i) {
       if (is_present(change.before[i]))
@@ -115,22 +105,9 @@ class SweepAndPruneFollower final : public Follower<D> {
 
   /// Of those of a few boxes that are present.
   void sample(const Change<D>& change) {
-    constexpr std::size_t max_sampled_moves = 256;
-    const std::size_t tries = std::min(change.now.size(), 4 * max_sampled_moves);
     sampled_.clear();
-    for (std::size_t i = 0; i < tries && sampled_.size() < max_sampled_moves; ++i) {
-      const std::size_t place = tries == change.now.size() ? i : core::sampled_place(i, change.now.size());
-      if (is_present(change.now[place])) sampled_.push_back(change.now[place]);
-    }
+    core::for_present_sample(change.now, 256, [this](const Box<D>& box) { sampled_.push_back(box); });
     sample_.take(sampled_);
-  }
-
-  std::array<int, D> best_axes() const {
-    std::array<int, D> axes = sample_.axes_by_overlap();
-    for (int i = D - 1; i > 0; --i) {
-      if (axes[i] == axis_) std::swap(axes[i], axes[i - 1]);  // the chosen one to the front
-    }
-    return axes;
   }
 
   /// Now and then, after work that pays for it: whether another axis would be much better by now.
@@ -139,7 +116,7 @@ class SweepAndPruneFollower final : public Follower<D> {
     if (axis_ >= 0 || tests_ < tests_of_a_box_between_looks * order_.size() + tests_between_looks) return;
     tests_ = 0;
     sample(change);
-    has_better_axis_ = 2 * sample_[best_axes()[0]].overlap < sample_[axes_[0]].overlap;
+    has_better_axis_ = 2 * sample_[sample_.axes_by_overlap()[0]].overlap < sample_[axes_[0]].overlap;
   }
 
   int axis_;  // -1: to be chosen

@@ -11,7 +11,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
-#include "kernels/bvh_follow.hpp"
+#include "kernels/bvh.hpp"
 #include "kernels/bvh_query.hpp"
 #include "tests/support/model.hpp"
 

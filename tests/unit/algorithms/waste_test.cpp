@@ -1,17 +1,17 @@
 // is_wasteful() where the answer is beyond doubt.
-#include "kernels/waste.hpp"
+#include "algorithms/waste.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/model.hpp"
 
-namespace broadside::kernels {
+namespace broadside::algorithm {
 namespace {
 
 /// `count` boxes `extent` long on the swept axis, one in each unit of it, and `apart` from each other on the
 /// next one.
 template <int D>
-Run<D> run_of(RunBuffer<D>& buffer, std::size_t count, float extent, float apart) {
+kernels::Run<D> run_of(kernels::RunBuffer<D>& buffer, std::size_t count, float extent, float apart) {
   buffer.clear();
   buffer.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -26,7 +26,7 @@ Run<D> run_of(RunBuffer<D>& buffer, std::size_t count, float extent, float apart
 
 TEST(Waste, IsTestsBeyondTheLimitThatFindNothing) {
   in_each_dimension([]<int D>() {
-    RunBuffer<D> buffer;
+    kernels::RunBuffer<D> buffer;
     constexpr std::size_t count = 2000;
     constexpr std::uint64_t limit = 100 * count;
     EXPECT_TRUE(is_wasteful(run_of<D>(buffer, count, 1000, 1), limit));
@@ -37,4 +37,4 @@ TEST(Waste, IsTestsBeyondTheLimitThatFindNothing) {
 }
 
 }  // namespace
-}  // namespace broadside::kernels
+}  // namespace broadside::algorithm

@@ -1,9 +1,11 @@
 // Whether a sweep is worth its tests.
-#include "kernels/waste.hpp"
+#include "algorithms/waste.hpp"
 
 #include <algorithm>
 
-namespace broadside::kernels {
+#include "core/sample.hpp"
+
+namespace broadside::algorithm {
 namespace {
 
 /// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
@@ -18,15 +20,10 @@ std::size_t end_of(const float* minima, std::size_t size, std::size_t from, floa
   return static_cast<std::size_t>(std::upper_bound(minima + std::min(from, size), end, last) - minima);
 }
 
-/// Places spread over a run: multiples of the golden ratio, which fall in step with no pattern.
-std::size_t place_of(std::size_t i, std::size_t size) {
-  return static_cast<std::size_t>(static_cast<std::uint32_t>(i * 0x9e3779b9U) * std::uint64_t{size} >> 32);
-}
-
 /// An upper bound of the tests that a sweep makes, by the greatest maximum of each few boxes. Stops beyond
 /// `limit`.
 template <int D>
-std::uint64_t max_tests(const Run<D>& run, std::uint64_t limit, std::size_t together) {
+std::uint64_t max_tests(const kernels::Run<D>& run, std::uint64_t limit, std::size_t together) {
   std::uint64_t tests = 0;
   for (std::size_t i = 0; i < run.size && tests <= limit; i += together) {
     const std::size_t end = std::min(i + together, run.size);
@@ -39,7 +36,7 @@ std::uint64_t max_tests(const Run<D>& run, std::uint64_t limit, std::size_t toge
 }  // namespace
 
 template <int D>
-bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
+bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
   if (max_tests(run, limit, 16) <= limit || max_tests(run, limit, 1) <= limit) return false;
   constexpr std::size_t looked_at = 32;
@@ -51,7 +48,7 @@ bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
   std::uint64_t tests_of_greatest = 0;
   std::uint64_t max_hits = 0;
   for (std::size_t i = 1; i <= looked_at; ++i) {
-    const std::size_t at = place_of(i, run.size);
+    const std::size_t at = core::sampled_place(i, run.size);
     std::uint64_t own_tests = 0;
     std::uint64_t own_hits = 0;
     const std::size_t end = end_of(run.min[0], run.size, at, run.max[0][at]);
@@ -72,7 +69,7 @@ bool is_wasteful(const Run<D>& run, std::uint64_t limit) {
   return tests - tests_of_greatest > tests_per_pair * (hits - max_hits);
 }
 
-template bool is_wasteful(const Run<2>&, std::uint64_t);
-template bool is_wasteful(const Run<3>&, std::uint64_t);
+template bool is_wasteful(const kernels::Run<2>&, std::uint64_t);
+template bool is_wasteful(const kernels::Run<3>&, std::uint64_t);
 
-}  // namespace broadside::kernels
+}  // namespace broadside::algorithm
