@@ -47,6 +47,13 @@ inline constexpr std::size_t max_compared_pairs = 128;
 /// sort_pairs() with two arrays. If there are more than max_compared_pairs, `scratch` must be as long as
 /// `pairs`. Returns true if the sorted pairs are in `scratch`, false if they are in `pairs`.
 BROADSIDE_PUBLIC bool sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch);
+
+/// Mixes bits, so that each one changes about half the bits of the result: the finaliser of MurmurHash3.
+constexpr std::uint64_t mixed(std::uint64_t bits) noexcept {
+  bits = (bits ^ bits >> 33) * 0xff51afd7ed558ccdU;
+  bits = (bits ^ bits >> 33) * 0xc4ceb9fe1a85ec53U;
+  return bits ^ bits >> 33;
+}
 }  // namespace detail
 
 /// Sorts pairs by their first and then by their second id. Many pairs are sorted in O(n), by a radix sort

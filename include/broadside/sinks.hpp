@@ -101,12 +101,9 @@ void with_sink(Target& target, const Body& body) {
 }
 }  // namespace detail
 
-/// A pair's contribution to the hash of a set: the finaliser of MurmurHash3 over its key.
+/// A pair's contribution to the hash of a set.
 [[nodiscard]] constexpr std::uint64_t hash(Pair pair) noexcept {
-  std::uint64_t bits = key(pair) + 0x9e3779b97f4a7c15U;
-  bits = (bits ^ bits >> 33) * 0xff51afd7ed558ccdU;
-  bits = (bits ^ bits >> 33) * 0xc4ceb9fe1a85ec53U;
-  return bits ^ bits >> 33;
+  return detail::mixed(key(pair) + 0x9e3779b97f4a7c15U);
 }
 
 /// Hashes and counts pairs as a set. The hash is the same for any order, and differs if a pair is missing,

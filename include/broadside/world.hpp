@@ -62,13 +62,10 @@ struct Events {
 };
 
 namespace detail {
-/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): every bit of the handle changes about half the
-/// bits of the result. `seed` is the hash of what precedes the handle.
+/// Mixed, since the low bits would be the slot's alone, whatever the generation. `seed` sets what is hashed
+/// before the handle.
 constexpr std::uint64_t hash(const Handle& handle, std::uint64_t seed = 0) noexcept {
-  std::uint64_t bits = seed ^ (std::uint64_t{handle.generation} << 32 | handle.slot);
-  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
-  bits = (bits ^ bits >> 27) * 0x94d049bb133111eb;
-  return bits ^ bits >> 31;
+  return mixed(seed ^ (std::uint64_t{handle.generation} << 32 | handle.slot));
 }
 }  // namespace detail
 

@@ -1,8 +1,11 @@
 // Whether a sweep is worth its tests.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
+#include "core/sample.hpp"
 #include "kernels/run.hpp"
 
 namespace broadside::algorithm {
@@ -12,10 +15,66 @@ namespace broadside::algorithm {
 inline constexpr std::uint64_t tests_per_box = 256;
 inline constexpr std::uint64_t tests_per_pair = 32;
 
+/// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
+/// stand in their buckets in any order, so the count is exact to within a bucket.
+inline std::size_t end_of_reach(const float* minima, std::size_t size, std::size_t from, float last) {
+  std::size_t step = 16;
+  while (from + step < size && minima[from + step] <= last) {
+    from += step;
+    step *= 2;
+  }
+  const float* const end = minima + std::min(from + step, size);
+  return static_cast<std::size_t>(std::upper_bound(minima + std::min(from, size), end, last) - minima);
+}
+
+/// An upper bound of the tests that a sweep makes, by the greatest maximum of each few boxes. Stops beyond
+/// `limit`.
+template <int D>
+std::uint64_t bound_of_tests(const kernels::Run<D>& run, std::uint64_t limit, std::size_t together) {
+  std::uint64_t tests = 0;
+  for (std::size_t i = 0; i < run.size && tests <= limit; i += together) {
+    const std::size_t end = std::min(i + together, run.size);
+    const float last = *std::max_element(run.max[0] + i, run.max[0] + end);
+    tests += (end_of_reach(run.min[0], run.size, i, last) - i) * (end - i);
+  }
+  return tests;
+}
+
 /// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: counts the tests,
 /// to within a bucket of each box, and tries a sample of them where they are many. Cost: O(n log n) at most,
 /// O(n / 16) where tests are few.
 template <int D>
-bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit);
+bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
+  if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
+  if (bound_of_tests(run, limit, 16) <= limit || bound_of_tests(run, limit, 1) <= limit) return false;
+  constexpr std::size_t looked_at = 32;
+  constexpr std::size_t max_tests_of_one = 4096;
+  std::uint64_t tests = 0;
+  std::uint64_t hits = 0;
+  // One box that overlaps all others, such as a floor, says nothing of these. It begins first, so the first
+  // place is not looked at, and the box with the most hits does not count.
+  std::uint64_t tests_of_greatest = 0;
+  std::uint64_t max_hits = 0;
+  for (std::size_t i = 1; i <= looked_at; ++i) {
+    const std::size_t at = core::sampled_place(i, run.size);
+    std::uint64_t own_tests = 0;
+    std::uint64_t own_hits = 0;
+    const std::size_t end = end_of_reach(run.min[0], run.size, at, run.max[0][at]);
+    const std::size_t stride = (end - at) / max_tests_of_one + 1;
+    for (std::size_t other = at + 1; other < end; other += stride) {
+      bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
+      for (int axis = 0; axis < D; ++axis)
+        overlaps &= run.min[axis][other] <= run.max[axis][at] && run.min[axis][at] <= run.max[axis][other];
+      own_tests += stride;
+      own_hits += overlaps ? stride : 0;
+    }
+    tests += own_tests;
+    hits += own_hits;
+    if (own_hits <= max_hits) continue;
+    max_hits = own_hits;
+    tests_of_greatest = own_tests;
+  }
+  return tests - tests_of_greatest > tests_per_pair * (hits - max_hits);
+}
 
 }  // namespace broadside::algorithm

@@ -6,11 +6,11 @@
 #include <unistd.h>
 #endif
 
-namespace broadside::core {
+namespace broadside {
 
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
 
-void prefer_large_pages(void* begin, std::size_t bytes) noexcept {
+void detail::prefer_large_pages(void* begin, std::size_t bytes) noexcept {
   // Two of the usual size: one at least lies wholly within the memory, wherever that begins.
   constexpr std::size_t min_bytes = std::size_t{4} << 20;
   if (bytes < min_bytes) return;
@@ -23,8 +23,8 @@ void prefer_large_pages(void* begin, std::size_t bytes) noexcept {
 
 #else
 
-void prefer_large_pages(void*, std::size_t) noexcept {}
+void detail::prefer_large_pages(void*, std::size_t) noexcept {}
 
 #endif
 
-}  // namespace broadside::core
+}  // namespace broadside

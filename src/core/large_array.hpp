@@ -8,14 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "broadside/sinks.hpp"
+
 namespace broadside::core {
 
-/// Asks for large pages for memory that has not been written yet, where it holds some. A page is taken, and
-/// filled with zeros, when it is first written: of a single search by cells with pages of 4 KiB that is half
-/// the time. A hint: never fails, and does nothing where the system has no such pages or gives them anyway.
-void prefer_large_pages(void* begin, std::size_t bytes) noexcept;
-
-/// The standard allocator, but for the hint; and elements that are not given a value have none.
+/// The standard allocator, but that it asks for large pages: of a single search by cells, to fill pages of
+/// 4 KiB with zeros is half the time. Elements that are not given a value have none.
 template <typename T>
 struct LargeAllocator {
   using value_type = T;  // NOLINT(readability-identifier-naming): as the standard asks
@@ -26,7 +24,7 @@ struct LargeAllocator {
 
   T* allocate(std::size_t count) {
     T* const begin = std::allocator<T>().allocate(count);
-    prefer_large_pages(begin, count * sizeof(T));
+    detail::prefer_large_pages(begin, count * sizeof(T));
     return begin;
   }
   void deallocate(T* begin, std::size_t count) noexcept { std::allocator<T>().deallocate(begin, count); }

@@ -97,6 +97,11 @@ class FilterChain {
   PairSink* front_;
 };
 
+void add(Statistics& all, const Statistics& more) {
+  all.tests += more.tests;
+  all.references += more.references;
+}
+
 /// The parts of the piece `number`, where `parts` are cut into `pieces`.
 Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexcept {
   const auto begin = [&](std::size_t i) { return parts / pieces * i + std::min(i, parts % pieces); };
@@ -181,10 +186,7 @@ class Parallel::SharedSearch {
     else
       deliver();
     Statistics all;
-    for (const Statistics& of_worker : done_) {
-      all.tests += of_worker.tests;
-      all.references += of_worker.references;
-    }
+    for (const Statistics& of_worker : done_) add(all, of_worker);
     return all;
   }
 
@@ -194,11 +196,6 @@ class Parallel::SharedSearch {
     const Statistics statistics = search_(piece_of(parts_, pieces_, piece), worker, chain.front());
     chain.flush();
     return statistics;
-  }
-
-  void add(std::size_t worker, const Statistics& more) {
-    done_[worker].tests += more.tests;
-    done_[worker].references += more.references;
   }
 
   void fill_clones(std::unique_ptr<PairSink> first) {
@@ -211,7 +208,7 @@ class Parallel::SharedSearch {
       try {
         FilterChain chain(filters_, *clones[worker]);
         while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
-          add(worker, search_piece(piece, worker, chain));
+          add(done_[worker], search_piece(piece, worker, chain));
         clones[worker]->flush();
       } catch (const Ended&) {
       } catch (...) {
@@ -257,7 +254,7 @@ class Parallel::SharedSearch {
         try {
           const Statistics more = search_piece(at, worker, piece->is_direct ? direct : buffered);
           delivery.end(*piece, buffer.take());
-          add(worker, more);
+          add(done_[worker], more);
         } catch (const NoRoom&) {
           buffer.clear();
           delivery.give_up(*piece);
@@ -336,9 +333,7 @@ Statistics Parallel::search_by_pieces(std::size_t parts, PairSink& pairs, const 
   const std::size_t pieces = pieces_of(parts);
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     pass_checkpoint();
-    const Statistics statistics = search(piece_of(parts, pieces, piece), 0, pairs);
-    all.tests += statistics.tests;
-    all.references += statistics.references;
+    add(all, search(piece_of(parts, pieces, piece), 0, pairs));
   }
   return all;
 }

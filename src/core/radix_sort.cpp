@@ -1,9 +1,11 @@
-// Boxes' places sorted by a float, by a radix sort: O(n) whatever the values.
+// Boxes' places sorted by a float.
 #include "core/radix_sort.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
+
+#include "core/prefix_sum.hpp"
 
 namespace broadside::core {
 namespace {
@@ -11,6 +13,9 @@ namespace {
 constexpr int digits = 3;
 constexpr int digit_bits = 11;
 constexpr std::size_t digit_values = std::size_t{1} << digit_bits;
+
+/// Fewer are sorted by comparison, which is faster then.
+constexpr std::size_t min_radix_sorted = 128;
 
 constexpr std::size_t digit(std::uint32_t key, int at) {
   return key >> (at * digit_bits) & (digit_values - 1);
@@ -25,19 +30,18 @@ std::span<KeyedPlace> RadixSort::places(std::size_t count) {
 }
 
 std::span<const KeyedPlace> RadixSort::sort() {
+  if (places_.size() < min_radix_sorted) {
+    std::ranges::sort(places_, {}, [](const KeyedPlace& place) { return std::pair(place.key, place.place); });
+    return places_;
+  }
   // All histograms in one pass; a digit that all keys share needs no pass of its own.
   std::array<std::array<std::uint32_t, digit_values>, digits> counts{};
   for (const KeyedPlace& place : places_) {
     for (int at = 0; at < digits; ++at) ++counts[at][digit(place.key, at)];
   }
-  for (int at = 0; at < digits && !places_.empty(); ++at) {
+  for (int at = 0; at < digits; ++at) {
     if (counts[at][digit(places_.front().key, at)] == places_.size()) continue;
-    std::uint32_t begin = 0;
-    for (std::uint32_t& count : counts[at]) {
-      const std::uint32_t end = begin + count;
-      count = begin;
-      begin = end;
-    }
+    prefix_sum(std::span<std::uint32_t>(counts[at]), digit_values);
     for (const KeyedPlace& place : places_) other_[counts[at][digit(place.key, at)]++] = place;
     places_.swap(other_);
   }

@@ -1,4 +1,4 @@
-// Boxes' places sorted by a float, by a radix sort: O(n) whatever the values.
+// Boxes' places sorted by a float: O(n) whatever the values.
 #pragma once
 
 #include <bit>
@@ -25,11 +25,11 @@ struct KeyedPlace {
   std::uint32_t place;
 };
 
-/// Sorts by key, those of equal keys staying in order. A counting pass for each 11 bits in which the keys
-/// differ.
+/// Sorts by key, those of equal keys in the order of their places: by comparison where they are few, else by
+/// a counting pass for each 11 bits in which the keys differ.
 class RadixSort {
  public:
-  /// Room for `count` places to be filled in and sorted. Valid until the next call.
+  /// Room for `count` places to be filled in, ascending, and sorted. Valid until the next call.
   std::span<KeyedPlace> places(std::size_t count);
 
   /// Sorts what was filled in. The result is valid until the next call of places().

@@ -29,13 +29,6 @@ constexpr std::size_t min_compared = 64;
 /// Shifts a sample.
 std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Fits one axis to the finite minima of some boxes.
 LinearRounding fit_axis(std::vector<double>& minima) {
   const double origin = median(minima);
@@ -145,28 +138,6 @@ std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) 
 }
 
 template <int D>
-void round_linear(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
-                  std::span<Box<D>> floats) {
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    floats[i] = rounded(
-        boxes[i], [&](int axis) -> const auto& { return fit[axis]; });
-}
-
-template <int D>
-bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
-                 std::span<const Box<D>> floats) {
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (int axis = 0; axis < D; ++axis) {
-      const LinearRounding& rounding = fit[axis];
-      if (rounding.back(floats[i].min[axis]) != boxes[i].min[axis] ||
-          rounding.back(floats[i].max[axis]) != boxes[i].max[axis])
-        return false;
-    }
-  }
-  return true;
-}
-
-template <int D>
 std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place) {
   // A weak hash is enough, and a sum can be made by several threads.
   constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
@@ -212,9 +183,7 @@ bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const
     const std::size_t count = std::min(from.size(), max_compared);
     for (std::size_t i = 0; i < count; ++i) {
       const Box<D, double>& box = from[count == from.size() ? i : sampled_place(i + shift, from.size())];
-      if (is_present(box))
-        columns.add(box, rounded(
-                             box, [&](int axis) -> const auto& { return fit[axis]; }));
+      if (is_present(box)) columns.add(box, rounded(box, fit));
     }
     return count;
   };
@@ -239,18 +208,10 @@ bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const
 
 template std::array<LinearRounding, 2> fit_linear<2>(std::span<const DoubleBox2>);
 template std::array<LinearRounding, 3> fit_linear<3>(std::span<const DoubleBox3>);
-template void round_linear<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
-                              std::span<Box<2>>);
-template bool is_lossless<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
-                             std::span<const Box<2>>);
 template std::uint64_t hash_of<2>(std::span<const DoubleBox2>, std::size_t);
 template std::array<QuantileRounding, 2> fit_quantiles<2>(std::span<const DoubleBox2>, std::uint64_t);
 template bool makes_false_pairs<2>(const std::array<LinearRounding, 2>&, std::span<const DoubleBox2>,
                                    std::size_t, std::uint64_t);
-template void round_linear<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,
-                              std::span<Box<3>>);
-template bool is_lossless<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,
-                             std::span<const Box<3>>);
 template std::uint64_t hash_of<3>(std::span<const DoubleBox3>, std::size_t);
 template std::array<QuantileRounding, 3> fit_quantiles<3>(std::span<const DoubleBox3>, std::uint64_t);
 template bool makes_false_pairs<3>(const std::array<LinearRounding, 3>&, std::span<const DoubleBox3>,

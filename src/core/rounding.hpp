@@ -66,15 +66,20 @@ class QuantileRounding {
 template <int D>
 std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes);
 
-/// Sets floats[i] to boxes[i], rounded.
-template <int D>
-void round_linear(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
-                  std::span<Box<D>> floats);
-
-/// Whether that kept every coordinate that differs from another apart from it, as far as `back` can tell.
+/// Whether `floats`, which are `boxes` rounded by `fit`, keep every coordinate that differs from another
+/// apart from it, as far as `back` can tell.
 template <int D>
 bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
-                 std::span<const Box<D>> floats);
+                 std::span<const Box<D>> floats) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      if (fit[axis].back(floats[i].min[axis]) != boxes[i].min[axis] ||
+          fit[axis].back(floats[i].max[axis]) != boxes[i].max[axis])
+        return false;
+    }
+  }
+  return true;
+}
 
 /// A number that depends on all boxes and their order: the sum of what parts give, each with the place of its
 /// first box.
@@ -93,13 +98,13 @@ template <int D>
 bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count, std::uint64_t hash);
 
-/// The box, rounded on each axis by what `rounding_of(axis)` gives; the absent box stays absent.
-template <int D, typename RoundingOf>
-Box<D> rounded(const Box<D, double>& box, RoundingOf rounding_of) {
+/// The box, rounded on each axis; the absent box stays absent.
+template <int D, typename Roundings>
+Box<D> rounded(const Box<D, double>& box, const Roundings& roundings) {
   Box<D> floats;
   for (int axis = 0; axis < D; ++axis) {
-    floats.min[axis] = rounding_of(axis)(box.min[axis]);
-    floats.max[axis] = rounding_of(axis)(box.max[axis]);
+    floats.min[axis] = roundings[axis](box.min[axis]);
+    floats.max[axis] = roundings[axis](box.max[axis]);
   }
   return floats;
 }

@@ -85,9 +85,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
     sample.mean_extent = 0;
     for (const float extent : extents_)
       sample.mean_extent += std::min<double>(extent, range) / static_cast<double>(count);
-    const auto middle = extents_.begin() + static_cast<std::ptrdiff_t>(extents_.size() / 2);
-    std::nth_element(extents_.begin(), middle, extents_.end());
-    sample.extent = extents_.empty() ? 0 : *middle;
+    sample.extent = median(extents_);
     const auto size = static_cast<double>(count);
     if (sample.overlap * size * (size - 1) / 2 >= telling_overlaps || count == boxes.size()) continue;
     sample.overlap = overlap_by_density(sample.minima, sample.mean_extent).value_or(sample.overlap);

@@ -21,7 +21,7 @@ struct AxisSample {
 
   float low = 0;           ///< the finite bounds between which the sampled boxes lie, except far outliers
   float high = 0;          ///<
-  float extent = 0;        ///< the median of the boxes' extents, at max_count FLT_MAX
+  float extent = 0;        ///< the median of the boxes' extents, at most FLT_MAX
   double mean_extent = 0;  ///< and their mean, an extent counting as no more than the bounds' distance
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
@@ -31,6 +31,15 @@ struct AxisSample {
 /// another thread may have written to the caller's array since.
 inline float without_nan(float value) noexcept {
   return std::max(-std::numeric_limits<float>::infinity(), value);
+}
+
+/// The median of some numbers, none of them a NaN, which are then in another order; 0 if there are none.
+template <typename Real>
+Real median(std::vector<Real>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 /// The place of the i-th of a few boxes sampled from `boxes`: spread over the array, without a period that a

@@ -6,11 +6,12 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "broadside/executor.hpp"
+
+#include "core/prefix_sum.hpp"
 
 namespace broadside {
 namespace core {
@@ -48,7 +49,7 @@ using Counts = std::array<std::uint32_t, std::size_t{1} << max_bits>;
 template <typename DigitOf>
 void sort_by(std::span<Pair>& pairs, std::span<Pair>& scratch, std::span<std::uint32_t> counts,
              DigitOf digit) {
-  std::exclusive_scan(counts.begin(), counts.end(), counts.begin(), std::uint32_t{0});
+  prefix_sum(counts, counts.size());
   for (const Pair pair : pairs) scratch[counts[digit(pair)]++] = pair;
   std::swap(pairs, scratch);
 }

@@ -96,7 +96,7 @@ class DoubleSearch {
         const std::size_t count = std::min(boxes_at_once, range.end - begin);
         const std::span<const Box<D, double>> some = boxes.subspan(begin, count);
         const std::span<Box<D>> floats = std::span(floats_).subspan(begin, count);
-        core::round_linear<D>(fit, some, floats);
+        for (std::size_t i = 0; i < count; ++i) floats[i] = core::rounded(some[i], fit);
         is_exact = is_exact && core::is_lossless<D>(fit, some, floats);
         of_range += core::hash_of<D>(some, begin);
       }
@@ -107,9 +107,7 @@ class DoubleSearch {
     if (boxes.size() <= few_boxes || !core::makes_false_pairs<D>(fit, boxes, left_count, hash)) return false;
     const std::array<core::QuantileRounding, D> quantiles = core::fit_quantiles<D>(boxes, hash);
     parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i)
-        floats_[i] = core::rounded(
-            boxes[i], [&](int axis) -> const auto& { return quantiles[axis]; });
+      for (std::size_t i = range.begin; i < range.end; ++i) floats_[i] = core::rounded(boxes[i], quantiles);
     });
     return false;
   }

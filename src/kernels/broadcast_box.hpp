@@ -53,8 +53,16 @@ struct BroadcastBox {
     }
   }
 
-  /// Which of the boxes from `at` on, a vector of them, it overlaps. `boxes` is a block or a run: anything
-  /// with arrays of `min` and `max` by axis. A NaN overlaps nothing.
+  /// The box at a place of `boxes`: a block, a run, or anything else with arrays of `min` and `max` by axis.
+  template <typename Boxes>
+  HWY_INLINE BroadcastBox(const Boxes& boxes, std::size_t place) {
+    for (int axis = 0; axis < D; ++axis) {
+      min[axis] = hn::Set(Floats(), boxes.min[axis][place]);
+      max[axis] = hn::Set(Floats(), boxes.max[axis][place]);
+    }
+  }
+
+  /// Which of the boxes from `at` on, a vector of them, it overlaps. A NaN overlaps nothing.
   template <typename Boxes>
   HWY_INLINE FloatMask overlaps(const Boxes& boxes, std::size_t at) const {
     FloatMask hits = hn::And(hn::Le(load(boxes.min[0], at), max[0]), hn::Le(min[0], load(boxes.max[0], at)));
@@ -82,7 +90,7 @@ struct LoadedBoxes {
   // Not defaulted: it must be compiled for the instruction set of the vectors' constructors.
   HWY_INLINE LoadedBoxes() {}  // NOLINT(modernize-use-equals-default)
 
-  /// `boxes` as in BroadcastBox::overlaps().
+  /// `boxes` as in BroadcastBox.
   template <typename Boxes>
   HWY_INLINE LoadedBoxes(const Boxes& boxes, std::size_t at) {
     for (int axis = 0; axis < D; ++axis) {

@@ -27,17 +27,6 @@ namespace {
 using Hits = NumberMask;
 static_assert(fan_out == PairWriter<Numbers>::at_once);
 
-/// One box or the bounds of one node, in every lane.
-template <int D>
-HWY_INLINE BroadcastBox<D> broadcast(const TreeLevel<D>& level, std::size_t place) {
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = level.min[axis][place];
-    box.max[axis] = level.max[axis][place];
-  }
-  return BroadcastBox<D>(box);
-}
-
 /// Which of the boxes or bounds from `at` on it overlaps.
 template <int D>
 HWY_INLINE Hits touching(const BroadcastBox<D>& query, const TreeLevel<D>& level, std::size_t at) {
@@ -91,7 +80,7 @@ class Join {
     const std::size_t end_child = std::min((node + 1) * fan_out, ((leaves_.end - 1) >> to_leaves) + 1);
     for (std::size_t child = begin_child; child < end_child; ++child) {
       if (tree_.left_size != 0 && child << (4 * level) >= tree_.left_size) break;  // no box of the left set
-      const BroadcastBox<D> query = broadcast(children, child);
+      const BroadcastBox<D> query(children, child);
       const NumberVector first = all_lanes(std::max(child, border));
       std::size_t touched_count = 0;
       for (std::size_t i = 0; i < count; ++i) {
@@ -125,7 +114,7 @@ class Join {
     const TreeLevel<D>& leaves = tree_.levels[1];
     std::size_t queried = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const BroadcastBox<D> bounds = broadcast(leaves, list[i]);
+      const BroadcastBox<D> bounds(leaves, list[i]);
       const std::size_t other = std::size_t{list[i]} * fan_out;
       const std::size_t before = queried;
       for (std::size_t at = 0; at < fan_out; at += lanes) {
@@ -145,7 +134,7 @@ class Join {
   /// Compares the boxes of the leaf that begins at `begin` with each other.
   HWY_INLINE void within(std::size_t begin) {
     for (std::size_t i = 0; i + 1 < fan_out; ++i) {
-      const BroadcastBox<D> query = broadcast(tree_.levels[0], begin + i);
+      const BroadcastBox<D> query(tree_.levels[0], begin + i);
       const NumberVector id = all_lanes(index(tree_.id[begin + i]));
       for (std::size_t at = (i + 1) / lanes * lanes; at < fan_out; at += lanes) {
         const Hits later = hn::Gt(numbers_from(at), all_lanes(i));
@@ -188,7 +177,7 @@ class Join {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t place = begin + queries_[i] % fan_out;
       const std::size_t other = queries_[i] / fan_out * fan_out;
-      const BroadcastBox<D> query = broadcast(tree_.levels[0], place);
+      const BroadcastBox<D> query(tree_.levels[0], place);
       const NumberVector id = all_lanes(index(tree_.id[place]));
       for (std::size_t at = other; at < other + fan_out; at += lanes) {
         pairs_.room();

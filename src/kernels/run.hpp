@@ -52,7 +52,7 @@ struct Run {
 /// The run from box `begin` on, with the boxes before `end` as rows. Both are multiples of read_ahead, unless
 /// `end` is the run's end. The pairs of consecutive parts, in order, are those of the whole run.
 template <int D>
-Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
+Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end, Checkpoint* checkpoint) {
   for (int axis = 0; axis < D; ++axis) {
     run.min[axis] += begin;
     run.max[axis] += begin;
@@ -61,6 +61,7 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end) {
   run.dedup_mask += begin;
   run.size -= begin;
   run.rows = end - begin;
+  run.checkpoint = checkpoint;
   return run;
 }
 
@@ -141,7 +142,7 @@ class RunBuffer {
   }
 
   /// The run; holds until the buffer is changed.
-  Run<D> view(const Box<D, double>* doubles, float slack = 0) {
+  Run<D> view(const Box<D, double>* doubles, Checkpoint* checkpoint = nullptr, float slack = 0) {
     reserve(size_);
     for (std::size_t i = 0; i < read_ahead; ++i)
       min_[0][size_ + i] = max_[0][size_ + i] = std::numeric_limits<float>::quiet_NaN();
@@ -155,6 +156,7 @@ class RunBuffer {
     run.size = size_;
     run.slack = slack;
     run.doubles = doubles;
+    run.checkpoint = checkpoint;
     return run;
   }
 

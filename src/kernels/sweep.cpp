@@ -37,25 +37,13 @@ static_assert(together == Writer<ByFloats>::at_once);
 template <int D>
 struct Query {
   HWY_INLINE Query(const Run<D>& run, std::size_t i)
-      : bounds(box_of(run, i)),
-        id(hn::Set(Ids(), index(run.id[i]))),
-        dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {}
+      : bounds(run, i), id(hn::Set(Ids(), index(run.id[i]))), dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {}
 
   BoxId box_id() const { return BoxId{hn::GetLane(id)}; }
 
   BroadcastBox<D> bounds;
   IdVector id;
   IdVector dedup_mask;
-
- private:
-  static HWY_INLINE Box<D> box_of(const Run<D>& run, std::size_t i) {
-    Box<D> box;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = run.min[axis][i];
-      box.max[axis] = run.max[axis][i];
-    }
-    return box;
-  }
 };
 
 /// Which of the boxes from `at` on overlap the query and share no bit of its dedup_mask.

@@ -31,41 +31,36 @@ class LimitedTests final : public Successor<D> {
   void finish(const typename Successor<D>::IsMissing& /*is_missing*/) override { throw LimitPassed(); }
 };
 
-/// The maximum number of candidates: a constant, plus a number for each candidate that holds.
-struct CandidateLimit {
-  std::size_t candidates;
-  std::size_t candidates_per_holding = 0;
-
-  std::size_t max(std::size_t holding) const noexcept {
-    return candidates + candidates_per_holding * holding;
-  }
-};
-
-/// Appends candidates to a vector, and throws before the vector exceeds `limit`. A candidate holds if its
-/// boxes in `boxes` overlap.
+/// Appends candidates to a vector, and throws before there are more than `max`, plus `max_per_holding` for
+/// each that holds: its boxes in `boxes` overlap.
 template <int D, typename Real>
 class CandidateCollector final : public PairSink {
  public:
-  CandidateCollector(std::vector<Pair>& candidates, CandidateLimit limit,
+  CandidateCollector(std::vector<Pair>& candidates, std::size_t max, std::size_t max_per_holding = 0,
                      std::span<const Box<D, Real>> boxes = {})
-      : candidates_(candidates), collector_(candidates), limit_(limit), boxes_(boxes) {}
+      : candidates_(candidates),
+        collector_(candidates),
+        max_(max),
+        max_per_holding_(max_per_holding),
+        boxes_(boxes) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    if (limit_.candidates_per_holding > 0) {
+    if (max_per_holding_ > 0) {
       std::array<std::uint8_t, 2 * max_room> holds;
       kernels::set_overlap_flags(boxes_, pairs, holds.data());
-      holding_ += static_cast<std::size_t>(std::count(holds.begin(), holds.begin() + pairs.size(), 1));
+      max_ += max_per_holding_ *
+              static_cast<std::size_t>(std::count(holds.begin(), holds.begin() + pairs.size(), 1));
     }
-    if (candidates_.size() + pairs.size() > limit_.max(holding_)) throw LimitPassed();
+    if (candidates_.size() + pairs.size() > max_) throw LimitPassed();
     collector_.put(pairs);
   }
 
   const std::vector<Pair>& candidates_;
   PairCollector collector_;  // because it asks for large pages
-  CandidateLimit limit_;
+  std::size_t max_;
+  std::size_t max_per_holding_;
   std::span<const Box<D, Real>> boxes_;
-  std::size_t holding_ = 0;
 };
 
 /// Passes pairs on, and throws when all threads together have passed more than `max_pairs`.

@@ -11,7 +11,6 @@
 
 #include "broadside/sinks.hpp"
 
-#include "core/grow.hpp"
 #include "core/sample.hpp"
 #include "core/sort_pairs.hpp"
 #include "kernels/overlap_flags.hpp"
@@ -113,7 +112,7 @@ std::uint64_t CandidateList<D, Real>::start(const Change<D, Real>& change,
   margins_ = margins;
   now_.resize(size);
   for (std::size_t i = 0; i < size; ++i) now_[i] = margins_.enlarged(change.now[i], nullptr);
-  CandidateCollector<D, Real> collector(candidates_, {max_candidates_per_box * size, max_candidates_per_pair},
+  CandidateCollector<D, Real> collector(candidates_, max_candidates_per_box * size, max_candidates_per_pair,
                                         change.now);
   const std::optional<Statistics> found =
       pairs.find_within_limits(now_, change.filters_now, change.workers, collector);
@@ -273,16 +272,6 @@ void CandidateList<D, Real>::report(const Change<D, Real>& change, PairSink& beg
     for (std::size_t j = i; j < i + at_once; ++j) compare(j);
   }
   for (; i < candidates_.size(); ++i) compare(i);
-}
-
-template <int D, typename Real>
-void CandidateList<D, Real>::release() noexcept {
-  core::give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
-}
-
-template <int D, typename Real>
-std::size_t CandidateList<D, Real>::bytes() const noexcept {
-  return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
 }
 
 template class CandidateList<2, float>;

@@ -9,6 +9,7 @@
 
 #include "broadside/follower.hpp"
 
+#include "core/grow.hpp"
 #include "core/margins.hpp"
 #include "core/parallel.hpp"
 #include "track/follow_or_find.hpp"
@@ -50,8 +51,13 @@ class CandidateList {
   std::size_t candidate_count() const noexcept { return candidates_.size(); }
 
   /// Releases the memory.
-  void release() noexcept;
-  std::size_t bytes() const noexcept;
+  void release() noexcept {
+    core::give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
+  }
+
+  std::size_t bytes() const noexcept {
+    return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
+  }
 
  private:
   std::size_t max_candidates() const noexcept;

@@ -89,11 +89,7 @@ class DoubleFollower {
 
   Box<D> rounded(const Box<D, double>& box) const {
     if (!is_present(box)) return absent_box<D>();
-    if (by_quantiles_)
-      return core::rounded(
-          box, [&](int axis) -> const auto& { return quantiles_[axis]; });
-    return core::rounded(
-        box, [&](int axis) -> const auto& { return fit_[axis]; });
+    return by_quantiles_ ? core::rounded(box, quantiles_) : core::rounded(box, fit_);
   }
 
   /// Rounds all boxes of the frame before, by a rounding that suits this one.

@@ -99,7 +99,7 @@ std::optional<Statistics> FindAnew<D, Real>::find(std::span<const Box<D, Real>> 
                                                   std::size_t max_pairs, std::vector<Pair>& pairs) {
   pairs.clear();
   if (max_pairs != no_limit) {
-    CandidateCollector<D, Real> collector(pairs, {max_pairs});
+    CandidateCollector<D, Real> collector(pairs, max_pairs);
     const auto statistics = find_within_limits(boxes, filters, workers, collector);
     collector.flush();
     return statistics;
@@ -118,12 +118,6 @@ std::optional<Statistics> FindAnew<D, Real>::find_within_limits(std::span<const 
   LimitedTests<D> limited;
   return search_.find(boxes, {.filters = {.filters = filters}, .workers = workers, .successor = &limited},
                       pairs);
-}
-
-template <int D, typename Real>
-void FindAnew<D, Real>::forget() noexcept {
-  core::give_back(pairs_, found_);
-  has_pairs_ = false;
 }
 
 template class FindAnew<2, float>;

@@ -50,7 +50,11 @@ class FindAnew {
 
   /// Says that a frame is handled otherwise; forget() also releases the memory.
   void skip() noexcept { has_pairs_ = false; }
-  void forget() noexcept;
+
+  void forget() noexcept {
+    core::give_back(pairs_, found_);
+    has_pairs_ = false;
+  }
 
   std::string explanation() const { return search_.explanation(); }
   std::size_t bytes() const noexcept { return core::bytes_of(pairs_, found_); }

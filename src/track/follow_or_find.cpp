@@ -118,34 +118,6 @@ void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const W
 }
 
 template <int D, typename Real>
-std::optional<Statistics> FollowOrFind<D, Real>::find_within_limits(std::span<const Box<D, Real>> boxes,
-                                                                    std::span<const Filter> filters,
-                                                                    const Workers& workers, PairSink& pairs) {
-  return find_anew_->find_within_limits(boxes, filters, workers, pairs);
-}
-
-template <int D, typename Real>
-void FollowOrFind<D, Real>::start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,
-                                     const std::optional<Statistics>& statistics, const Workers& workers) {
-  forget();
-  policy_.found(boxes.size(), pairs, statistics);
-  start_following(boxes, workers);
-}
-
-template <int D, typename Real>
-void FollowOrFind<D, Real>::forget() noexcept {
-  if (find_anew_) find_anew_->forget();
-  follower_.reset();
-  was_followed_ = false;
-  policy_.lost();
-}
-
-template <int D, typename Real>
-bool FollowOrFind<D, Real>::has_compared_all() const noexcept {
-  return was_followed_ && structures_[policy_.current()].max_boxes > 0;
-}
-
-template <int D, typename Real>
 std::string FollowOrFind<D, Real>::explanation() const {
   if constexpr (core::is_lean) return {};
   if (!explains_) return find_anew_ ? find_anew_->explanation() : std::string();
@@ -163,19 +135,6 @@ std::string FollowOrFind<D, Real>::explanation() const {
   text += "all pairs found anew" + (by.empty() ? "" : " by " + by);
   if (is_asked_for) return text;
   return text + "; " + changed + ", and it pays to follow boxes up to " + break_even;
-}
-
-template <int D, typename Real>
-const BoxIndex<D, Real>* FollowOrFind<D, Real>::box_index() const noexcept {
-  if constexpr (std::is_same_v<Real, float>)
-    return was_followed_ && follower_ ? follower_->box_index() : nullptr;
-  else
-    return nullptr;
-}
-
-template <int D, typename Real>
-std::size_t FollowOrFind<D, Real>::bytes() const noexcept {
-  return (find_anew_ ? find_anew_->bytes() : 0) + (follower_ ? follower_->bytes() : 0);
 }
 
 template class FollowOrFind<2, float>;

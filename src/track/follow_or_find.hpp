@@ -50,30 +50,50 @@ class FollowOrFind {
   /// numbers of boxes and pairs justify, and throws what the sink throws.
   std::optional<Statistics> find_within_limits(std::span<const Box<D, Real>> boxes,
                                                std::span<const Filter> filters, const Workers& workers,
-                                               PairSink& pairs);
+                                               PairSink& pairs) {
+    return find_anew_->find_within_limits(boxes, filters, workers, pairs);
+  }
 
   /// To be called after find_within_limits(), with the number of pairs it found and what it did: prepares to
   /// follow these boxes from the next update on.
   void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,
-                const std::optional<Statistics>& statistics, const Workers& workers);
+                const std::optional<Statistics>& statistics, const Workers& workers) {
+    forget();
+    policy_.found(boxes.size(), pairs, statistics);
+    start_following(boxes, workers);
+  }
 
   /// From now on, an update that finds all pairs anew keeps at most `max` pairs. If it finds more, or makes
   /// too many tests (see above), it throws LimitPassed, and the next update must be a rebuild.
   void limit_pairs(std::size_t max) noexcept { max_pairs_ = max; }
 
   /// Releases the memory for the last frame. The next update must be a rebuild.
-  void forget() noexcept;
+  void forget() noexcept {
+    if (find_anew_) find_anew_->forget();
+    follower_.reset();
+    was_followed_ = false;
+    policy_.lost();
+  }
 
   /// Whether the last update compared all boxes.
-  bool has_compared_all() const noexcept;
+  bool has_compared_all() const noexcept {
+    return was_followed_ && structures_[policy_.current()].max_boxes > 0;
+  }
 
   std::string explanation() const;
 
   /// The index of the structure that followed the last frame. One that was only made ready for the next frame
   /// has seen no filters, so its index cannot be used yet.
-  const BoxIndex<D, Real>* box_index() const noexcept;
+  const BoxIndex<D, Real>* box_index() const noexcept {
+    if constexpr (std::is_same_v<Real, float>)
+      return was_followed_ && follower_ ? follower_->box_index() : nullptr;
+    else
+      return nullptr;
+  }
 
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return (find_anew_ ? find_anew_->bytes() : 0) + (follower_ ? follower_->bytes() : 0);
+  }
 
  private:
   using Followed = std::conditional_t<std::is_same_v<Real, float>, Follower<D>, DoubleFollower<D>>;

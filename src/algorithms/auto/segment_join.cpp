@@ -30,9 +30,6 @@ constexpr std::size_t samples = 32;
 /// From this depth on, medians of samples have failed to halve the boxes, and exact ones are taken.
 constexpr int depth_of_medians = 48;
 
-/// The least number of boxes for which a radix sort is faster than a comparison sort.
-constexpr std::size_t many_to_sort = 128;
-
 }  // namespace
 
 template <int D>
@@ -202,33 +199,20 @@ template <int D>
 bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
-  float next = low;  // the least that is not the lowest, of those not above the cut
   bool any = false;
-  const auto look_at = [&](const List& list) {
-    for (std::size_t i = list.begin; i < list.end; ++i) {
-      if ((stack_[i].dedup_mask >> cut.axis & 1U) != 0) continue;
-      any = true;
-      const float min = box(stack_[i]).min[cut.axis];
-      low = std::min(low, min);
-      high = std::max(high, min);
-    }
-  };
-  look_at(node.a);
-  if (!node.is_self) look_at(node.b);
+  for_minima(node, cut.axis, [&](float min) {
+    any = true;
+    low = std::min(low, min);
+    high = std::max(high, min);
+  });
   cut.low = low;
   cut.high = high;
   if (!(cut.at > low && cut.at <= high)) {
-    // The median is the least: the cut goes behind it.
-    next = high;
-    const auto look_again = [&](const List& list) {
-      for (std::size_t i = list.begin; i < list.end; ++i) {
-        const float min = box(stack_[i]).min[cut.axis];
-        if ((stack_[i].dedup_mask >> cut.axis & 1U) == 0 && min > low) next = std::min(next, min);
-      }
-    };
-    look_again(node.a);
-    if (!node.is_self) look_again(node.b);
-    cut.at = next;
+    // The median is the least: the cut goes behind it, to the least that is not the lowest.
+    cut.at = high;
+    for_minima(node, cut.axis, [&](float min) {
+      if (min > low) cut.at = std::min(cut.at, min);
+    });
   }
   return any;
 }
@@ -236,16 +220,9 @@ bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
 template <int D>
 void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
   minima_.clear();
-  const auto take = [&](const List& list) {
-    for (std::size_t i = list.begin; i < list.end; ++i) {
-      if ((stack_[i].dedup_mask >> cut.axis & 1U) == 0) minima_.push_back(box(stack_[i]).min[cut.axis]);
-    }
-  };
-  take(node.a);
-  if (!node.is_self) take(node.b);
-  const auto middle = minima_.begin() + static_cast<std::ptrdiff_t>(minima_.size() / 2);
-  std::ranges::nth_element(minima_, middle);
-  if (*middle > cut.low) cut.at = *middle;
+  for_minima(node, cut.axis, [this](float min) { minima_.push_back(min); });
+  const float median = core::median(minima_);
+  if (median > cut.low) cut.at = median;
 }
 
 /// Compares the node's boxes with each other, along an axis on which they may be disjoint.
@@ -271,26 +248,16 @@ kernels::Run<D> SegmentJoin<D>::run_of(const List& list, int axis, kernels::RunB
     std::swap(swept.max[0], swept.max[axis]);
     run.append(swept, sorted_boxes_[reference.place].id, reference.dedup_mask);
   };
-  const auto view = [&] {
-    kernels::Run<D> swept = run.view(doubles_);
-    swept.checkpoint = checkpoint_;
-    return swept;
-  };
-  const std::span<Reference> references = std::span(stack_).subspan(list.begin, list.size());
+  const std::span<const Reference> references = std::span(stack_).subspan(list.begin, list.size());
   if (axis == 0) {
     for (const Reference& reference : references) append(reference);
-    return view();
-  }
-  const std::span<core::KeyedPlace> keys = radix_.places(references.size());
-  for (std::size_t i = 0; i < references.size(); ++i)
-    keys[i] = {core::sort_key(box(references[i]).min[axis]), static_cast<std::uint32_t>(i)};
-  if (references.size() >= many_to_sort) {
-    for (const core::KeyedPlace& key : radix_.sort()) append(references[key.place]);
   } else {
-    std::ranges::sort(keys, {}, [](const core::KeyedPlace& key) { return std::pair(key.key, key.place); });
-    for (const core::KeyedPlace& key : keys) append(references[key.place]);
+    const std::span<core::KeyedPlace> keys = radix_.places(references.size());
+    for (std::size_t i = 0; i < references.size(); ++i)
+      keys[i] = {core::sort_key(box(references[i]).min[axis]), static_cast<std::uint32_t>(i)};
+    for (const core::KeyedPlace& key : radix_.sort()) append(references[key.place]);
   }
-  return view();
+  return run.view(doubles_, checkpoint_);
 }
 
 template class SegmentJoin<2>;

@@ -74,6 +74,18 @@ class SegmentJoin {
   void set_exact_median(const Node& node, Cut& cut);
   Parts part(const List& list, const Cut& cut);
 
+  /// Calls `visit(min)` for each of the node's boxes that begins in its region on that axis.
+  template <typename Visit>
+  void for_minima(const Node& node, int axis, Visit visit) const {
+    const auto visit_all = [&](const List& list) {
+      for (std::size_t i = list.begin; i < list.end; ++i) {
+        if ((stack_[i].dedup_mask >> axis & 1U) == 0) visit(box(stack_[i]).min[axis]);
+      }
+    };
+    visit_all(node.a);
+    if (!node.is_self) visit_all(node.b);
+  }
+
   /// Pushes the wanted references of a list.
   template <typename Wanted>
   List push(const List& list, Wanted wanted);

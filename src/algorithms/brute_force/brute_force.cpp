@@ -35,8 +35,8 @@ class BruteForceSearcher final : public Searcher<D> {
     const auto compare = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * rows_at_once;
       const std::size_t end = std::min(some.end * rows_at_once, rows);
-      kernels::Run<D> some_rows = kernels::rows_of(left == 0 ? run : left_run, begin, end);
-      some_rows.checkpoint = parallel_.checkpoint(worker);
+      kernels::Run<D> some_rows =
+          kernels::rows_of(left == 0 ? run : left_run, begin, end, parallel_.checkpoint(worker));
       if (left == 0) return Statistics{.tests = kernels::compare_all(some_rows, sink)};
       some_rows.size = end - begin;
       return Statistics{.tests = kernels::compare_all(some_rows, run, sink)};

@@ -4,12 +4,12 @@
 // structure of arrays. Changed boxes are taken one after the other, and each one's place is brought up to
 // date when it has been compared, so an event of two changed boxes shows when the second one is taken.
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
 #include "core/grow.hpp"
+#include "kernels/kept_run.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -31,10 +31,11 @@ class BruteForceFollower final : public Follower<D> {
     append_moved(change, change.changed, moved_);
     EventSinks<D> events(change, begun, ended);
     Checkpoint checkpoint(change.workers.checkpoint);
+    const kernels::Run<D> run = kept_.view();
     for (std::size_t begin = 0; begin < size; begin += boxes_at_once) {
       const std::size_t end = std::min(begin + boxes_at_once, size);
       for (const core::MovedBox<D>& box : moved_) {
-        kernels::find_changes(run_, begin, end, box, events.sinks());
+        kernels::find_changes(run, begin, end, box, events.sinks());
         checkpoint.count(end - begin);
         if (begin <= index(box.id) && index(box.id) < end) set(index(box.id), box.now);
       }
@@ -44,39 +45,26 @@ class BruteForceFollower final : public Follower<D> {
         .tests = std::uint64_t{moved_.size()} * size, .references = size, .hits = events.candidates()};
   }
 
-  std::size_t bytes() const noexcept override { return core::bytes_of(min_, max_, ids_, moved_); }
+  std::size_t bytes() const noexcept override {
+    return core::bytes_of(kept_.min, kept_.max, kept_.id, moved_);
+  }
 
  private:
   /// Makes the arrays as long as the frame; new places are absent.
   void resize(std::size_t size) {
-    const std::size_t known = std::min(ids_.size(), size);
-    for (int axis = 0; axis < D; ++axis) {
-      min_[axis].resize(size + kernels::read_ahead);
-      max_[axis].resize(size + kernels::read_ahead);
-      run_.min[axis] = min_[axis].data();
-      run_.max[axis] = max_[axis].data();
-    }
-    ids_.resize(size + kernels::read_ahead);
-    for (std::size_t i = known; i < ids_.size(); ++i) {
-      ids_[i] = BoxId(i);
+    const std::size_t known = std::min(kept_.id.size(), size);
+    kept_.resize(size);
+    for (std::size_t i = known; i < kept_.id.size(); ++i) {
+      kept_.id[i] = BoxId(i);
       set(i, absent_box<D>());
     }
-    run_.id = ids_.data();
-    run_.size = size;
   }
 
   void set(std::size_t place, const Box<D>& box) {
-    const Box<D> present = is_present(box) ? box : core::nan_box<D>();
-    for (int axis = 0; axis < D; ++axis) {
-      min_[axis][place] = present.min[axis];
-      max_[axis][place] = present.max[axis];
-    }
+    kept_.set(place, is_present(box) ? box : core::nan_box<D>());
   }
 
-  std::array<std::vector<float>, D> min_;
-  std::array<std::vector<float>, D> max_;
-  std::vector<BoxId> ids_;
-  kernels::Run<D> run_{};
+  kernels::KeptRun<D> kept_;
   std::vector<core::MovedBox<D>> moved_;
 };
 

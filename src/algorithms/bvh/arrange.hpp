@@ -9,6 +9,7 @@
 
 #include "broadside/box.hpp"
 
+#include "core/sample.hpp"
 #include "kernels/bvh.hpp"
 
 namespace broadside::algorithm {
@@ -85,9 +86,7 @@ void arrange(std::span<NumberedBox<D>> leaves) {
   };
   std::vector<float> sizes;
   for (const NumberedBox<D>& leaf : leaves) sizes.push_back(size_of(leaf));
-  const auto median = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, median);
-  const float max_size = 4 * *median;
+  const float max_size = 4 * core::median(sizes);
   const auto large = std::stable_partition(
       leaves.begin(), leaves.end(), [&](const NumberedBox<D>& leaf) { return size_of(leaf) <= max_size; });
   const auto common = static_cast<std::size_t>(large - leaves.begin());

@@ -6,9 +6,6 @@
 #include "algorithms/bvh/dynamic_bvh.hpp"
 
 #include <algorithm>
-#include <utility>
-
-#include "core/grow.hpp"
 
 namespace broadside::algorithm {
 
@@ -133,26 +130,6 @@ void DynamicBvh<D>::insert(BoxId id, const Box<D>& box) {
   add_child(number & ~leaf_bit, {box, index(id)});
 }
 
-template <int D>
-void DynamicBvh<D>::remove(BoxId id) {
-  const std::uint32_t at = std::exchange(slots_[index(id)], no_slot);
-  --size_;
-  remove_at(at);
-}
-
-template <int D>
-void DynamicBvh<D>::reinsert(BoxId id) {
-  const Box<D> box = box_at(slot(id));
-  remove(id);
-  insert(id, box);
-}
-
-template <int D>
-void DynamicBvh<D>::add_child(std::uint32_t node, const Child& child) {
-  if (info_[node].count == fan_out) return split(node, child);
-  write_child(node, info_[node].count++, child);
-}
-
 /// Adds a child to a full node: those that lie on one side of the axis along which they differ most remain,
 /// the others go into a new node beside it.
 template <int D>
@@ -250,28 +227,6 @@ void DynamicBvh<D>::write_child(std::uint32_t node, std::size_t lane, const Chil
     slots_[child.number] = slot;
   else
     info_[child.number & ~leaf_bit].parent = slot;
-}
-
-/// Empties the lanes from `count` on.
-template <int D>
-void DynamicBvh<D>::clear_from(std::uint32_t node, std::size_t count) noexcept {
-  for (std::size_t lane = count; lane < fan_out; ++lane) {
-    nodes_[node].set(lane, kernels::nan_box<D>());
-    nodes_[node].id[lane] = 0;
-  }
-}
-
-template <int D>
-kernels::WritableBvh<D> DynamicBvh<D>::writable() {
-  for (std::vector<std::uint32_t>& list : lists_) {
-    if (list.size() < nodes_.size() + 2 * fan_out) list.resize(nodes_.capacity() + 2 * fan_out);
-  }
-  return {nodes_.data(), info_.data(), root_, {lists_[0].data(), lists_[1].data()}};
-}
-
-template <int D>
-std::size_t DynamicBvh<D>::bytes() const noexcept {
-  return packer_.bytes() + core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_);
 }
 
 template class DynamicBvh<2>;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "broadside/box.hpp"
@@ -12,6 +13,7 @@
 
 #include "algorithms/bvh/arrange.hpp"
 #include "algorithms/bvh/packer.hpp"
+#include "core/grow.hpp"
 #include "kernels/bvh.hpp"
 
 namespace broadside::algorithm {
@@ -29,15 +31,25 @@ class DynamicBvh {
 
   /// The parts of set(), for a caller that moves many boxes between them.
   void insert(BoxId id, const Box<D>& box);
-  void remove(BoxId id);
+
+  void remove(BoxId id) {
+    const std::uint32_t at = std::exchange(slots_[index(id)], kernels::no_slot);
+    --size_;
+    remove_at(at);
+  }
 
   /// Makes the bounds around a box exact again, after follow() enlarged them.
   void refit(BoxId id) { refit_above(slot(id) / kernels::fan_out); }
 
   /// Removes a box and inserts it where bounds grow least.
-  void reinsert(BoxId id);
+  void reinsert(BoxId id) {
+    const Box<D> box = box_at(slot(id));
+    remove(id);
+    insert(id, box);
+  }
 
-  /// Where the box is: its node * fan_out + lane, or no_slot. Insertions and removals change it.
+  /// Where the box is: its node * fan_out + lane, or no_slot. Insertions and removals
+  /// change it.
   std::uint32_t slot(BoxId id) const noexcept {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
@@ -53,14 +65,22 @@ class DynamicBvh {
   kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
 
   /// To move boxes in; until the next insertion.
-  kernels::WritableBvh<D> writable();
+  kernels::WritableBvh<D> writable() {
+    for (std::vector<std::uint32_t>& list : lists_) {
+      if (list.size() < nodes_.size() + 2 * kernels::fan_out)
+        list.resize(nodes_.capacity() + 2 * kernels::fan_out);
+    }
+    return {nodes_.data(), info_.data(), root_, {lists_[0].data(), lists_[1].data()}};
+  }
 
   /// How many children the node has, in its first lanes.
   std::size_t child_count(std::uint32_t node) const noexcept {
     return info_[node & ~kernels::leaf_bit].count;
   }
 
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return packer_.bytes() + core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_);
+  }
 
   /// How many boxes build() and set() have taken so far. Tests measure this instead of time.
   std::uint64_t boxes_taken() const noexcept { return boxes_taken_; }
@@ -81,8 +101,20 @@ class DynamicBvh {
     nodes_[slot / kernels::fan_out].set(slot % kernels::fan_out, box);
   }
   void write_child(std::uint32_t node, std::size_t lane, const Child& child) noexcept;
-  void clear_from(std::uint32_t node, std::size_t count) noexcept;
-  void add_child(std::uint32_t node, const Child& child);
+
+  /// Empties the lanes from `count` on.
+  void clear_from(std::uint32_t node, std::size_t count) noexcept {
+    for (std::size_t lane = count; lane < kernels::fan_out; ++lane) {
+      nodes_[node].set(lane, kernels::nan_box<D>());
+      nodes_[node].id[lane] = 0;
+    }
+  }
+
+  void add_child(std::uint32_t node, const Child& child) {
+    if (info_[node].count == kernels::fan_out) return split(node, child);
+    write_child(node, info_[node].count++, child);
+  }
+
   void split(std::uint32_t node, const Child& added);
   void remove_at(std::uint32_t slot);
   void refit_above(std::uint32_t node);

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "broadside/queries.hpp"
@@ -18,9 +17,6 @@
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
-
-template <typename Real>
-inline constexpr bool is_float = std::is_same_v<Real, float>;
 
 /// Hands what a function makes of the boxes on to a visitor: `take_one(boxes, i, to)` sets `to` to what is
 /// found with box i of `boxes`, and returns whether it is.

@@ -93,23 +93,6 @@ void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
   }
 }
 
-template <int D, typename Real>
-std::optional<Real> BvhIndex<D, Real>::t_enter_of(const BoxCast<D, Real>& cast, const FoundBoxes& found,
-                                                  std::size_t i) const {
-  if constexpr (is_float<Real>)
-    return found.t_enter[i];
-  else
-    return t_enter(cast, exact_[found.ids[i]]);
-}
-
-template <int D, typename Real>
-Box<D> BvhIndex<D, Real>::in_tree(const Box<D, Real>& box) const {
-  if constexpr (is_float<Real>)
-    return box;
-  else
-    return rounding_.box(box);
-}
-
 /// The cast as the kernels take it, the parameter being 2^exponent times the caller's.
 template <int D, typename Real>
 kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, int& exponent) const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "broadside/index.hpp"
@@ -17,6 +18,9 @@
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
+
+template <typename Real>
+inline constexpr bool is_float = std::is_same_v<Real, float>;
 
 /// distance_squared() for code that is in a DefaultEnvironment already.
 template <int D, typename Real>
@@ -75,8 +79,14 @@ class BvhIndex {
     return options.filter == nullptr ||
            accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
   }
+
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
-                                 std::size_t i) const;
+                                 std::size_t i) const {
+    if constexpr (is_float<Real>)
+      return found.t_enter[i];
+    else
+      return t_enter(cast, exact_[found.ids[i]]);
+  }
 
  private:
   /// Whether there is nothing to find: no box, or the last update did not end.
@@ -85,7 +95,14 @@ class BvhIndex {
   void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
   void list_changes(const Frame<D, Real>& frame);
   void build(std::span<const Box<D, Real>> boxes);
-  Box<D> in_tree(const Box<D, Real>& box) const;
+
+  Box<D> in_tree(const Box<D, Real>& box) const {
+    if constexpr (is_float<Real>)
+      return box;
+    else
+      return rounding_.box(box);
+  }
+
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
 
   DynamicBvh<D> tree_;

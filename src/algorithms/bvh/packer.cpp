@@ -14,7 +14,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/grow.hpp"
+#include "core/cell_axis.hpp"
 #include "core/prefix_sum.hpp"
 
 namespace broadside::algorithm {
@@ -38,6 +38,7 @@ double root(double value, int degree) {
   return guess;
 }
 
+<<<<<<< HEAD
 /// Buckets of equal width for the coordinates on one axis.
 struct Buckets {
   Buckets(float least, float greatest, std::size_t max_count) : low(least) {
@@ -58,6 +59,16 @@ struct Buckets {
   float scale = 0;
   std::uint32_t count = 1;
 };
+=======
+/// Up to so many buckets of equal width for the coordinates on one axis; one if these are all the same.
+core::CellAxis buckets_of(float low, float high, std::size_t max_buckets) {
+  const float width = high - low;
+  if (!(width > 0) || max_buckets < 2) return {.low = low};
+  return {.low = low,
+          .per_unit = std::min(static_cast<float>(max_buckets) / width, std::numeric_limits<float>::max()),
+          .last = static_cast<float>(max_buckets - 1)};
+}
+>>>>>>> 70a775f (Sort few places, mix bits and keep a run's arrays in one way each)
 
 }  // namespace
 
@@ -80,9 +91,10 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
   const auto first_buckets = std::clamp<std::size_t>(boxes.size() / 16, 16, max_bvh_buckets);
   choose_axes(boxes.size());
   const int first = axes_[0];
-  const Buckets buckets(sample_[first].low, sample_[first].high, first_buckets);
+  const core::CellAxis buckets = buckets_of(sample_[first].low, sample_[first].high, first_buckets);
+  const std::uint32_t bucket_count = buckets.count();
   const std::size_t groups = left == 0 ? classes : 2 * classes;
-  const std::size_t keys = groups * buckets.count;
+  const std::size_t keys = groups * bucket_count;
   counts_.assign(parallel.range_count() * keys, 0);
   core::renew(keys_, boxes.size());
   parallel.for_numbered_ranges(boxes.size(), [&](std::size_t number, core::Range range, std::size_t) {
@@ -97,7 +109,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
         for (const float border : class_borders) group += static_cast<std::uint32_t>(size > border);
       }
       if (left != 0 && i >= left) group += classes;
-      const std::uint32_t key = group * buckets.count + buckets(box.min[first]);
+      const std::uint32_t key = group * bucket_count + buckets(box.min[first]);
       keys_[i] = static_cast<std::uint16_t>(key);
       ++counts[key];
     }
@@ -110,8 +122,7 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
   });
   const std::span<const std::uint32_t> ends = std::span(counts_).last(keys);
   group_ends_.clear();
-  for (std::size_t group = 1; group <= groups; ++group)
-    group_ends_.push_back(ends[group * buckets.count - 1]);
+  for (std::size_t group = 1; group <= groups; ++group) group_ends_.push_back(ends[group * bucket_count - 1]);
   sort_heavy_buckets(ends, parallel);
 }
 
@@ -266,10 +277,12 @@ void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf 
     low = std::min(low, entry(i).box.min[axis]);
     high = std::max(high, entry(i).box.min[axis]);
   }
-  const Buckets buckets(std::max(low, sample_[axis].low), std::min(high, sample_[axis].high),
-                        std::min(count / 2, max_bvh_buckets));
+  const core::CellAxis buckets =
+      buckets_of(std::max(low, sample_[axis].low), std::min(high, sample_[axis].high),
+                 std::min(count / 2, max_bvh_buckets));
+  const std::uint32_t bucket_count = buckets.count();
   std::array<std::uint32_t, max_bvh_buckets> places;
-  std::fill_n(places.begin(), buckets.count, 0);
+  std::fill_n(places.begin(), bucket_count, 0);
   scratch.buckets.resize(std::max(scratch.buckets.size(), count));
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t bucket = buckets(entry(i).box.min[axis]);
@@ -278,7 +291,7 @@ void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf 
   }
   std::uint32_t begin = 0;
   std::uint32_t heaviest = 0;
-  for (std::uint32_t bucket = 0; bucket < buckets.count; ++bucket) {
+  for (std::uint32_t bucket = 0; bucket < bucket_count; ++bucket) {
     heaviest = std::max(heaviest, places[bucket]);
     begin += std::exchange(places[bucket], begin);
   }
@@ -290,14 +303,6 @@ void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf 
     return;
   }
   for (std::size_t i = 0; i < count; ++i) put(i, places[scratch.buckets[i]]++);
-}
-
-template <int D>
-std::size_t BvhPacker<D>::bytes() const noexcept {
-  std::size_t bytes = core::bytes_of(keys_, counts_, group_ends_, entries_, scratch_) + levels_.bytes();
-  for (const Scratch& scratch : scratch_)
-    bytes += core::bytes_of(scratch.buckets, scratch.order) + scratch.radix.bytes();
-  return bytes;
 }
 
 template class BvhPacker<2>;

@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/bvh/packed_levels.hpp"
+#include "core/grow.hpp"
 #include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
@@ -42,7 +43,12 @@ class BvhPacker {
   const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
 
   /// The bytes held; about half are only needed while building.
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    std::size_t bytes = core::bytes_of(keys_, counts_, group_ends_, entries_, scratch_) + levels_.bytes();
+    for (const Scratch& scratch : scratch_)
+      bytes += core::bytes_of(scratch.buckets, scratch.order) + scratch.radix.bytes();
+    return bytes;
+  }
 
  private:
   using Entry = core::SortedBox<D>;

@@ -8,17 +8,10 @@
 
 #include <bit>
 
-#include "core/grow.hpp"
-
 namespace broadside::algorithm {
 
 using kernels::block_size;
 using kernels::no_slot;
-
-template <int D>
-void HierarchicalCells<D>::reserve(std::size_t count) {
-  if (slot_.size() < count) core::resize_by_eighths(slot_, count);
-}
 
 template <int D>
 void HierarchicalCells<D>::build(std::span<const Box<D>> boxes, std::span<const Box<D>> like) {
@@ -102,13 +95,6 @@ void HierarchicalCells<D>::move_within_cell(core::MovedBox<D>& box) {
   box.is_far = is_far(box);
 }
 
-/// Whether a box that is there belongs to the cell that it is in.
-template <int D>
-bool HierarchicalCells<D>::stays(const core::MovedBox<D>& box, std::size_t level) const {
-  return box.was_present &&
-         levels_[level].cell(box.now.min) == pool_.head(slot_[index(box.id)] / block_size).owner;
-}
-
 template <int D>
 bool HierarchicalCells<D>::is_far(const core::MovedBox<D>& box) const {
   bool is_far = false;
@@ -118,21 +104,6 @@ bool HierarchicalCells<D>::is_far(const core::MovedBox<D>& box) const {
     is_far |= box.bounds.max[axis] - box.bounds.min[axis] - extents > levels_.smallest_cell()[axis];
   }
   return is_far;
-}
-
-/// The box is gone from here, but is found until drop_stale().
-template <int D>
-void HierarchicalCells<D>::remove(BoxId id, const Box<D>& before) {
-  const std::uint32_t slot = slot_[index(id)];
-  pool_.mark(slot);
-  pool_.set(slot, before);
-  stale_.push_back(slot);
-}
-
-template <int D>
-void HierarchicalCells<D>::settle(BoxId id, const Box<D>& box) {
-  pool_.unmark_beside_others(slot_[index(id)]);
-  pool_.set(slot_[index(id)], box);
 }
 
 template <int D>
@@ -175,11 +146,6 @@ void HierarchicalCells<D>::close_hole(std::uint32_t slot) {
   pool_.erase(from);
   slot_[index(id)] = slot;
   if (pool_.head(first).used == 0) pool_.remove_block(first, first);
-}
-
-template <int D>
-std::size_t HierarchicalCells<D>::bytes() const noexcept {
-  return pool_.bytes() + core::bytes_of(first_, counts_, slot_, stale_) + levels_.bytes();
 }
 
 template class HierarchicalCells<2>;

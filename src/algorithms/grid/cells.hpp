@@ -12,6 +12,7 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/grid/levels.hpp"
+#include "core/grow.hpp"
 #include "kernels/block_pool.hpp"
 #include "kernels/moved.hpp"
 
@@ -28,7 +29,9 @@ class HierarchicalCells {
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>> like);
 
   /// The memory for ids below `count`.
-  void reserve(std::size_t count);
+  void reserve(std::size_t count) {
+    if (slot_.size() < count) core::resize_by_eighths(slot_, count);
+  }
 
   /// Moves a box, or one of the two that is there: until settle() its entry covers where it was and where it
   /// is, so a query for either finds it. What is left where it was goes with drop_stale(). O(1).
@@ -43,7 +46,10 @@ class HierarchicalCells {
   void move_within_cell(core::MovedBox<D>& box);
 
   /// Says that the box, which has moved before, is at rest here. Other threads may settle others.
-  void settle(BoxId id, const Box<D>& box);
+  void settle(BoxId id, const Box<D>& box) {
+    pool_.unmark_beside_others(slot_[index(id)]);
+    pool_.set(slot_[index(id)], box);
+  }
 
   /// Removes entries of boxes that have moved elsewhere or are gone. O(their number).
   void drop_stale();
@@ -52,13 +58,29 @@ class HierarchicalCells {
 
   std::size_t boxes() const { return boxes_; }
   std::size_t cells() const { return first_.size(); }
-  std::size_t bytes() const noexcept;
+
+  std::size_t bytes() const noexcept {
+    return pool_.bytes() + core::bytes_of(first_, counts_, slot_, stale_) + levels_.bytes();
+  }
 
  private:
   void fill(std::span<const Box<D>> boxes);
   void insert(BoxId id, const Box<D>& box, std::size_t level);
-  void remove(BoxId id, const Box<D>& before);
-  bool stays(const core::MovedBox<D>& box, std::size_t level) const;
+
+  /// The box is gone from here, but is found until drop_stale().
+  void remove(BoxId id, const Box<D>& before) {
+    const std::uint32_t slot = slot_[index(id)];
+    pool_.mark(slot);
+    pool_.set(slot, before);
+    stale_.push_back(slot);
+  }
+
+  /// Whether a box that is there belongs to the cell that it is in.
+  bool stays(const core::MovedBox<D>& box, std::size_t level) const {
+    return box.was_present &&
+           levels_[level].cell(box.now.min) == pool_.head(slot_[index(box.id)] / kernels::block_size).owner;
+  }
+
   bool is_far(const core::MovedBox<D>& box) const;
   void close_hole(std::uint32_t slot);
 

@@ -123,8 +123,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   run_.reserve(count);
   const float slack = order(lists, count, buckets);
   run_.set_size(count);
-  kernels::Run<D> run = run_.view(doubles_, slack);
-  run.checkpoint = checkpoint_;
+  const kernels::Run<D> run = run_.view(doubles_, checkpoint_, slack);
   if (is_wasteful(run, max_tests)) return false;
   statistics_.tests += kernels::sweep(run, pairs);
   return true;
@@ -220,13 +219,6 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
   }
   sort(lists, count);
   return 0;
-}
-
-template <int D>
-bool GridSweep<D>::are_even(std::size_t count) const {
-  std::uint64_t squares = 0;
-  for (const std::uint32_t in_bucket : starts_) squares += std::uint64_t{in_bucket} * in_bucket;
-  return squares <= std::uint64_t{max_in_bucket} * count;
 }
 
 template <int D>

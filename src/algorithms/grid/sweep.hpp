@@ -98,7 +98,6 @@ class GridSweep {
   /// Sets run_ to the cell's boxes in the order of the sweep, by the buckets that were counted if they will
   /// do. Returns the run's slack.
   float order(const Lists& lists, std::size_t count, const Buckets& buckets);
-
   bool are_even(std::size_t count) const;
   void scatter(const Lists& lists);
   void sort(const Lists& lists, std::size_t count);

@@ -2,10 +2,7 @@
 // splits them, at medians, so clusters and outliers do not deepen the tree.
 #include "algorithms/quadtree/nodes.hpp"
 
-#include <algorithm>
 #include <limits>
-
-#include "core/grow.hpp"
 
 namespace broadside::algorithm {
 
@@ -96,11 +93,6 @@ void QuadtreeNodes<D>::tidy(std::span<const Box<D>> boxes) {
     if (merge(node, boxes) && nodes_[node].parent != no_node) shrunk_.push_back(nodes_[node].parent);
   }
   shrunk_.clear();
-}
-
-template <int D>
-std::size_t QuadtreeNodes<D>::bytes() const noexcept {
-  return pool_.bytes() + core::bytes_of(nodes_, free_, homes_, grown_, shrunk_, ids_, masks_);
 }
 
 /// Inserts the boxes of ids_ from `begin` on into a node that is an empty leaf, and removes them from ids_.
@@ -256,14 +248,6 @@ void QuadtreeNodes<D>::drain(std::uint32_t node) {
     }
     pool_.remove_block(from.block, block);
   }
-}
-
-template <int D>
-void QuadtreeNodes<D>::split(std::uint32_t node, std::span<const Box<D>> boxes) {
-  ids_.clear();
-  drain(node);
-  std::ranges::sort(ids_);  // so that what a node has seen before does not show
-  fill(node, 0, boxes);
 }
 
 /// Makes a node a leaf if what is in its children, all of them leaves, and in itself are few boxes. Returns

@@ -2,6 +2,7 @@
 // merge.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
+#include "core/grow.hpp"
 #include "kernels/block_pool.hpp"
 
 namespace broadside::algorithm {
@@ -111,7 +113,9 @@ class QuadtreeNodes {
   /// but boxes that grow may exceed it.
   bool needs_rebuild() const noexcept { return is_too_deep_ || references_ > max_references * homes_.size(); }
 
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return pool_.bytes() + core::bytes_of(nodes_, free_, homes_, grown_, shrunk_, ids_, masks_);
+  }
 
  private:
   static constexpr std::size_t samples = 31;
@@ -130,7 +134,14 @@ class QuadtreeNodes {
   std::uint32_t put_in_chain(std::uint32_t node, const Box<D>& box, BoxId id);
   std::uint32_t add_children(std::uint32_t parent);
   void drain(std::uint32_t node);
-  void split(std::uint32_t node, std::span<const Box<D>> boxes);
+
+  void split(std::uint32_t node, std::span<const Box<D>> boxes) {
+    ids_.clear();
+    drain(node);
+    std::ranges::sort(ids_);  // so that what a node has seen before does not show
+    fill(node, 0, boxes);
+  }
+
   bool merge(std::uint32_t node, std::span<const Box<D>> boxes);
 
   std::uint32_t capacity_;

@@ -214,7 +214,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     if (count <= capacity_ || !worker.stack.split(sorted_boxes_, begin, end, split)) {
       worker.statistics.references += count;
       gather(worker, begin, end, worker.run, [](std::size_t) { return true; });
-      worker.statistics.tests += kernels::sweep(view(worker, worker.run), pairs);
+      worker.statistics.tests += kernels::sweep(worker.run.view(doubles_, worker.checkpoint), pairs);
       return;
     }
     if (worker.stack.kept_count > 0) sweep_kept(worker, begin, end, pairs);
@@ -235,15 +235,9 @@ class QuadtreeSearcher final : public Searcher<D> {
     gather(worker, begin, end, worker.run,
            [&worker](std::size_t i) { return worker.stack.children[i] != 0; });
     worker.statistics.references += worker.kept_run.size();
-    const kernels::Run<D> kept = view(worker, worker.kept_run);
+    const kernels::Run<D> kept = worker.kept_run.view(doubles_, worker.checkpoint);
     worker.statistics.tests += kernels::sweep(kept, pairs);
-    worker.statistics.tests += kernels::sweep(kept, view(worker, worker.run), pairs);
-  }
-
-  kernels::Run<D> view(const Worker& worker, kernels::RunBuffer<D>& buffer) const {
-    kernels::Run<D> run = buffer.view(doubles_);
-    run.checkpoint = worker.checkpoint;
-    return run;
+    worker.statistics.tests += kernels::sweep(kept, worker.run.view(doubles_, worker.checkpoint), pairs);
   }
 
   /// Fills `run` with those of the node's references whose places in the node are `wanted`.

@@ -2,8 +2,8 @@
 #include "algorithms/sweep_and_prune/order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 namespace broadside::algorithm {
@@ -74,24 +74,6 @@ std::size_t gallop(std::size_t size, std::size_t near, IsBehind is_behind) {
 }  // namespace
 
 template <int D>
-void SweepOrder<D>::Arrays::resize(std::size_t size) {
-  for (int axis = 0; axis < D; ++axis) {
-    min[axis].resize(size + kernels::read_ahead);
-    max[axis].resize(size + kernels::read_ahead);
-  }
-  id.resize(size + kernels::read_ahead);
-}
-
-template <int D>
-void SweepOrder<D>::Arrays::set(std::size_t place, const Box<D>& box, BoxId box_id) {
-  for (int axis = 0; axis < D; ++axis) {
-    min[axis][place] = box.min[axis];
-    max[axis][place] = box.max[axis];
-  }
-  id[place] = box_id;
-}
-
-template <int D>
 std::size_t SweepOrder<D>::find(const SweepKey& wanted, std::size_t near) const {
   return gallop(size_, near, [&](std::size_t place) { return key(place) < wanted; });
 }
@@ -110,29 +92,14 @@ std::size_t SweepOrder<D>::find(const SweepKey& wanted) const {
 
 template <int D>
 std::size_t SweepOrder<D>::find_end(float max, std::size_t near) const {
-  return gallop(size_, near, [&](std::size_t place) { return min_[0][place] <= max; });
-}
-
-template <int D>
-Box<D> SweepOrder<D>::box(std::size_t place) const {
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = min_[axis][place];
-    box.max[axis] = max_[axis][place];
-  }
-  return box;
+  return gallop(size_, near, [&](std::size_t place) { return kept_.min[0][place] <= max; });
 }
 
 template <int D>
 void SweepOrder<D>::take_other() {
-  std::swap(arrays_, other_);
-  size_ = id_.size() - kernels::read_ahead;
-  for (int axis = 0; axis < D; ++axis) {
-    run_.min[axis] = min_[axis].data();
-    run_.max[axis] = max_[axis].data();
-  }
-  run_.id = id_.data();
-  run_.size = size_;
+  std::swap(kept_, other_);
+  run_ = kept_.view();
+  size_ = run_.size;
   reach_.resize((size_ + fan - 1) / fan);
   high_reach_.resize(size_ / fan / fan + 1);
   if (size_ > 0)
@@ -144,32 +111,27 @@ void SweepOrder<D>::take_other() {
 template <int D>
 void SweepOrder<D>::set_reach(std::size_t first_block, std::size_t last_block) {
   for (std::size_t block = first_block; block <= last_block; ++block)
-    reach_[block] = greatest(max_[0].data() + block * fan, std::min(fan, size_ - block * fan));
+    reach_[block] = greatest(kept_.max[0].data() + block * fan, std::min(fan, size_ - block * fan));
   for (std::size_t high = first_block / fan; high <= last_block / fan; ++high)
     high_reach_[high] = greatest(reach_.data() + high * fan, std::min(fan, reach_.size() - high * fan));
 }
 
 template <int D>
 std::size_t SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
-  const SweepKey to_key{box.min[0], id_[from]};
+  const SweepKey to_key{box.min[0], kept_.id[from]};
   std::size_t to = find(to_key, from);
   // The search has counted the box itself where it goes up.
   if (to > from) --to;
   if (to != from) {
     for (int axis = 0; axis < D; ++axis) {
-      move_element(min_[axis], from, to);
-      move_element(max_[axis], from, to);
+      move_element(kept_.min[axis], from, to);
+      move_element(kept_.max[axis], from, to);
     }
-    move_element(id_, from, to);
+    move_element(kept_.id, from, to);
   }
-  arrays_.set(to, box, to_key.id);
+  kept_.set(to, box);
   set_reach(std::min(from, to) / fan, std::max(from, to) / fan);
   return std::max(from, to) - std::min(from, to);
-}
-
-template <int D>
-void SweepOrder<D>::remove(std::size_t place) {
-  max_[0][place] = std::numeric_limits<float>::quiet_NaN();
 }
 
 template <int D>
@@ -205,11 +167,6 @@ std::uint64_t SweepOrder<D>::find_changes(const core::MovedBox<D>& moved, float 
   }
   kernels::find_changes(run_, begin, end, moved, sinks);
   return tests;
-}
-
-template <int D>
-std::size_t SweepOrder<D>::bytes() const noexcept {
-  return arrays_.bytes() + other_.bytes() + core::bytes_of(reach_, high_reach_);
 }
 
 template class SweepOrder<2>;

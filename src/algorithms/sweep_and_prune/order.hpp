@@ -1,9 +1,9 @@
 // Boxes kept in the order of a sweep from frame to frame.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,6 +11,7 @@
 #include "broadside/pair.hpp"
 
 #include "core/grow.hpp"
+#include "kernels/kept_run.hpp"
 #include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
@@ -44,7 +45,7 @@ template <int D>
 class SweepOrder {
  public:
   std::size_t size() const noexcept { return size_; }
-  SweepKey key(std::size_t place) const { return {min_[0][place], id_[place]}; }
+  SweepKey key(std::size_t place) const { return {kept_.min[0][place], kept_.id[place]}; }
 
   /// The place of the first box that does not come before `key`: of the box itself where it is there. By
   /// binary search, in the neighbourhood of `near` first.
@@ -57,39 +58,33 @@ class SweepOrder {
     other_.resize(entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const SweepEntry& entry = entries[i];
-      other_.set(i, entry.from == SweepEntry::is_new ? box_of(entry.key.id) : box(entry.from), entry.key.id);
+      other_.set(i, entry.from == SweepEntry::is_new ? box_of(entry.key.id) : box(entry.from));
+      other_.id[i] = entry.key.id;
     }
     take_other();
   }
 
-  Box<D> box(std::size_t place) const;
+  Box<D> box(std::size_t place) const { return kept_.box(place); }
 
   /// Gives the box at `place` other bounds and moves it to where it belongs, and those between by one.
   /// Returns how many these are.
   std::size_t move(std::size_t place, const Box<D>& box);
 
   /// Lets the box at `place` overlap nothing, until it is left out of a new order.
-  void remove(std::size_t place);
+  void remove(std::size_t place) { kept_.max[0][place] = std::numeric_limits<float>::quiet_NaN(); }
 
   /// Writes what the moved box, whose axes are in the sweep's order, begins to overlap or ceases to. `near`
   /// is a place near its own. Returns how many boxes were compared.
   std::uint64_t find_changes(const core::MovedBox<D>& moved, std::size_t near,
                              const core::ChangeSinks& sinks) const;
 
-  std::size_t bytes() const noexcept;
+  std::size_t bytes() const noexcept {
+    return core::bytes_of(kept_.min, kept_.max, kept_.id, other_.min, other_.max, other_.id, reach_,
+                          high_reach_);
+  }
 
  private:
   static constexpr std::size_t fan = 64;  // boxes in a block, and blocks in a block of blocks
-
-  struct Arrays {
-    std::array<std::vector<float>, D> min;
-    std::array<std::vector<float>, D> max;
-    std::vector<BoxId> id;
-
-    void resize(std::size_t size);
-    void set(std::size_t place, const Box<D>& box, BoxId box_id);
-    std::size_t bytes() const noexcept { return core::bytes_of(min, max, id); }
-  };
 
   /// Those among the boxes that may touch [min, max] on the swept axis.
   std::uint64_t find_changes(const core::MovedBox<D>& moved, float min, float max, std::size_t near,
@@ -100,15 +95,11 @@ class SweepOrder {
   void set_reach(std::size_t first_block, std::size_t last_block);
 
   std::size_t size_ = 0;
-  Arrays arrays_;
-  Arrays other_;  // while a new order is made
+  kernels::KeptRun<D> kept_;
+  kernels::KeptRun<D> other_;  // while a new order is made
   std::vector<float> reach_;
   std::vector<float> high_reach_;
   kernels::Run<D> run_{};
-
-  std::array<std::vector<float>, D>& min_ = arrays_.min;
-  std::array<std::vector<float>, D>& max_ = arrays_.max;
-  std::vector<BoxId>& id_ = arrays_.id;
 };
 
 }  // namespace broadside::algorithm

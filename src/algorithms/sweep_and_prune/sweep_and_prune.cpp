@@ -125,8 +125,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
     const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * swept_at_once;
       const std::size_t end = std::min(some.end * swept_at_once, run.size);
-      kernels::Run<D> rows = kernels::rows_of(run, begin, end);
-      rows.checkpoint = parallel_.checkpoint(worker);
+      const auto rows = kernels::rows_of(run, begin, end, parallel_.checkpoint(worker));
       return Statistics{.tests = kernels::sweep(rows, sink)};
     };
     Statistics statistics = parallel_.search((run.size + swept_at_once - 1) / swept_at_once, pairs, sweep);
@@ -170,9 +169,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
           const auto before = static_cast<std::uint32_t>(places_[i].first < stripe);
           run.append(sorted[i].box, sorted[i].id, before | kernels::side_bit(sorted[i].id, input.left_count));
         }
-        kernels::Run<D> view = run.view(input.doubles);
-        view.checkpoint = parallel_.checkpoint(worker);
-        statistics.tests += kernels::sweep(view, sink);
+        statistics.tests += kernels::sweep(run.view(input.doubles, parallel_.checkpoint(worker)), sink);
         statistics.references += list.size();
       }
       return statistics;

@@ -118,7 +118,7 @@ Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, const Box<D, double
   buffer.clear();
   buffer.reserve(entries.size());
   for (const Entry<D>& entry : entries) buffer.append(entry.box, entry.id, entry.dedup_mask);
-  return buffer.view(doubles, slack);
+  return buffer.view(doubles, nullptr, slack);
 }
 
 /// How boxes are drawn.
