@@ -101,8 +101,7 @@ void add_file_options(CLI::App& verb, InputOptions& options) {
                   "What to make boxes of, such as triangles, edges, features or segments; `broadside list` "
                   "tells which a format has")
       ->type_name("PART");
-  verb.add_option(
-          "--array", options.array, "The array of an .npz file (default: the only one)")
+  verb.add_option("--array", options.array, "The array of an .npz file (default: the only one)")
       ->type_name("NAME");
   verb.add_option(
           "--columns", options.columns,

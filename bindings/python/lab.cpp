@@ -81,8 +81,8 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
 /// The boxes of one frame of a file, and a text about what could not be read. `content` has the file's bytes
 /// if they are in memory, and is None otherwise.
 nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
-                const std::string& boxes, const std::string& columns, int dimension,
-                std::size_t frame, bool skips_invalid) {
+                const std::string& boxes, const std::string& columns, int dimension, std::size_t frame,
+                bool skips_invalid) {
   std::optional<Buffer> bytes;
   if (!content.is_none()) bytes.emplace(content, PyBUF_SIMPLE);
   const std::string path(name.c_str(), name.size());
@@ -217,8 +217,7 @@ void add_lab(nb::module_& module) {
   module.def("advise", &advise, nb::arg("boxes").none(), nb::arg("algorithms"), nb::arg("threads"),
              nb::arg("budget"));
   module.def("read", &read, nb::arg("path"), nb::arg("content").none(), nb::arg("format"), nb::arg("boxes"),
-             nb::arg("columns"), nb::arg("dimension"), nb::arg("frame"),
-             nb::arg("skips_invalid"));
+             nb::arg("columns"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));
   module.def("formats", &formats);
   module.def("resolve_columns", &resolve_columns, nb::arg("names"), nb::arg("are_chosen"));
   module.def("draw", &draw, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("most"), nb::arg("title"));

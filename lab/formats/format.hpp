@@ -26,11 +26,11 @@ class FileError : public std::runtime_error {
 
 /// How to read a file. The file and its format decide what is left empty.
 struct ReadOptions {
-  std::string format{};   ///< the name of a format; empty: told by the file's content and name
-  std::string boxes{};    ///< what to make boxes of: one of the format's Format::parts
-  std::string columns{};  ///< the names of a table's columns, from left to right, with commas between
-  std::string array{};    ///< of an .npz file, the array to read; empty: the only one
-  std::string ids{};      ///< a table's column or a map's property of ids, as --ids; empty: not read
+  std::string format{};    ///< the name of a format; empty: told by the file's content and name
+  std::string boxes{};     ///< what to make boxes of: one of the format's Format::parts
+  std::string columns{};   ///< the names of a table's columns, from left to right, with commas between
+  std::string array{};     ///< of an .npz file, the array to read; empty: the only one
+  std::string ids{};       ///< a table's column or a map's property of ids, as --ids; empty: not read
   bool finds_ids = false;  ///< without `ids`: read them where a table has a column `id`
   int dimension = 0;       ///< 2 or 3; a file in 3D is seen along the z axis in 2D
   std::optional<Precision> precision{};

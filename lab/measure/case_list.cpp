@@ -190,7 +190,7 @@ void read_algorithms(const JsonPlace& place, const Catalogue& catalogue, ListedC
 }
 
 ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const Catalogue& catalogue,
-                     const FindScene& find) {
+                            const FindScene& find) {
   place.check_fields({"name", "scene", "dimension", "boxes", "seed", "seeds", "moving", "frames", "drift",
                       "teleport", "specs", "take", "made_anew", "effort"});
   ListedCase listed;

@@ -179,7 +179,8 @@ TEST_F(Mesh, RefusesWhatIsNone) {
 TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
   const auto part = put("rivers.dbf", "anything");
   EXPECT_THAT(refusal(part), AllOf(HasSubstr("rivers.dbf: is a part of a shapefile, which is not read here"),
-                                   HasSubstr("ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson " + part.string())));
+                                   HasSubstr("ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson " +
+                                             part.string())));
   EXPECT_THAT(refusal(put("a.xlsx", "PK")), HasSubstr("libreoffice --headless --convert-to csv "));
   EXPECT_THAT(refusal(put("a.laz", "?")), HasSubstr("pdal translate "));
   const auto intervals = put("a.bed", "chr1\t10\t20\n");
@@ -200,9 +201,8 @@ TEST_F(Files, InAFormatThatIsNotReadAreRefusedNamingItsConverter) {
 TEST_F(Files, ThatAreNotThereOrInNoFormatAreRefused) {
   EXPECT_THAT(refusal(path("nothing.csv")), AllOf(HasSubstr("nothing.csv"), HasSubstr("No such file")));
   EXPECT_THAT(refusal(path("")), HasSubstr("cannot be read"));
-  EXPECT_THAT(
-      refusal(put("a.xyzzy", "hello")),
-      AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), map (.geojson ")));
+  EXPECT_THAT(refusal(put("a.xyzzy", "hello")),
+              AllOf(HasSubstr("a.xyzzy"), HasSubstr("csv (.csv), npy (.npy), npz (.npz), map (.geojson ")));
   try {
     write_scene(History<2>{}, path("a.obj"));
     FAIL() << "wrote a format that is only read";

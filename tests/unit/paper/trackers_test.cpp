@@ -211,8 +211,7 @@ TEST(ErratumT8, AReinsertionComparesLittleAndMovesAll) {
   std::vector<Box2> boxes;
   for (std::size_t i = 1; i <= 1000; ++i)
     boxes.push_back({{static_cast<float>(i), 0}, {static_cast<float>(i), 1}});
-  const Phases parts =
-      Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
+  const Phases parts = Followed("paper_sweep_and_prune:update=binary", boxes).move(999, {{0, 0}, {0, 1}});
   EXPECT_LE(parts.visited, 20U);
   EXPECT_EQ(parts.moved, 1000U);
 }
@@ -236,8 +235,7 @@ TEST(ErratumT11, AStructureIsBuiltAnewWhereItIsOutgrown) {
 TEST(ErratumT19, AReferenceIsLookedForAmongTheOthersOfItsCell) {
   std::vector<Box2> boxes;
   for (const float x : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 100.0F}) boxes.push_back({{x, x}, {x, x}});
-  const Phases parts =
-      Followed("paper_grid:cell=10:update=reinsert", boxes).move(4, {{55, 55}, {55, 55}});
+  const Phases parts = Followed("paper_grid:cell=10:update=reinsert", boxes).move(4, {{55, 55}, {55, 55}});
   EXPECT_EQ(parts.visited, 5U + 1U);
 }
 
