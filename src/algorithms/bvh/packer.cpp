@@ -38,37 +38,14 @@ double root(double value, int degree) {
   return guess;
 }
 
-<<<<<<< HEAD
-/// Buckets of equal width for the coordinates on one axis.
-struct Buckets {
-  Buckets(float least, float greatest, std::size_t max_count) : low(least) {
-    const float width = greatest - least;
-    if (!(width > 0) || max_count < 2) return;
-    scale = static_cast<float>(max_count) / width;
-    count = static_cast<std::uint32_t>(max_count);
-    if (!std::isfinite(scale)) scale = std::numeric_limits<float>::max();
-  }
-
-  std::uint32_t operator()(float value) const {
-    const float at = (value - low) * scale;
-    // A NaN goes into the first one, too.
-    return at > 0 ? static_cast<std::uint32_t>(std::min(at, static_cast<float>(count - 1))) : 0;
-  }
-
-  float low;
-  float scale = 0;
-  std::uint32_t count = 1;
-};
-=======
 /// Up to so many buckets of equal width for the coordinates on one axis; one if these are all the same.
-core::CellAxis buckets_of(float low, float high, std::size_t max_buckets) {
+core::CellAxis buckets_of(float low, float high, std::size_t max_count) {
   const float width = high - low;
-  if (!(width > 0) || max_buckets < 2) return {.low = low};
+  if (!(width > 0) || max_count < 2) return {.low = low};
   return {.low = low,
-          .per_unit = std::min(static_cast<float>(max_buckets) / width, std::numeric_limits<float>::max()),
-          .last = static_cast<float>(max_buckets - 1)};
+          .per_unit = std::min(static_cast<float>(max_count) / width, std::numeric_limits<float>::max()),
+          .last = static_cast<float>(max_count - 1)};
 }
->>>>>>> 70a775f (Sort few places, mix bits and keep a run's arrays in one way each)
 
 }  // namespace
 
