@@ -1,0 +1,53 @@
+"""Tables as Markdown whose columns are as wide in print as what stands in them needs."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+LINE = 110   # characters of a printed line of a table
+SHORT = 14   # a column up to so wide keeps its width, the others share what is left
+
+
+@dataclass(frozen=True)
+class Table:
+    """Cells are Markdown; a column whose heading ends in a colon is aligned to the right."""
+
+    headings: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def markdown(self) -> str:
+        for row in self.rows:
+            if len(row) != len(self.headings):
+                raise ValueError(f"a row of {len(row)} cells; expected {len(self.headings)}: {row}")
+        is_right = [heading.endswith(":") for heading in self.headings]
+        lines = [[heading.removesuffix(":") for heading in self.headings], *self.rows]
+        dashes = ["-" * max(width - right, 3) + (":" if right else "")
+                  for width, right in zip(self.widths(), is_right)]
+        texts = [" | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in line) for line in lines]
+        return "\n".join(f"| {text} |" for text in [texts[0], " | ".join(dashes), *texts[1:]])
+
+    def widths(self) -> list[int]:
+        """Characters of each column: pandoc divides the line by them where a row is longer than it."""
+        columns = [[printed(row[i]) for row in self.rows] for i in range(len(self.headings))]
+        longest = [max([len(cell) for cell in column] + [longest_word([heading]), 1])
+                   for heading, column in zip(self.headings, columns)]
+        if sum(longest) + 3 * len(longest) <= LINE:
+            return [width + 2 for width in longest]
+        left = LINE - sum(width + 2 for width in longest if width <= SHORT)
+        shares = [math.sqrt(sum(map(len, column))) if width > SHORT else 0
+                  for width, column in zip(longest, columns)]
+        return [width + 2 if width <= SHORT else
+                max(round(left * share / sum(shares)), min(longest_word(column), 24) + 2)
+                for width, share, column in zip(longest, shares, columns)]
+
+
+def printed(cell: str) -> str:
+    """Without the address of links and the marks of code and emphasis."""
+    return re.sub(r"[`*]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", cell))
+
+
+def longest_word(cells: Sequence[str]) -> int:
+    return max((len(word) for cell in cells for word in printed(cell).split()), default=1)
