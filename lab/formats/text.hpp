@@ -33,6 +33,11 @@ inline std::string_view next_word(std::string_view& text) {
 
 namespace broadside::lab::readers {
 
+/// Whether all of `text` is a number, which may be infinite or a NaN; `value` is then the nearest float or
+/// double.
+template <typename Number>
+bool parse_any_number(std::string_view text, Number& value);
+
 /// Whether all of `text` is a number, which may be infinite but not a NaN; `value` is then the nearest
 /// double.
 bool parse_number(std::string_view text, double& value);
