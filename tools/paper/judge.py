@@ -32,59 +32,61 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Split:
-    """Places by what their intervals say of a threshold."""
+class Asked:
+    """What a statement asks of a figure: that its whole interval is above, or below, a threshold, or between two.
 
-    held: Sequence[str]
-    failed: Sequence[str]
-    undecided: Sequence[str]
-
-    def verdict(self) -> Verdict:
-        if self.held and not self.failed and not self.undecided:
-            return Verdict.CONFIRMED
-        if self.held:
-            return Verdict.WITHIN_BOUNDS
-        return Verdict.OPEN if self.undecided else Verdict.REFUTED
-
-
-def split(places: Mapping[str, Estimate], *, above: float | None = None, below: float | None = None,
-          fails_at: float | None = None) -> Split:
-    """Divides places by whether their figure is above (or below) the threshold with its whole interval.
-
-    It fails where the whole interval is on the other side of `fails_at`, which is the threshold unless it is
-    given.
+    It fails where the whole interval is on the other side; of `fails_at`, where that is given, instead of the
+    first threshold.
     """
-    if not places or (above is None) == (below is None):
-        raise ValueError("expected places, and either `above` or `below`")
-    if above is not None:
-        least = above if fails_at is None else fails_at
-        holds = {name: (at.is_above(above), at.is_below(least)) for name, at in places.items()}
-    else:
-        most = below if fails_at is None else fails_at
-        holds = {name: (at.is_below(below), at.is_above(most)) for name, at in places.items()}
-    return Split([name for name, (yes, _) in holds.items() if yes],
-                 [name for name, (_, no) in holds.items() if no],
-                 [name for name, (yes, no) in holds.items() if not yes and not no])
+
+    at: Estimate
+    above: float | None = None
+    below: float | None = None
+    fails_at: float | None = None
+
+    def holds(self) -> bool:
+        return ((self.above is None or self.at.is_above(self.above))
+                and (self.below is None or self.at.is_below(self.below)))
+
+    def fails(self) -> bool:
+        least, most = self.above, self.below
+        if self.fails_at is not None:
+            least, most = (self.fails_at, most) if least is not None else (least, self.fails_at)
+        return (least is not None and self.at.is_below(least)) or (most is not None and self.at.is_above(most))
 
 
 def judged(number: str, places: Mapping[str, Estimate], *, above: float | None = None,
            below: float | None = None, fails_at: float | None = None, where: str = "{}",
            beside: Mapping[str, Estimate] | None = None) -> Finding:
-    """The verdict on a statement that is to hold at each of these places.
+    """The verdict on a statement that asks one thing, and is to hold at each of these places."""
+    if above is None and below is None:
+        raise ValueError("expected `above` or `below`")
+    return judged_all(number, {name: {name: Asked(at, above, below, fails_at)} for name, at in places.items()},
+                      where=where, beside=beside)
 
-    Confirmed where all intervals are on the right side, refuted where all are on the wrong one; within
-    bounds where some are on the right one: `where` then makes a condition of their names.
+
+def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where: str = "{}",
+               beside: Mapping[str, Estimate] | None = None) -> Finding:
+    """The verdict on a statement that asks several things, by names, of each place.
+
+    It holds where all hold, and fails where one fails. Confirmed where it holds at all places, refuted where it
+    fails at all; within bounds where it holds at some: `where` then makes a condition of their names.
     """
     if not places:
         return Finding(number, Verdict.OPEN, {}, "nothing that was measured is what it is about", beside or {})
-    parts = split(places, above=above, below=below, fails_at=fails_at)
-    verdict = parts.verdict()
+    held = [name for name, asked in places.items() if all(one.holds() for one in asked.values())]
+    failed = [name for name, asked in places.items() if any(one.fails() for one in asked.values())]
+    undecided = [name for name in places if name not in held and name not in failed]
     condition = ""
-    if verdict is Verdict.WITHIN_BOUNDS:
-        condition = where.format(listing(parts.held))
-        if parts.undecided:
-            condition += f"; open: {listing(parts.undecided)}"
-    return Finding(number, verdict, dict(places), condition, dict(beside or {}))
+    if len(held) == len(places):
+        verdict = Verdict.CONFIRMED
+    elif held:
+        verdict = Verdict.WITHIN_BOUNDS
+        condition = where.format(listing(held)) + (f"; open: {listing(undecided)}" if undecided else "")
+    else:
+        verdict = Verdict.OPEN if undecided else Verdict.REFUTED
+    evidence = {name: one.at for asked in places.values() for name, one in asked.items()}
+    return Finding(number, verdict, evidence, condition, dict(beside or {}))
 
 
 def listing(names: Sequence[str]) -> str:

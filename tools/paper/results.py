@@ -9,7 +9,7 @@ import numpy
 import pandas
 
 from .experiment import Unusable
-from .statistics import Estimate, between_runs, bootstrap_interval, median_ratio
+from .statistics import Estimate, between_runs, bootstrap_interval, growth, growth_interval, median_ratio
 
 WHOLE = ("whole",)
 
@@ -89,6 +89,15 @@ class Results:
 
     def between(self, figure: Callable[[Run], float], unit: str = "") -> Estimate:
         return between_runs([figure(run) for run in self.runs], self.confidence, unit)
+
+    def growth(self, sizes: Sequence[float], amount: Callable[[Run, float], float]) -> Estimate:
+        """The exponent e of amount(run, size) ~ size^e; its interval holds that between runs and that which the
+        fit to the runs' means leaves."""
+        amounts = numpy.array([[amount(run, size) for size in sizes] for run in self.runs])
+        between = between_runs([growth(sizes, row) for row in amounts], self.confidence)
+        low, high = growth_interval(sizes, numpy.exp(numpy.log(amounts).mean(axis=0)), self.confidence)
+        return Estimate(between.value, numpy.fmin(between.low, low), numpy.fmax(between.high, high),
+                        between.runs)
 
     def time(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> Estimate:
         return self.between(lambda run: run.time(case, spec, part), "ms")

@@ -108,6 +108,12 @@ def growth(sizes: Sequence[float], amounts: Sequence[float]) -> float:
     return float(stats.linregress(numpy.log(sizes), numpy.log(amounts)).slope)
 
 
+def growth_interval(sizes: Sequence[float], amounts: Sequence[float], confidence: float) -> tuple[float, float]:
+    """Where the fit leaves the exponent: wide where the amounts do not follow a power."""
+    fit = stats.linregress(numpy.log(sizes), numpy.log(amounts))
+    return stats.t.interval(confidence, len(sizes) - 2, loc=fit.slope, scale=max(fit.stderr, 1e-12))
+
+
 def crossing(places: Sequence[float], ratios: Sequence[float], level: float = 1) -> float:
     """The place from which on a ratio stays above a level, between places by logarithms.
 

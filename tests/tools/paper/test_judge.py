@@ -6,7 +6,7 @@ import unittest
 from made_results import results_of
 from tools.paper.experiment import Unusable, all_experiments
 from tools.paper.experiments.grid_cell_size import LENGTHS
-from tools.paper.judge import Finding, Verdict, judge, judged
+from tools.paper.judge import Asked, Finding, Verdict, judge, judged, judged_all
 from tools.paper.rules import RuleBook
 from tools.paper.statistics import Estimate
 
@@ -30,6 +30,17 @@ class Verdicts(unittest.TestCase):
         self.expect({"a": ABOVE}, Verdict.REFUTED, below=1)
         self.expect({"a": AROUND}, Verdict.REFUTED, above=1.8, fails_at=1.2)
         self.expect({"a": ABOVE}, Verdict.OPEN, above=2.5, fails_at=1.5)
+
+    def test_on_several_things_ask_for_all_of_them(self):
+        def verdict(*asked):
+            return judged_all("1a", {"here": {str(i): one for i, one in enumerate(asked)}}).verdict
+
+        holds, fails, undecided = (Asked(at, above=1) for at in (ABOVE, BELOW, AROUND))
+        self.assertEqual(verdict(holds, Asked(ABOVE, above=1, below=3)), Verdict.CONFIRMED)
+        self.assertEqual(verdict(holds, fails), Verdict.REFUTED)
+        self.assertEqual(verdict(holds, undecided), Verdict.OPEN)
+        self.assertEqual(verdict(holds, Asked(ABOVE, above=1, below=1.5)), Verdict.REFUTED, "above both")
+        self.assertEqual(verdict(holds, Asked(BELOW, above=1, fails_at=0.3)), Verdict.OPEN)
 
     def test_are_open_where_nothing_was_measured(self):
         self.assertEqual(judged("1a", {}, above=1).verdict, Verdict.OPEN)

@@ -6,7 +6,7 @@ import unittest
 import numpy
 
 from tools.paper.statistics import (between_runs, bootstrap_interval, crossing, digits, geometric_mean, growth,
-                                    median_ratio)
+                                    growth_interval, median_ratio)
 
 
 class BetweenRuns(unittest.TestCase):
@@ -64,6 +64,12 @@ class Ratios(unittest.TestCase):
 class Curves(unittest.TestCase):
     def test_grow_by_the_slope_of_the_logarithms(self):
         self.assertAlmostEqual(growth([1, 10, 100], [2, 200, 20000]), 2)
+
+    def test_leave_the_exponent_open_where_they_are_no_power(self):
+        low, high = growth_interval([1, 2, 4, 8, 16], [1, 4, 16, 64, 256], 0.95)
+        self.assertAlmostEqual(high - low, 0)
+        low, high = growth_interval([1, 2, 4, 8, 16], [1, 1, 16, 16, 256], 0.95)
+        self.assertTrue(low < 1.5 and high > 2.5, (low, high))
 
     def test_cross_between_places_by_logarithms(self):
         self.assertAlmostEqual(crossing([1, 100], [0.5, 2]), 10)
