@@ -222,6 +222,13 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
 }
 
 template <int D>
+bool GridSweep<D>::are_even(std::size_t count) const {
+  std::uint64_t squares = 0;
+  for (const std::uint32_t in_bucket : starts_) squares += std::uint64_t{in_bucket} * in_bucket;
+  return squares <= std::uint64_t{max_in_bucket} * count;
+}
+
+template <int D>
 void GridSweep<D>::scatter(const Lists& lists) {
   core::prefix_sum(std::span<std::uint32_t>(starts_), starts_.size());
   const kernels::RunArrays<D> run = run_.arrays();
