@@ -19,15 +19,8 @@ help: ## List the targets
 compare: program ## Build the program and run the quick comparison, or that of COMPARE_ARGS
 	build/release/broadside compare $(COMPARE_ARGS)
 
-paper: program ## Make the paper (Markdown, PDF, HTML) and what README quotes from the committed results
-	mkdir -p build/paper
-	build/release/broadside experiment --from $(results)/experiments.json --json build/paper/experiments.json \
-	  >build/paper/verdicts.txt
-	node web/build.mjs --paper build/paper
-	node build/paper/main.mjs build/paper/experiments.json $(results)/comparison.json paper/templates docs/paper \
-	  README.md docs/results.md
-	scripts/print_paper
-	test ! -d tools/paper/results || $(debian_python) -m tools.paper print
+paper: setup ## Print the paper (Markdown, PDF, HTML) and what README quotes from the committed results
+	$(debian_python) -m tools.paper print --to docs/paper
 
 # The runs are kept one by one: a run that was cut off goes on where it ended. Debian's Python has the packages.
 RUNS := 3

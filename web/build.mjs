@@ -1,9 +1,8 @@
-// Bundles the TypeScript of this folder and of paper/web.
+// Bundles the TypeScript of this folder.
 //
 //   node build.mjs --page FILE.cpp   the report's page, as a C++ source that holds it
 //   node build.mjs --html FILE.html  the page itself, without a document
 //   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
-//   node build.mjs --paper FOLDER    the program that makes the paper, and its tests, to FOLDER/*.mjs
 //   node build.mjs --playground FOLDER [ENGINE]  the playground, with the engine of build/playground/engine or another
 //   node build.mjs --playground-tests FOLDER     its tests, and in FOLDER/page the page that they open
 import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
@@ -15,7 +14,6 @@ import { build } from "esbuild";
 import { buildPlayground } from "./playground/build.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const paper = join(here, "../paper/web");
 
 /** The page in two halves, between which the document goes. */
 async function page() {
@@ -105,7 +103,6 @@ async function buildPrograms(entryPoints, outdir) {
     loader: { ".wasm": "binary" },
     jsx: "automatic",
     jsxImportSource: "preact",
-    nodePaths: [join(here, "node_modules")],  // for the files of paper/web
     external: ["playwright-core"],
     logLevel: "warning",
   });
@@ -131,18 +128,13 @@ function testsIn(folder) {
   return readdirSync(folder).filter((name) => name.endsWith(".test.ts")).map((name) => join(folder, name));
 }
 
-async function buildPaper(folder) {
-  await buildPrograms([join(paper, "main.ts"), ...testsIn(join(paper, "tests"))], folder);
-}
-
 const [mode, path, engine] = process.argv.slice(2);
 if (mode === "--tests") await buildPrograms(testsIn(join(here, "tests")), path ?? join(here, "../build/web/tests"));
-else if (mode === "--paper" && path !== undefined) await buildPaper(path);
 else if (mode === "--playground" && path !== undefined) await buildPlayground(path, engine);
 else if (mode === "--playground-tests" && path !== undefined) await buildPlaygroundTests(path);
 else if (mode === "--page" && path !== undefined) await buildPage(path);
 else if (mode === "--html" && path !== undefined) write(path, (await page()).join("/*DOCUMENT*/"));
 else {
-  console.error(`build.mjs: '${process.argv.slice(2).join(" ")}'; expected --page FILE.cpp, --html FILE.html, --paper FOLDER, --playground FOLDER [ENGINE], --playground-tests FOLDER or --tests [FOLDER]`);
+  console.error(`build.mjs: '${process.argv.slice(2).join(" ")}'; expected --page FILE.cpp, --html FILE.html, --playground FOLDER [ENGINE], --playground-tests FOLDER or --tests [FOLDER]`);
   process.exitCode = 2;
 }

@@ -11,11 +11,13 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 MEASURED = ROOT / "build" / "experiments"
 PUBLISHED = Path(__file__).parent / "results"
+PAGES = ROOT / "docs" / "paper"
 PACKAGES = "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib and python3-jinja2"
 
 try:
     from . import draft, print as printing
     from .archive import Archive
+    from .comparison import Comparison, comparison
     from .experiment import Experiment, Unusable, experiments_named
     from .rules import RuleBook
     from .run import Measuring
@@ -63,7 +65,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     printed = verb(print_paper, "print", "Print what was measured")
     takes_experiments(printed, PUBLISHED)
     printed.add_argument("--to", type=Path, default=ROOT / "build/paper", metavar="FOLDER",
-                         help="where pages, figures, HTML and PDF go (default: build/paper)")
+                         help="where pages, figures and PDF go (default: build/paper); into docs/paper goes only what "
+                              "is whole, and README.md and docs/results.md are made to quote it")
     published = verb(publish, "publish", "Make a complete set of runs the published one")
     published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER")
     return parser.parse_args(arguments)
@@ -113,9 +116,38 @@ def judge(options: argparse.Namespace) -> int:
 
 
 def print_paper(options: argparse.Namespace) -> int:
-    pages = printing.write_pages(judged(options), RuleBook(), draft.statements(), options.to)
-    printing.print_pages(pages, options.to)
+    """What cannot be used is said in a line and printed as not measured; docs/paper takes only what is whole."""
+    is_whole = options.to.resolve() == PAGES
+    archive, book, statements = Archive(options.results), RuleBook(), draft.statements()
+    found, unmeasured = [], []
+    named = {experiment.name for experiment in experiments_named(options.names)}
+    for experiment in experiments_named([]):
+        if not is_whole and experiment.name not in named:
+            unmeasured.append(experiment)
+            continue
+        try:
+            found.append(printing.judged_experiment(experiment, archive, book, statements))
+        except Unusable as error:
+            if is_whole:
+                raise
+            print(f"tools.paper: {error}; its statements are printed as not measured", file=sys.stderr)
+            unmeasured.append(experiment)
+    content = printing.Content(found, unmeasured, statements, book, compared(options.results, is_whole))
+    printing.write_pages(content, options.to)
+    printing.print_paper(options.to, content, ROOT / "build" / "paper" / "print")
+    if is_whole:
+        printing.fill_quotes(content, ROOT)
     return 0
+
+
+def compared(folder: Path, is_whole: bool) -> Comparison | None:
+    try:
+        return comparison(folder)
+    except Unusable as error:
+        if is_whole:
+            raise
+        print(f"tools.paper: {error}; the comparison is printed as not measured", file=sys.stderr)
+        return None
 
 
 def publish(options: argparse.Namespace) -> int:

@@ -116,6 +116,7 @@ def about(content: dict) -> dict:
         "machine": results["machine"],
         "build": results["build"],
         "rules": content["rules"],
+        "instruction_set": next((one["target"] for one in measurements if one.get("target")), None),
         "processor_share": results["processor_share"],
         "busy": results["busy"],
         "load_before": results.get("load_before"),

@@ -1,25 +1,38 @@
-"""Prints: templates become Markdown by Jinja2, and that HTML and PDF by pandoc and LaTeX."""
+"""Prints: templates become Markdown by Jinja2, and the paper a page, HTML and PDF by pandoc and LaTeX."""
 
 from __future__ import annotations
 
+import hashlib
+import os
+import re
 import shutil
 import subprocess
 import sys
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime, timezone
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import jinja2
 
 from . import draft, figures
 from .archive import Archive
 from .experiment import Claim, Experiment, Unusable
-from .judge import Finding, judge
+from .judge import Finding, Verdict, judge, listing
 from .rules import RuleBook, Rules
-from .statistics import Estimate, digits
+from .statistics import digits
+from .tables import Table
+from .words import NOT_MEASURED, Words
+
+if TYPE_CHECKING:
+    from .comparison import Comparison
 
 TEMPLATES = Path(__file__).parent / "templates"
-PRINTED = Path(__file__).parents[2] / "paper" / "print"  # what LaTeX and HTML make of the text
+NOTICE = "<!-- Made by `make paper` from tools/paper/; edit the templates there. -->\n\n"
+PAPER = "paper.md"  # printed by pandoc; the other pages are Markdown as it is filled
+QUOTING = ("README.md", "docs/results.md")  # pages of the repository that quote results
 
 
 @dataclass(frozen=True)
@@ -55,6 +68,22 @@ class JudgedExperiment:
         return self.experiment.name
 
 
+@dataclass(frozen=True)
+class Content:
+    """All that pages are made of. `unmeasured` are the experiments that have no run."""
+
+    experiments: Sequence[JudgedExperiment]
+    unmeasured: Sequence[Experiment]
+    statements: Mapping[str, draft.DraftStatement]
+    book: RuleBook
+    comparison: Comparison | None = None
+
+    @property
+    def runs(self) -> list[Mapping]:
+        """What each run says of itself, all experiments together."""
+        return [run for experiment in self.experiments for run in experiment.runs]
+
+
 def judged_experiment(experiment: Experiment, archive: Archive, book: RuleBook,
                       statements: Mapping[str, draft.DraftStatement]) -> JudgedExperiment:
     results, runs = archive.results(experiment, book)
@@ -74,61 +103,190 @@ def judged_claim(claim: Claim, finding: Finding, rules: Rules,
                        finding)
 
 
-def write_pages(experiments: Sequence[JudgedExperiment], book: RuleBook,
-                statements: Mapping[str, draft.DraftStatement], folder: Path) -> list[Path]:
-    """Every template as a page of that name, and the figures beside them in figures/."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), undefined=jinja2.StrictUndefined,
-                                     trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True)
-    environment.filters["digits"] = digits
-    environment.filters["estimate"] = Estimate.text
-    environment.filters["cell"] = lambda text: text.replace("|", "\\|").replace("\n", " ")
-    judged_by_number = {claim.number: claim for experiment in experiments for claim in experiment.claims}
+def write_pages(content: Content, folder: Path) -> list[Path]:
+    """Every template as a page of that name, and the figures beside them in figures/. The paper's page is of pandoc's
+    Markdown yet: print_paper makes of it what is read."""
+    drawings = [figure for experiment in content.experiments for figure in experiment.figures]
+    if content.comparison is not None:
+        drawings += content.comparison.figures
+    claims = [claim for experiment in content.experiments for claim in experiment.claims]
+    unmeasured = [claim.number for experiment in content.unmeasured for claim in experiment.claims]
+    pages = {}
+    for name in environment(content, None).list_templates(filter_func=lambda name: re.fullmatch(r"\w+\.md", name)):
+        words = Words(claims, unmeasured, content.statements, drawings, content.comparison)
+        for _ in range(2):  # figures that are named before they come have their numbers in the second
+            pages[name] = filled(environment(content, words), name)
+    shutil.rmtree(folder / "figures", ignore_errors=True)  # those of other results
     folder.mkdir(parents=True, exist_ok=True)
-    pages = []
-    for name in environment.list_templates(extensions=["md"]):
-        try:
-            text = environment.get_template(name).render(experiments=experiments, rules=book,
-                                                         statements=statements.values(), judged=judged_by_number)
-        except jinja2.TemplateError as error:
-            raise Unusable(f"template {name}: {error}") from None
-        pages.append(folder / name)
-        pages[-1].write_text(text, encoding="utf-8")
-    for experiment in experiments:
-        for figure in experiment.figures:
-            figures.save(figure, folder / "figures")
-    return pages
+    for name, text in pages.items():
+        (folder / name).write_text(NOTICE + text, encoding="utf-8")
+    for drawing in drawings:
+        figures.save(drawing, folder / "figures")
+    return [folder / name for name in pages]
 
 
-def print_pages(pages: Sequence[Path], folder: Path) -> None:
-    """As HTML and as PDF, into `folder`. What is missing is said in a line; the rest is printed."""
+def environment(content: Content, words: Words | None) -> jinja2.Environment:
+    made = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), undefined=jinja2.StrictUndefined,
+                              trim_blocks=True, lstrip_blocks=True)
+    made.filters["listing"] = listing
+    made.globals.update(content=content, rules=content.book, machine=machine_words(content), total=totals(content),
+                        evidence_table=evidence_table, runs_table=lambda: runs_table(content),
+                        statements_table=lambda is_ours=False: statements_table(content, is_ours),
+                        **(words.names() if words else {}))
+    return made
+
+
+def filled(templates: jinja2.Environment, name: str) -> str:
+    """A template's text. Throws Unusable, which names the template and the line, where it names what is not there."""
+    try:
+        return templates.get_template(name).render().strip() + "\n"
+    except jinja2.TemplateSyntaxError as error:
+        raise Unusable(f"template {error.name}, line {error.lineno}: {error.message}") from None
+    except (jinja2.TemplateError, Unusable, TypeError) as error:
+        places = [frame for frame in traceback.extract_tb(error.__traceback__)
+                  if Path(frame.filename).is_relative_to(TEMPLATES)]
+        if isinstance(error, jinja2.TemplateNotFound):
+            raise Unusable(f"no template {error}; expected it in {TEMPLATES}") from None
+        if not places:
+            raise
+        place = f"{Path(places[-1].filename).relative_to(TEMPLATES)}, line {places[-1].lineno}"
+        raise Unusable(f"template {place}: {error}") from None
+
+
+def machine_words(content: Content) -> dict[str, str]:
+    """The machine and the build of the experiments, in words."""
+    first = content.runs[0] if content.runs else {"machine": {}, "build": {}}
+    machine, build = first["machine"], first["build"]
+    clocks = [run["machine"]["clock_mhz"] / 1000 for run in content.runs if run["machine"].get("clock_mhz")]
+    caches = [f"{name} {size // 1024:,} KiB" for name, size in (machine.get("caches") or {}).items()]
+    return {
+        "processor": f"{machine.get('cpu') or 'a processor'} with {machine.get('cores') or 'some'} cores",
+        "clock": f"at {min(clocks):.2f} to {max(clocks):.2f} GHz" if clocks else "at a clock that it does not tell",
+        "caches": listing(caches) if caches else "that it does not tell",
+        "memory": f"{machine['memory_bytes'] / 2**30:.0f} GiB" if machine.get("memory_bytes") else "some",
+        "system": machine.get("os") or "an unknown system",
+        **{name: build.get(name) or "unknown" for name in ("compiler", "flags", "version", "revision")},
+        "instruction_set": first.get("instruction_set") or "unknown",
+        "date": max((run["date"] for run in content.runs), default="unknown")[:10],
+    }
+
+
+def statements_table(content: Content, is_ours: bool = False) -> str:
+    """All statements of the draft, or our own claims, with what became of each."""
+    claims = {claim.number: claim for experiment in content.experiments for claim in experiment.claims}
+    unmeasured = {claim.number for experiment in content.unmeasured for claim in experiment.claims}
+    def verdict(statement: draft.DraftStatement) -> str:
+        if statement.number in claims:
+            return claims[statement.number].verdict
+        return "not measured" if statement.number in unmeasured else f"({statement.kind})"
+    return Table(["statement", "what it says", "verdict"],
+                 [[one.number, one.says, verdict(one)] for one in content.statements.values()
+                  if (one.kind == "our claim") == is_ours]).markdown()
+
+
+def evidence_table(claim: JudgedClaim) -> str:
+    rows = [[f"{mark}{name}", at.text(), "; ".join(map(digits, at.runs))]
+            for mark, figures_of_it in (("", claim.finding.evidence), ("*beside:* ", claim.finding.beside))
+            for name, at in figures_of_it.items()]
+    return Table(["figure", "value and interval", "each run"], rows).markdown() if rows else "(no figures)"
+
+
+def runs_table(content: Content) -> str:
+    headings = ["experiment", "runs:", "seconds a run:", "date", "busy runs", "load before and after", "unsteady"]
+    return Table(headings, [[
+        one.experiment.title, str(len(one.runs)) + " (quick)" * one.runs[0]["quick"],
+        digits(sum(run["seconds"] for run in one.runs) / len(one.runs)), max(run["date"] for run in one.runs)[:10],
+        listing([f"{run['run']} ({run['processor_share']:.0%} of a processor)" for run in one.runs if run["busy"]]
+                or ["none"]),
+        "; ".join(f"{load_text(run['load_before'])}, {load_text(run['load_after'])}" for run in one.runs),
+        f"{sum(run['unsteady'] for run in one.runs)} of {sum(run['measurements'] for run in one.runs)}",
+    ] for one in content.experiments]).markdown()
+
+
+def load_text(load: float | None) -> str:
+    return "unknown" if load is None else f"{load:.1f}"
+
+
+def totals(content: Content) -> dict[str, int | float]:
+    """Counts of the draft's statements by verdict, and of what was measured."""
+    verdicts = [claim.finding.verdict for experiment in content.experiments for claim in experiment.claims
+                if claim.statement.kind != "our claim"]
+    numbers = {run["run"] for run in content.runs}
+    return {
+        "judged": len(verdicts),
+        **{verdict.name.lower(): verdicts.count(verdict) for verdict in Verdict},
+        "runs": len(numbers),
+        "minutes": round(sum(run["seconds"] for run in content.runs) / max(len(numbers), 1) / 60, 1),
+        "busy": sum(run["busy"] for run in content.runs),
+        "unsteady": sum(run["unsteady"] for run in content.runs),
+        "measurements": sum(run["measurements"] for run in content.runs),
+        "quick": any(run["quick"] for run in content.runs),
+    }
+
+
+def print_paper(folder: Path, content: Content, work: Path) -> None:
+    """The paper as a page and as PDF in its folder, and as HTML in `work`. Where a program is missing, a line says
+    which, and what is printed without it."""
     if shutil.which("pandoc") is None:
-        say("pandoc is missing (packages-paper.txt): the pages and figures are written as Markdown, SVG and PDF; "
-            "HTML and PDF of whole pages are not")
+        say(f"pandoc is missing (packages-paper.txt): the other pages are written; {folder / PAPER} is in pandoc's "
+            f"Markdown, without sources, and there is no HTML or PDF of it")
         return
-    folder.mkdir(parents=True, exist_ok=True)
-    for page in pages:
-        pandoc(page, folder / f"{page.stem}.html", "--to", "html", "--self-contained", "--css",
-               str(PRINTED / "page.css"))
-    if shutil.which("pdflatex") is None:
-        say("pdflatex is missing (packages-paper.txt): the pages are written as Markdown and HTML; PDF is not")
+    work.mkdir(parents=True, exist_ok=True)
+    source = work / PAPER
+    source.write_text((folder / PAPER).read_text(encoding="utf-8").removeprefix(NOTICE), encoding="utf-8")
+    page = pandoc(source, folder, "--to", "gfm-raw_html", "--columns", "119", "--default-image-extension", "svg")
+    (folder / PAPER).write_bytes(NOTICE.encode() + page)
+    printed = ["--standalone", "--shift-heading-level-by", "-1", "--metadata", "lang=en"]
+    pandoc(source, folder, *printed, "--to", "html", "--self-contained", "--default-image-extension", "svg", "--css",
+           str(TEMPLATES / "page.css"), "--output", str((work / "paper.html").resolve()))
+    say(f"{folder / PAPER} and {work / 'paper.html'} are written")
+    missing = [program for program in ("pdflatex", "rsvg-convert") if shutil.which(program) is None]
+    if missing:
+        say(f"{listing(missing)} missing (packages-paper.txt): pages and HTML are written, {folder}/paper.pdf is not")
         return
-    for page in pages:
-        # SVG for pages on the web, the same figures as PDF for LaTeX.
-        printed = folder / page.name
-        printed.write_text(page.read_text(encoding="utf-8").replace(".svg)", ".pdf)"), encoding="utf-8")
-        pandoc(printed, folder / f"{page.stem}.pdf", "--pdf-engine", "pdflatex", "--include-in-header",
-               str(PRINTED / "preamble.tex"), "--variable", "classoption=10pt", "--resource-path",
-               str(page.parent))
+    # The page's checksum is in the PDF, so that a test can tell one of another text.
+    sum_of_page = work / "sum.tex"
+    sum_of_page.write_text(f"\\pdfinfo{{/TextSum ({hashlib.sha256(NOTICE.encode() + page).hexdigest()})}}\n")
+    pandoc(source, folder, *printed, "--pdf-engine", "pdflatex", "--default-image-extension", "pdf",
+           "--include-in-header", str(TEMPLATES / "preamble.tex"), "--include-in-header", str(sum_of_page.resolve()),
+           "--variable", "classoption=10pt", "--variable", "colorlinks", "--variable", "linkcolor=black",
+           "--variable", "urlcolor=black", "--output", str((folder / "paper.pdf").resolve()),
+           day=machine_words(content)["date"])
+    say(f"{folder / 'paper.pdf'} is written")
 
 
-def pandoc(page: Path, to: Path, *arguments: str) -> None:
-    ended = subprocess.run(["pandoc", "--from", "gfm", "--standalone", "--shift-heading-level-by", "-1", *arguments,
-                            "--output", str(to.resolve()), str(page.resolve())],
-                           cwd=page.parent, capture_output=True, text=True, check=False)
+def pandoc(source: Path, folder: Path, *arguments: str, day: str = "") -> bytes:
+    """What pandoc writes of the paper. The day of the results stands for that of printing, for the same bytes."""
+    variables = dict(os.environ)
+    if re.fullmatch(r"\d{4}-\d\d-\d\d", day):
+        seconds = datetime.fromisoformat(day).replace(tzinfo=timezone.utc).timestamp()
+        variables |= {"SOURCE_DATE_EPOCH": f"{seconds:.0f}", "FORCE_SOURCE_DATE": "1"}
+    ended = subprocess.run(
+        ["pandoc", "--from", "markdown-smart", "--citeproc", "--bibliography", str(TEMPLATES / "references.bib"),
+         "--lua-filter", str(TEMPLATES / "filter.lua"), *arguments, str(source.resolve())],
+        cwd=folder, capture_output=True, check=False, env=variables)
+    messages = ended.stderr.decode(errors="replace").strip().splitlines()
     if ended.returncode != 0:
-        last = (ended.stderr.strip().splitlines() or ["no message"])[-1]
-        raise Unusable(f"pandoc cannot make {to} ({last}); expected the packages of packages-paper.txt")
-    say(f"{to} is written")
+        fault = " ".join([line for line in messages if re.match(r"! |l\.\d", line)] or messages[-1:])
+        raise Unusable(f"pandoc cannot print {source} ({fault}); expected the packages of packages-paper.txt")
+    for line in messages:
+        if "not found" in line or "Could not" in line:
+            raise Unusable(f"{source}: {line}; expected what the templates name to be there")
+    return ended.stdout
+
+
+def fill_quotes(content: Content, root: Path) -> None:
+    """Passages of other pages, between `<!-- quote: NAME -->` and `<!-- end of quote -->`, from templates/quotes/."""
+    if content.comparison is None:
+        say(f"{listing(QUOTING)} quote the comparison, which has no results: they are left as they were")
+        return
+    templates = environment(content, Words([], [], content.statements, [], content.comparison))
+    for name in QUOTING:
+        text = (root / name).read_text(encoding="utf-8")
+        passages = re.compile(r"(<!-- quote: (\w+) -->\n).*?(<!-- end of quote -->)", re.DOTALL)
+        (root / name).write_text(passages.sub(
+            lambda found: found[1] + filled(templates, f"quotes/{found[2]}.md") + "\n" + found[3], text),
+            encoding="utf-8")
 
 
 def say(text: str) -> None:

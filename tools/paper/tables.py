@@ -32,7 +32,7 @@ class Table:
     def widths(self) -> list[int]:
         """Characters of each column: pandoc divides the line by them where a row is longer than it."""
         columns = [[printed(row[i]) for row in self.rows] for i in range(len(self.headings))]
-        longest = [max([len(cell) for cell in column] + [longest_word([heading]), 1])
+        longest = [max([len(cell) for cell in column] + [longest_word([heading.removesuffix(":")])])
                    for heading, column in zip(self.headings, columns)]
         if sum(longest) + 3 * len(longest) <= LINE:
             return [width + 2 for width in longest]

@@ -2,7 +2,7 @@
 import { drawBars } from "./bars.ts";
 import type { BarsSpec } from "./bars.ts";
 import { isTimed, labelOf, leadOf, percent, ranking, standings } from "./comparison.ts";
-import type { Case, Standing } from "./comparison.ts";
+import type { Case } from "./comparison.ts";
 import type { Measurement, Ratio } from "./data.ts";
 import type { Drawn, Place } from "./frame.ts";
 import { drawLines } from "./lines.ts";
@@ -43,33 +43,18 @@ export function drawRatios(of: Case, place: Place): Drawn {
   }, place);
 }
 
-/** Bars of standings: an algorithm each, and its time as a multiple of the fastest. */
-function drawMultiples(shown: readonly Standing[], scale: { log: boolean; from?: number }, place: Place): Drawn {
+/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
+export function drawStandings(cases: readonly Case[], place: Place): Drawn {
+  const shown = standings(cases);
   return drawBars({
     title: "Times as multiples of the fastest, geometric mean of the cases that an algorithm does",
     x: { name: "algorithm", unit: "" },
-    y: { name: "times the fastest's time", unit: "", log: scale.log },
+    y: { name: "times the fastest's time", unit: "", log: true },
     labels: shown.map((standing) => standing.algorithm),
     series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
     colours: shown.map((standing) => colourOf(standing, place.theme)),
-    ...(scale.from === undefined ? {} : { from: scale.from }),
+    from: 1,
   }, place);
-}
-
-/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
-export function drawStandings(cases: readonly Case[], place: Place): Drawn {
-  return drawMultiples(standings(cases), { log: true, from: 1 }, place);
-}
-
-/** The same for auto and, of each other library, the algorithm that does best. */
-export function drawLibraries(cases: readonly Case[], place: Place): Drawn {
-  const seen = new Set<string>();
-  const shown = standings(cases).filter(({ algorithm, kind }) => {
-    if (kind !== "peer") return algorithm === "auto";
-    const library = algorithm.split("_", 1)[0] ?? algorithm;
-    return !seen.has(library) && seen.add(library);
-  });
-  return drawMultiples(shown, { log: false }, place);
 }
 
 /** How many times as fast our best is as the fastest peer, case by case. */
@@ -85,19 +70,6 @@ export function drawLeads(cases: readonly Case[], place: Place): Drawn {
     labels: leads.map(({ of, own }) => `${shortName(of)}: ${own.algorithm}`),
     ...ratioBars(leads.map(({ ratio }) => ratio)),
     colours: leads.map(({ own }) => colourOf(own, place.theme)),
-    from: 1,
-  }, place);
-}
-
-/** Mean leads over the fastest peer, each with its interval: of auto, which has its own colour, and of others. */
-export function drawMeanLeads(means: readonly { label: string; auto: boolean; ratio: Ratio }[], place: Place): Drawn {
-  return drawBars({
-    title: "The fastest peer's time over ours, geometric mean",
-    x: { name: "cases", unit: "" },
-    y: { name: "times as fast", unit: "", log: true },
-    labels: means.map(({ label }) => label),
-    ...ratioBars(means.map(({ ratio }) => ratio)),
-    colours: means.map(({ auto }) => (auto ? colourOf({ algorithm: "auto" }, place.theme) : place.theme.palette[0]!)),
     from: 1,
   }, place);
 }

@@ -175,27 +175,6 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(Unusable, "quick is True; expected False"):
             self.measure()
 
-    def pages(self) -> list[Path]:
-        judged_one = printing.judged_experiment(SMALL, self.archive, RuleBook(), STATEMENTS)
-        return printing.write_pages([judged_one], RuleBook(), STATEMENTS, self.folder / "pages")
-
-    def test_become_pages_and_figures(self):
-        self.measure()
-        text = self.pages()[0].read_text()
-        self.assertIn("| 1a | Half \\| are left. | refuted |", text)
-        self.assertIn("*Confirmed if:* More than 1.25.", text)
-        self.assertTrue((self.folder / "pages" / "figures" / "small.svg").exists())
-
-    def test_become_pages_without_pandoc_and_say_what_is_missing(self):
-        self.measure()
-        pages = self.pages()
-        path = os.environ["PATH"]
-        self.addCleanup(os.environ.__setitem__, "PATH", path)
-        os.environ["PATH"] = str(self.folder / "none")
-        with redirect_stderr(self.errors):
-            printing.print_pages(pages, self.folder / "pages")
-        self.assertRegex(self.errors.getvalue(), "pandoc is missing .*: the pages and figures are written")
-
     def test_about_a_statement_that_is_not_there_are_refused(self):
         self.measure()
         with self.assertRaisesRegex(Unusable, "experiment small is about statement 1a; expected one that is in"):
@@ -213,7 +192,6 @@ class Runs(unittest.TestCase):
         self.assertNotEqual(results.runs[0].count("small", "grid", "tests"),
                             results.runs[1].count("small", "grid", "tests"), "on boxes of its own")
         self.assertEqual([one["run"] for one in runs], [1, 2, 3])
-        self.pages()
 
 
 if __name__ == "__main__":

@@ -80,12 +80,15 @@ TEST(ErrataPage, HasATestForEachErratumThatCanBeRun) {
 TEST(ErrataPage, IsWhatTheListingsAndThePaperReferTo) {
   const std::set<std::string> known = classified();
   std::size_t cited = 0;
-  for (const char* const folder : {"listings", "experiments", "templates"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "paper" / folder)) {
+  for (const char* const folder : {"paper/listings", "tools/paper/templates/sections"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file()) continue;
-      for (const std::string& number : numbers_in(broadside::text_of(entry.path()))) {
-        EXPECT_TRUE(known.contains(number)) << entry.path() << ": " << number;
-        ++cited;
+      // The paper also cites statements of the draft, which have numbers of their own.
+      for (const std::string& words : matches(broadside::text_of(entry.path()), "((?://|[Ee]rrat).*)$")) {
+        for (const std::string& number : numbers_in(words)) {
+          EXPECT_TRUE(known.contains(number)) << entry.path() << ": " << number;
+          ++cited;
+        }
       }
     }
   }

@@ -1,0 +1,13 @@
+-- What formats lack: a line with the caption below a figure of a page, and files behind links of what is printed.
+function Link(element)
+  if FORMAT == "gfm" or element.target:match("^#") or element.target:match("^%a+:") then return nil end
+  local path = element.target:gsub("#.*$", "")
+  if pandoc.utils.stringify(element.content) ~= path:match("[^/]*$") then return element.content end
+  return pandoc.Code((("docs/paper/" .. path):gsub("[^/]+/%.%./", ""):gsub("[^/]+/%.%./", "")))
+end
+
+function Para(element)
+  local image = element.content[1]
+  if FORMAT ~= "gfm" or #element.content ~= 1 or image.t ~= "Image" then return nil end
+  return {pandoc.Para({pandoc.Image({pandoc.Str("")}, image.src)}), pandoc.Para({pandoc.Emph(image.caption)})}
+end

@@ -1,0 +1,145 @@
+"""What templates may name: figures, verdicts and drawings of experiments; facts and tables of the comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from . import draft, figures
+from .experiment import Unusable
+from .judge import Verdict
+from .statistics import Estimate
+from .tables import Table
+
+if TYPE_CHECKING:
+    from .comparison import Comparison
+    from .print import JudgedClaim
+
+NOT_MEASURED = "(not measured)"
+DIAGRAMS = ("swept_grid", "packed_tree")  # docs/paper/diagrams/
+
+
+class Words:
+    """The functions that templates call. An unknown name is Unusable, in a line that has those there are; what was not
+    measured is said to be so."""
+
+    def __init__(self, claims: Iterable[JudgedClaim], unmeasured: Iterable[str],
+                 statements: Mapping[str, draft.DraftStatement], drawings: Iterable[figures.Figure],
+                 comparison: Comparison | None):
+        self._claims = {claim.number: claim for claim in claims}
+        self._unmeasured = set(unmeasured)
+        self._statements = statements
+        self._drawings = {drawing.name: drawing for drawing in drawings}
+        self._comparison = comparison
+        self._pictures: list[str] = []  # in the order of the text, which gives them their numbers
+
+    def names(self) -> dict[str, Callable]:
+        names = ("figure", "span", "least", "greatest", "verdict", "outcome", "by", "found", "picture", "see", "fact",
+                 "table")
+        return {name: getattr(self, name) for name in names} | {"Verdict": Verdict}
+
+    def claim(self, number: str) -> JudgedClaim | None:
+        """None where no run is about it."""
+        if number in self._claims:
+            return self._claims[number]
+        if number in self._unmeasured:
+            return None
+        known = [*self._claims, *sorted(self._unmeasured)]
+        raise Unusable(f"no claim '{number}'; expected one of: {', '.join(known)}")
+
+    def estimates(self, number: str, part: str = "") -> dict[str, Estimate]:
+        """A claim's figures that have a text in their name."""
+        claim = self.claim(number)
+        if claim is None:
+            return {}
+        every = {**claim.finding.evidence, **claim.finding.beside}
+        found = {name: at for name, at in every.items() if part in name}
+        if not found:
+            raise Unusable(f"no figure of {number} has '{part}' in its name; expected one of: {'; '.join(every)}")
+        return found
+
+    def figure(self, number: str, name: str) -> str:
+        """A figure with its interval."""
+        claim = self.claim(number)
+        if claim is None:
+            return NOT_MEASURED
+        return named({**claim.finding.evidence, **claim.finding.beside}, name, f"figure of {number}").text()
+
+    def least(self, number: str, part: str = "") -> str:
+        found = self.estimates(number, part).values()
+        return min(found, key=lambda at: at.value).text() if found else NOT_MEASURED
+
+    def greatest(self, number: str, part: str = "") -> str:
+        found = self.estimates(number, part).values()
+        return max(found, key=lambda at: at.value).text() if found else NOT_MEASURED
+
+    def span(self, number: str, part: str = "") -> str:
+        """ "between 1.42 (1.38 to 1.46) and 3.20 (3.11 to 3.29)" of the figures that have a text in their name."""
+        least, greatest = self.least(number, part), self.greatest(number, part)
+        return least if least == greatest else f"between {least} and {greatest}"
+
+    def verdict(self, number: str) -> str:
+        """ "holds within bounds: it has leaves of 8"."""
+        claim = self.claim(number)
+        return claim.verdict if claim else "not measured"
+
+    def outcome(self, number: str) -> Verdict | None:
+        claim = self.claim(number)
+        return claim.finding.verdict if claim else None
+
+    def by(self, number: str, *, confirmed: str, bounds: str, refuted: str, otherwise: str) -> str:
+        """The text of the outcome; of one that is open, `otherwise`."""
+        return {Verdict.CONFIRMED: confirmed, Verdict.WITHIN_BOUNDS: bounds,
+                Verdict.REFUTED: refuted}.get(self.outcome(number), otherwise)
+
+    def found(self, number: str) -> str:
+        """What decided, in a table's cell: the figures, or of more than two the least and the greatest."""
+        claim = self.claim(number)
+        if claim is None:
+            return NOT_MEASURED
+        evidence = dict(claim.finding.evidence)
+        if len(evidence) > 2:
+            ordered = sorted(evidence, key=lambda name: evidence[name].value)
+            evidence = {name: evidence[name] for name in (ordered[0], ordered[-1])}
+        return "; ".join(f"{name}: {at.text()}" for name, at in evidence.items())
+
+    def picture(self, name: str, caption: str = "") -> str:
+        """A drawing with its number and caption."""
+        drawing = None
+        if name in DIAGRAMS:
+            path = f"diagrams/{name}.svg"
+        elif self._is_missing(name):
+            return f"*The figure {name} was not drawn: nothing was measured.*"
+        else:
+            drawing = named(self._drawings, name, "figure")
+            path = f"figures/{name}"
+        if name not in self._pictures:
+            self._pictures.append(name)
+        return f"![{self.see(name)}. {caption or drawing.caption}]({path})"
+
+    def see(self, name: str) -> str:
+        """ "Figure 3". A page is filled twice, so that this may come before the picture."""
+        if name not in self._drawings and name not in DIAGRAMS and not self._is_missing(name):
+            named(self._drawings, name, "figure")
+        return f"Figure {self._pictures.index(name) + 1 if name in self._pictures else 0}"
+
+    def _is_missing(self, name: str) -> bool:
+        return name not in self._drawings and (
+            self._comparison is None if name.startswith("comparison") else bool(self._unmeasured))
+
+    def pictures(self) -> Sequence[str]:
+        return [name for name in self._pictures if name in self._drawings]
+
+    def fact(self, name: str) -> str | bool:
+        return named(self._comparison.facts, name, "fact of the comparison") if self._comparison else NOT_MEASURED
+
+    def table(self, name: str) -> str:
+        if self._comparison is None:
+            return NOT_MEASURED
+        return named(self._comparison.tables, name, "table of the comparison").markdown()
+
+
+def named(things: Mapping, name: str, what: str):
+    if name not in things:
+        raise Unusable(f"no {what} '{name}'; expected one of: {'; '.join(map(str, things))}")
+    return things[name]
