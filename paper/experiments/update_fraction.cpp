@@ -23,7 +23,7 @@ struct Structure {
 };
 
 /// VI-A: the object is searched in all cells, deleted and inserted.
-const std::string searching = "search_delete_reinsert";
+const std::string searching = "search_once";
 
 const std::vector<Structure>& structures() {
   static const std::vector<Structure> list = {

@@ -104,12 +104,12 @@ Algorithm grid() {
   for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
   tunables.push_back(
       {.name = "update",
-       .summary = "how a tracker mends its cells before it searches them: built anew; movers found by "
-                  "looking through all cells, or by hashing their old place, and inserted; or "
-                  "references translated to neighbouring cells",
+       .summary = "how a tracker mends its cells before it searches them: built anew; all cells searched for "
+                  "each mover, or once for all movers, which are then inserted; movers found by hashing "
+                  "their old place, and inserted; or references translated to neighbouring cells",
        .default_value = "rebuild",
        .type = Tunable::Type::choice,
-       .choices = {"rebuild", "search_delete_reinsert", "reinsert", "translate"}});
+       .choices = {"rebuild", "search_delete_reinsert", "search_once", "reinsert", "translate"}});
   tunables.push_back(detect_tunable());
   return {
       .name = "paper_grid",

@@ -19,6 +19,8 @@ struct CellRange {
   std::size_t last_column;
   std::size_t first_row;
   std::size_t last_row;
+
+  bool operator==(const CellRange&) const = default;
 };
 
 /// Cells with references to the boxes that are in them.

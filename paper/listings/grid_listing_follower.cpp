@@ -18,8 +18,9 @@ namespace {
 /// How a box that changed gets into its new cells.
 enum class Reposition {
   rebuild,                 ///< with all others: the grid is built anew
-  search_delete_reinsert,  ///< VI-A: all cells are looked through for it, it is deleted, and hashed into its
-                           ///< new ones
+  search_delete_reinsert,  ///< VI-A: all cells are searched for it, it is deleted, and hashed into its new
+                           ///< ones
+  search_once,             ///< erratum T10: one search of all cells for all movers
   reinsert,                ///< VI-B: "one hash to find an object and another hash to place it"
   translate                ///< VI-B: its references go to neighbouring cells
 };
@@ -27,6 +28,7 @@ enum class Reposition {
 Reposition reposition_of(const Settings& settings) {
   const std::string& text = settings.text("update");
   if (text == "search_delete_reinsert") return Reposition::search_delete_reinsert;
+  if (text == "search_once") return Reposition::search_once;
   if (text == "reinsert") return Reposition::reinsert;
   return text == "translate" ? Reposition::translate : Reposition::rebuild;
 }
@@ -62,15 +64,10 @@ class GridListingFollower final : public CoherentFollower<2> {
 
   bool mend(std::span<const BoxId> movers, std::span<const Box2> now) override {
     if (reposition_ == Reposition::rebuild) return false;
-    if (reposition_ == Reposition::search_delete_reinsert) delete_from_all_cells(movers);
+    if (reposition_ == Reposition::search_once) delete_all(movers);
     for (const BoxId id : movers) {
-      const Box2& from = boxes()[index(id)];
-      const Box2& to = now[index(id)];
-      const bool is_done = reposition_ == Reposition::translate && is_present(from) && is_present(to)
-                               ? translate(id, from, to)
-                               : reinsert(id, from, to);
-      if (!is_done) return false;
-      boxes()[index(id)] = to;
+      if (!reposition(id, boxes()[index(id)], now[index(id)])) return false;
+      boxes()[index(id)] = now[index(id)];
     }
     return true;
   }
@@ -83,8 +80,37 @@ class GridListingFollower final : public CoherentFollower<2> {
 
   std::size_t structure_bytes() const noexcept override { return grid_.bytes() + is_mover_.capacity(); }
 
-  /// Looks through all cells once for all movers (erratum T10: the paper looks for one at a time).
-  void delete_from_all_cells(std::span<const BoxId> movers) {
+  /// False if the grid may not hold that many references.
+  bool reposition(BoxId id, const Box2& from, const Box2& to) {
+    const bool remains = is_present(from) && is_present(to);
+    if (reposition_ == Reposition::translate && remains) return translate(id, from, to);
+    if (reposition_ == Reposition::search_delete_reinsert) {
+      if (is_present(from)) search_and_delete(id);
+    } else if (reposition_ != Reposition::search_once && is_present(from)) {
+      const CellRange old_cells = grid_.cells_of(from);
+      if (is_present(to) && grid_.cells_of(to) == old_cells) return true;
+      for_cells(old_cells, [&](auto column, auto row) { erase(id, column, row); });
+    }
+    if (!is_present(to)) return true;
+    const CellRange cells = grid_.cells_of(to);
+    if (!has_room(references(cells))) return false;
+    for_cells(cells, [&](auto column, auto row) { insert(id, column, row); });
+    return true;
+  }
+
+  /// Searches all cells for one box: a flag does not say how many it is in.
+  void search_and_delete(BoxId id) {
+    std::uint64_t looked_at = 0;
+    for (std::vector<BoxId>& cell : grid_.cells()) {
+      const auto place = std::ranges::find(cell, id);
+      looked_at += static_cast<std::uint64_t>(place - cell.begin()) + 1;
+      if (place != cell.end()) take_out(cell, place);
+    }
+    counts().visited += looked_at;
+    checkpoint().count(looked_at);
+  }
+
+  void delete_all(std::span<const BoxId> movers) {
     is_mover_.assign(boxes().size(), 0);
     for (const BoxId id : movers) is_mover_[index(id)] = 1;
     for (std::vector<BoxId>& cell : grid_.cells()) {
@@ -93,17 +119,6 @@ class GridListingFollower final : public CoherentFollower<2> {
       counts().moved += gone;
       references_ -= static_cast<double>(gone);
     }
-  }
-
-  /// False if the grid may not hold that many references.
-  bool reinsert(BoxId id, const Box2& from, const Box2& to) {
-    if (is_present(from) && reposition_ != Reposition::search_delete_reinsert)
-      for_cells(grid_.cells_of(from), [&](auto column, auto row) { erase(id, column, row); });
-    if (!is_present(to)) return true;
-    const CellRange cells = grid_.cells_of(to);
-    if (!has_room(references(cells))) return false;
-    for_cells(cells, [&](auto column, auto row) { insert(id, column, row); });
-    return true;
   }
 
   /// Likewise. Only the references in cells that the box leaves go to those it enters: to move one to a cell
@@ -156,6 +171,10 @@ class GridListingFollower final : public CoherentFollower<2> {
     const auto looked_at = static_cast<std::uint64_t>(place - cell.begin()) + 1;
     counts().visited += looked_at;
     checkpoint().count(looked_at);
+    take_out(cell, place);
+  }
+
+  void take_out(std::vector<BoxId>& cell, std::vector<BoxId>::iterator place) {
     *place = cell.back();
     cell.pop_back();
     ++counts().moved;

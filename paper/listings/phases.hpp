@@ -15,11 +15,14 @@ struct Phases {
   double detecting_ms = 0;     ///< frame: finding the boxes that changed
   double mending_ms = 0;       ///< frame: bringing the structure up to date, or building it anew
   double searching_ms = 0;
-  double comparing_ms = 0;    ///< frame: comparing the pairs with those of the frame before
-  std::size_t movers = 0;     ///< boxes that changed
-  std::uint64_t visited = 0;  ///< entries, cells or nodes looked at to find the movers' old and new places
-  std::uint64_t moved = 0;    ///< entries written: references added or removed, places moved in an order
-  bool built = false;         ///< the structure was built anew, whatever `update` says
+  double comparing_ms = 0;  ///< frame: comparing the pairs with those of the frame before
+  std::size_t movers = 0;   ///< boxes that changed
+  /// Entries and cells looked at to find the movers' old and new places; of a quadtree, nodes alone.
+  std::uint64_t visited = 0;
+  /// Entries written: references added or removed, places moved in an order. Of a quadtree also entries that
+  /// are looked through in leaves, and dealt out where these split.
+  std::uint64_t moved = 0;
+  bool built = false;  ///< the structure was built anew, whatever `update` says
 };
 
 /// A listing that can tell where the time of its last search or frame went.

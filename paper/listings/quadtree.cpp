@@ -80,14 +80,16 @@ Algorithm quadtree() {
       .max = 1'000'000,
   }};
   for (Tunable& tunable : world_tunables()) tunables.push_back(std::move(tunable));
-  tunables.push_back({.name = "update",
-                      .summary =
-                          "how a tracker mends its tree before it traverses it: built anew; movers inserted "
-                          "from the root; from the least node above their leaf that holds them; or each "
-                          "reference by itself carried to siblings, and also to cousins",
-                      .default_value = "rebuild",
-                      .type = Tunable::Type::choice,
-                      .choices = {"rebuild", "root", "relative", "siblings", "cousins"}});
+  tunables.push_back(
+      {.name = "update",
+       .summary = "how a tracker mends its tree before it traverses it: built anew; all nodes "
+                  "searched for each mover, which is then inserted from the root; leaves known, and "
+                  "movers inserted from the root, or from the least node above their leaf that holds "
+                  "them; or references carried across sides of leaves to siblings, and also to "
+                  "cousins",
+       .default_value = "rebuild",
+       .type = Tunable::Type::choice,
+       .choices = {"rebuild", "search_delete_reinsert", "root", "relative", "siblings", "cousins"}});
   tunables.push_back(detect_tunable());
   return {
       .name = "paper_quadtree",

@@ -32,6 +32,7 @@ QuadTreeNode::QuadTreeNode(QuadTree& tree, const World& world)
 QuadTreeNode::QuadTreeNode(QuadTreeNode& parent, int x_side, int y_side)
     : tree_(parent.tree_),
       parent_(&parent),
+      sides_{x_side, y_side},
       depth_(parent.depth_ + 1),
       region_(parent.region_),
       half_width_(parent.half_width_ * 0.5),
@@ -49,6 +50,7 @@ void QuadTreeNode::algorithm_7_add_element(BoxId e) {
     algorithm_9_spanning_add_element(e);
   } else {
     e_.push_back(e);
+    ++tree_->entries;
     if (!tree_->leaves.empty()) tree_->leaves[index(e)].push_back(this);
     if (count_ + 1 > tree_->count_max && can_split()) {  // Errata 7b and 7c
       algorithm_8_split();
@@ -64,15 +66,17 @@ void QuadTreeNode::algorithm_8_split() {
   const auto child = [this](int x_side, int y_side) {
     return std::unique_ptr<QuadTreeNode>(new QuadTreeNode(*this, x_side, y_side));
   };
-  qi_ = child(1, -1);                            // Erratum 8a
-  qii_ = child(-1, -1);                          // Erratum 8a
-  qiii_ = child(-1, 1);                          // Erratum 8a
-  qiv_ = child(1, 1);                            // Erratum 8a
+  qi_ = child(1, -1);    // Erratum 8a
+  qii_ = child(-1, -1);  // Erratum 8a
+  qiii_ = child(-1, 1);  // Erratum 8a
+  qiv_ = child(1, 1);    // Erratum 8a
+  const std::uint64_t visits = tree_->visits;
   for (std::size_t i = 0; i < e_.size(); ++i) {  // Erratum 8c
     if (!tree_->leaves.empty()) std::erase(tree_->leaves[index(e_[i])], this);
     algorithm_9_spanning_add_element(e_[i]);
   }
-  e_ = {};  // Erratum 8b
+  tree_->visits = visits;  // entries are dealt out; nothing is on its way
+  e_ = {};                 // Erratum 8b
 }
 
 /// Algorithm 9, "Spanning Add Element".
@@ -97,6 +101,7 @@ void QuadTreeNode::algorithm_9_spanning_add_element(BoxId id) {
 bool QuadTreeNode::can_split() const {
   if (depth_ == tree_->depth_max) return false;
   tree_->checkpoint->count(e_.size());
+  tree_->entries += e_.size();
   Box2 common = tree_->boxes[index(e_.front())];
   for (const BoxId id : e_) {
     const Box2& e = tree_->boxes[index(id)];
@@ -109,12 +114,10 @@ bool QuadTreeNode::can_split() const {
 }
 
 void QuadTreeNode::add_where_missing(BoxId e) {
+  if (is_leaf() && std::ranges::find(tree_->leaves[index(e)], this) == tree_->leaves[index(e)].end())
+    return algorithm_7_add_element(e);
   ++tree_->visits;
-  if (is_leaf()) {
-    if (std::ranges::find(tree_->leaves[index(e)], this) == tree_->leaves[index(e)].end())
-      algorithm_7_add_element(e);
-    return;
-  }
+  if (is_leaf()) return;
   for (QuadTreeNode* const child : {qi_.get(), qii_.get(), qiii_.get(), qiv_.get()}) {
     if (child->region_.meets(tree_->boxes[index(e)])) child->add_where_missing(e);
   }
@@ -122,10 +125,42 @@ void QuadTreeNode::add_where_missing(BoxId e) {
 
 void QuadTreeNode::remove(BoxId e) {
   const auto place = std::ranges::find(e_, e);
-  tree_->checkpoint->count(static_cast<std::uint64_t>(place - e_.begin()));
+  const auto looked_at = static_cast<std::uint64_t>(place - e_.begin());
+  tree_->checkpoint->count(looked_at);
+  tree_->entries += looked_at;
+  if (place == e_.end()) return;
   *place = e_.back();
   e_.pop_back();
   --count_;
+  ++tree_->entries;
+}
+
+void QuadTreeNode::search_and_remove(BoxId e) {
+  ++tree_->visits;
+  if (is_leaf()) {
+    remove(e);
+    return;
+  }
+  for (QuadTreeNode* const child : {qi_.get(), qii_.get(), qiii_.get(), qiv_.get()})
+    child->search_and_remove(e);
+}
+
+QuadTreeNode* QuadTreeNode::child(int x_side, int y_side) const {
+  if (x_side > 0) return y_side < 0 ? qi_.get() : qiv_.get();
+  return y_side < 0 ? qii_.get() : qiii_.get();
+}
+
+QuadTreeNode* QuadTreeNode::neighbour(int axis, int side) {
+  if (parent_ == nullptr) return nullptr;
+  ++tree_->visits;
+  const QuadTreeNode* from = parent_;
+  if (!has_sibling(axis, side)) {
+    QuadTreeNode* const beside = parent_->neighbour(axis, side);
+    if (beside == nullptr || beside->is_leaf()) return beside;
+    ++tree_->visits;
+    from = beside;
+  }
+  return axis == 0 ? from->child(-sides_[0], sides_[1]) : from->child(sides_[0], -sides_[1]);
 }
 
 void QuadTreeNode::split_if_full() {

@@ -36,6 +36,14 @@ struct Region {
     return e.max[0] >= begin[0] && e.max[1] >= begin[1] && ends_after(e.min[0], 0) && ends_after(e.min[1], 1);
   }
 
+  /// Whether some of the box lies beyond the side (-1 or 1) along an axis, and whether all of it does.
+  bool is_crossed(const Box2& e, int axis, int side) const {
+    return side < 0 ? e.min[axis] < begin[axis] : !ends_after(e.max[axis], axis);
+  }
+  bool is_left(const Box2& e, int axis, int side) const {
+    return side < 0 ? e.max[axis] < begin[axis] : !ends_after(e.min[axis], axis);
+  }
+
  private:
   bool ends_after(double x, int axis) const { return x < end[axis] || std::isinf(end[axis]); }
 };
@@ -49,7 +57,8 @@ struct QuadTree {
   int depth_max = 0;
   Checkpoint* checkpoint = nullptr;  ///< is told of tests, and of boxes looked at on the way to them
   std::size_t nodes = 0;             ///< that there are
-  std::uint64_t visits = 0;          ///< of nodes, on the ways down of boxes that were added
+  std::uint64_t visits = 0;          ///< of nodes, on the ways of boxes to their leaves
+  std::uint64_t entries = 0;  ///< added, removed, or looked through for this; splits deal them out anew
 
   /// For each box the leaves that it is in, where section VI-D needs them; else empty.
   std::vector<std::vector<QuadTreeNode*>> leaves{};
@@ -76,8 +85,19 @@ class QuadTreeNode {
   /// Algorithm 9 from here, for a box that may be in some of the leaves: it is added to the others.
   void add_where_missing(BoxId e);
 
-  /// Takes a box out of this leaf.
+  /// Takes a box out of this leaf, if it is there.
   void remove(BoxId e);
+
+  /// Searches this node and all below it for a box, and takes it out of its leaves.
+  void search_and_remove(BoxId e);
+
+  /// The node on the given side (-1 or 1) of this one along an axis, of its size or, where there is none, the
+  /// larger leaf; null at the border of the world. As Samet finds neighbours: a sibling by way of the parent,
+  /// a cousin by way of the least ancestor that has a child there, and the mirrored way down.
+  QuadTreeNode* neighbour(int axis, int side);
+
+  /// Whether that is a sibling.
+  bool has_sibling(int axis, int side) const noexcept { return parent_ != nullptr && sides_[axis] != side; }
 
   /// Splits a leaf that has become too full while its boxes moved in it.
   void split_if_full();
@@ -95,12 +115,14 @@ class QuadTreeNode {
  private:
   QuadTreeNode(QuadTreeNode& parent, int x_side, int y_side);
 
+  QuadTreeNode* child(int x_side, int y_side) const;
   void algorithm_8_split();
   void algorithm_9_spanning_add_element(BoxId id);
   bool can_split() const;
 
   QuadTree* tree_;
   QuadTreeNode* parent_ = nullptr;
+  std::array<int, 2> sides_{};  // of the parent, -1 or 1 on each axis
   int depth_ = 0;
   Region region_;
   double x_origin_;

@@ -12,29 +12,39 @@
 namespace broadside::paper {
 namespace {
 
-/// Where the insertion of a box that changed begins.
-enum class ReinsertFrom {
-  rebuild,   ///< with all others: the tree is built anew
-  root,      ///< "reinserting at the root"
+/// How the references of a box that changed get into other leaves.
+enum class TreeReposition {
+  rebuild,                 ///< with all others: the tree is built anew
+  search_delete_reinsert,  ///< VI-A: all nodes are searched for it, it is deleted, and inserted at the root
+  root,                    ///< "reinserting at the root"; its leaves are known
   relative,  ///< "insert based on relative position": at the least node above its leaf that holds it
-  siblings,  ///< "translate references across siblings", each reference by itself; where that fails, at the
-             ///< root
-  cousins    ///< where that fails, "go to the cousin by traversing through the parent"
+  siblings,  ///< "translate references across siblings"; where there is none, it is inserted at the root
+  cousins    ///< where there is none, "go to the cousin by traversing through the parent"
 };
 
-ReinsertFrom reinsert_from_of(const Settings& settings) {
+TreeReposition tree_reposition_of(const Settings& settings) {
   const std::string& text = settings.text("update");
-  if (text == "root") return ReinsertFrom::root;
-  if (text == "relative") return ReinsertFrom::relative;
-  if (text == "siblings") return ReinsertFrom::siblings;
-  return text == "cousins" ? ReinsertFrom::cousins : ReinsertFrom::rebuild;
+  if (text == "search_delete_reinsert") return TreeReposition::search_delete_reinsert;
+  if (text == "root") return TreeReposition::root;
+  if (text == "relative") return TreeReposition::relative;
+  if (text == "siblings") return TreeReposition::siblings;
+  return text == "cousins" ? TreeReposition::cousins : TreeReposition::rebuild;
+}
+
+/// Whether the leaves just beyond a side of a region must hold the box already: its former place met them
+/// wherever its new one does.
+bool has_crossed(const Region& region, const Box2& from, const Box2& to, int axis, int side) {
+  const int other = 1 - axis;
+  return region.meets(from) && region.is_crossed(from, axis, side) &&
+         (from.min[other] <= to.min[other] || from.min[other] <= region.begin[other]) &&
+         (from.max[other] >= to.max[other] || from.max[other] >= region.end[other]);
 }
 
 class QuadtreeListingFollower final : public CoherentFollower<2> {
  public:
   explicit QuadtreeListingFollower(const Settings& settings)
       : CoherentFollower(settings),
-        from_(reinsert_from_of(settings)),
+        reposition_(tree_reposition_of(settings)),
         world_settings_(settings),
         capacity_(static_cast<std::size_t>(settings.integer("capacity"))) {}
 
@@ -45,7 +55,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
              .count_max = capacity_,
              .depth_max = choose_depth(boxes(), world_),
              .checkpoint = &checkpoint()};
-    if (from_ != ReinsertFrom::rebuild) tree_.leaves.resize(boxes().size());
+    if (knows_leaves()) tree_.leaves.resize(boxes().size());
     root_.emplace(tree_, world_);
     most_references_ = 0;
     for (std::size_t i = 0; i < boxes().size(); ++i) {
@@ -54,114 +64,122 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
       most_references_ += references_at(tree_.depth_max, boxes()[i], world_);
     }
     nodes_built_ = tree_.nodes;
+    counts().visited += tree_.visits;
+    counts().moved += tree_.entries;
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box2> now) override {
-    tree_.visits = 0;
     // Nothing joins subnodes that boxes have left (erratum T11).
-    if (from_ == ReinsertFrom::rebuild || tree_.nodes > 2 * nodes_built_ + 16 * present() + 64) return false;
+    if (reposition_ == TreeReposition::rebuild || tree_.nodes > 2 * nodes_built_ + 16 * present() + 64)
+      return false;
+    tree_.visits = 0;
+    tree_.entries = 0;
     tree_.boxes = boxes();
-    tree_.leaves.resize(boxes().size());
+    if (knows_leaves()) tree_.leaves.resize(boxes().size());
     for (const BoxId id : movers) {
       const Box2 to = now[index(id)];
       const Box2 from = std::exchange(boxes()[index(id)], to);
       if (is_present(from)) most_references_ -= references_at(tree_.depth_max, from, world_);
       if (is_present(to)) most_references_ += references_at(tree_.depth_max, to, world_);
       if (most_references_ > most_references_in_tree(present())) return false;  // erratum 7c
-      if (!is_present(from)) {
-        if (is_present(to)) root_->algorithm_7_add_element(id);
-      } else if (!is_present(to)) {
-        remove_everywhere(id);
+      if (knows_leaves() && is_present(from) && is_present(to)) {
+        reposition(id, from, to);
       } else {
-        reposition(id, to);
+        if (is_present(from)) remove_everywhere(id);
+        if (is_present(to)) root_->algorithm_7_add_element(id);
       }
     }
     counts().visited += tree_.visits;
+    counts().moved += tree_.entries;
     return true;
   }
 
-  void reposition(BoxId id, const Box2& to) {
+  /// Whether each box has a list of its leaves, so that none has to be searched for.
+  bool knows_leaves() const {
+    return reposition_ != TreeReposition::rebuild && reposition_ != TreeReposition::search_delete_reinsert;
+  }
+
+  void reposition(BoxId id, const Box2& from, const Box2& to) {
     std::vector<QuadTreeNode*>& leaves = tree_.leaves[index(id)];
-    counts().visited += leaves.size();
+    tree_.visits += leaves.size();
     if (leaves.size() == 1 && leaves.front()->region().holds(to)) {
       leaves.front()->split_if_full();
       return;
     }
-    switch (from_) {
-      case ReinsertFrom::relative: {
-        QuadTreeNode* const node = holder(leaves.front(), to);
-        remove_everywhere(id);
-        insert(*node, id);
-        break;
-      }
-      case ReinsertFrom::siblings:
-      case ReinsertFrom::cousins:
-        translate(id, to);
-        break;
-      default:
-        remove_everywhere(id);
-        insert(*root_, id);
+    if (reposition_ == TreeReposition::siblings || reposition_ == TreeReposition::cousins) {
+      if (translate(id, from, to)) return;
     }
+    QuadTreeNode* const node = reposition_ == TreeReposition::relative ? holder(leaves.front(), to) : &*root_;
+    remove_everywhere(id);
+    node->algorithm_7_add_element(id);
   }
 
-  /// Each reference by itself: it climbs from its leaf to the least node that holds the box, and goes down
-  /// from there to the leaves that the box is in and that have none yet. A reference whose leaf the box is
-  /// still in stays; but if all do, the first one climbs for all, since the box may have grown (erratum T12).
-  void translate(BoxId id, const Box2& to) {
-    const std::vector<QuadTreeNode*> before = tree_.leaves[index(id)];
-    bool has_climbed = false;
-    for (QuadTreeNode* const leaf : before) {
-      if (leaf->region().meets(to)) continue;
-      remove(*leaf, id);
-      if (!spread(*leaf, id, to)) return;
-      has_climbed = true;
+  /// Takes references out of the leaves that the box has left, and across the sides of leaves that it has
+  /// come to reach over, to the leaves there: also where the box leaves none, since it may have grown
+  /// (erratum T12). False where that takes more than siblings and only these may be asked; what was done
+  /// until then does not harm.
+  bool translate(BoxId id, const Box2& from, const Box2& to) {
+    std::vector<QuadTreeNode*>& leaves = tree_.leaves[index(id)];
+    QuadTreeNode* const first = leaves.front();
+    before_ = leaves;
+    for (QuadTreeNode* const leaf : before_) {
+      if (leaf->region().meets(to))
+        leaf->split_if_full();
+      else
+        remove(*leaf, id);
     }
-    if (has_climbed) return;
-    for (QuadTreeNode* const leaf : before) leaf->split_if_full();
-    spread(*before.front(), id, to);
-  }
-
-  /// From the leaf by way of the node that holds the box. False where that is beyond its siblings and cousins
-  /// are not asked: then the box has been inserted from the root.
-  bool spread(QuadTreeNode& leaf, BoxId id, const Box2& to) {
-    QuadTreeNode* node = &leaf;
-    if (from_ == ReinsertFrom::siblings) {
-      if (leaf.parent() != nullptr) node = leaf.parent();
-      ++counts().visited;
-      if (!node->region().holds(to)) {
-        remove_everywhere(id);
-        insert(*root_, id);
-        return false;
+    if (leaves.empty()) {
+      QuadTreeNode* const node = walk(first, to);
+      if (node == nullptr) return false;
+      node->add_where_missing(id);
+    }
+    for (std::size_t i = 0; i < leaves.size(); ++i) {  // leaves that are added follow
+      for (const int axis : {0, 1}) {
+        for (const int side : {-1, 1}) {
+          QuadTreeNode& leaf = *leaves[i];
+          if (!leaf.region().is_crossed(to, axis, side) || has_crossed(leaf.region(), from, to, axis, side))
+            continue;
+          QuadTreeNode* const node = beside(leaf, axis, side);
+          if (node == nullptr) return false;
+          node->add_where_missing(id);
+        }
       }
-    } else {
-      node = holder(node, to);
     }
-    const std::size_t had = tree_.leaves[index(id)].size();
-    node->add_where_missing(id);
-    counts().moved += tree_.leaves[index(id)].size() - had;
     return true;
+  }
+
+  /// From a node that the box does not meet towards the box, by neighbours, to one that it meets. Null as
+  /// beside() is.
+  QuadTreeNode* walk(QuadTreeNode* node, const Box2& to) {
+    for (;;) {
+      const bool is_left_in_x = node->region().is_left(to, 0, -1) || node->region().is_left(to, 0, 1);
+      const int axis = is_left_in_x ? 0 : 1;
+      node = beside(*node, axis, node->region().is_left(to, axis, -1) ? -1 : 1);
+      if (node == nullptr || node->region().meets(to)) return node;
+      ++tree_.visits;
+    }
+  }
+
+  /// The neighbour on that side, which is there; null if it may only be a sibling and is none.
+  QuadTreeNode* beside(QuadTreeNode& node, int axis, int side) {
+    if (reposition_ == TreeReposition::siblings && !node.has_sibling(axis, side)) return nullptr;
+    return node.neighbour(axis, side);
   }
 
   /// The least node from `node` upwards that holds the box.
   QuadTreeNode* holder(QuadTreeNode* node, const Box2& to) {
-    for (; node->parent() != nullptr && !node->region().holds(to); node = node->parent()) ++counts().visited;
+    for (; node->parent() != nullptr && !node->region().holds(to); node = node->parent()) ++tree_.visits;
     return node;
-  }
-
-  void insert(QuadTreeNode& node, BoxId id) {
-    node.algorithm_7_add_element(id);
-    counts().moved += tree_.leaves[index(id)].size();
   }
 
   void remove(QuadTreeNode& leaf, BoxId id) {
     leaf.remove(id);
     std::erase(tree_.leaves[index(id)], &leaf);
-    ++counts().moved;
   }
 
   void remove_everywhere(BoxId id) {
+    if (!knows_leaves()) return root_->search_and_remove(id);
     for (QuadTreeNode* const leaf : tree_.leaves[index(id)]) leaf->remove(id);
-    counts().moved += tree_.leaves[index(id)].size();
     tree_.leaves[index(id)].clear();
   }
 
@@ -178,13 +196,14 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     return bytes;
   }
 
-  ReinsertFrom from_;
+  TreeReposition reposition_;
   WorldSettings world_settings_;
   std::size_t capacity_;
   World world_{};
   QuadTree tree_;
   std::optional<QuadTreeNode> root_;
-  double most_references_ = 0;  // of a full tree of this depth
+  std::vector<QuadTreeNode*> before_;  // a mover's leaves
+  double most_references_ = 0;         // of a full tree of this depth
   std::size_t nodes_built_ = 0;
 };
 

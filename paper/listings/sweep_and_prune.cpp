@@ -53,12 +53,12 @@ Algorithm sweep_and_prune() {
       .kind = AlgorithmKind::paper,
       .tunables = {{.name = "update",
                     .summary =
-                        "how a tracker mends its order before it sweeps: sorted anew; a heap, from which "
-                        "minima are taken as the sweep goes; insertion sort; or a binary search for the "
-                        "place of each mover",
+                        "how a tracker mends its order before it sweeps: sorted anew; gone through for "
+                        "each mover and its new place; a heap, from which minima are taken as the sweep "
+                        "goes; insertion sort; or a binary search for the place of each mover",
                     .default_value = "rebuild",
                     .type = Tunable::Type::choice,
-                    .choices = {"rebuild", "heap", "insertion", "binary"}},
+                    .choices = {"rebuild", "search_delete_reinsert", "heap", "insertion", "binary"}},
                    detect_tunable()},
       .in_2d = sweep_strategies<2>(),
       .in_3d = sweep_strategies<3>(),

@@ -15,14 +15,16 @@ namespace {
 
 /// How the order is mended where boxes changed.
 enum class ReorderMethod {
-  rebuild,    ///< all boxes are sorted
-  heap,       ///< "keep the objects in a heap and extract the minimum when needed"
-  insertion,  ///< "insertion sort if objects in the collection are relatively in order"
-  binary      ///< "inserting only a subset of k objects using an insertion sort with binary search"
+  rebuild,                 ///< all boxes are sorted
+  search_delete_reinsert,  ///< VI-A: the order is gone through for each mover, and for its new place
+  heap,                    ///< "keep the objects in a heap and extract the minimum when needed"
+  insertion,               ///< "insertion sort if objects in the collection are relatively in order"
+  binary  ///< "inserting only a subset of k objects using an insertion sort with binary search"
 };
 
 ReorderMethod method_of(const Settings& settings) {
   const std::string& text = settings.text("update");
+  if (text == "search_delete_reinsert") return ReorderMethod::search_delete_reinsert;
   if (text == "heap") return ReorderMethod::heap;
   if (text == "insertion") return ReorderMethod::insertion;
   return text == "binary" ? ReorderMethod::binary : ReorderMethod::rebuild;
@@ -53,10 +55,10 @@ class SweepListingFollower final : public CoherentFollower<D> {
     }
     if (method_ == ReorderMethod::heap) places_.resize(now.size());
     for (const BoxId id : movers) {
-      if (method_ == ReorderMethod::binary)
-        reinsert(id, now[index(id)]);
-      else
+      if (method_ == ReorderMethod::heap)
         update_heap(id, now[index(id)]);
+      else
+        reinsert(id, now[index(id)]);
     }
     return true;
   }
@@ -164,8 +166,8 @@ class SweepListingFollower final : public CoherentFollower<D> {
     const std::uint64_t moved_before = this->counts().moved;
     Box<D>& before = this->boxes()[index(id)];
     if (is_present(before) && is_present(now)) {
-      const auto from = place_of({before.min[0], id});
-      const auto to = place_of({now.min[0], id});
+      const auto from = old_place_of({before.min[0], id});
+      const auto to = new_place_of({now.min[0], id});
       *from = {now.min[0], id};
       if (to > from) {
         std::rotate(from, from + 1, to);
@@ -175,11 +177,11 @@ class SweepListingFollower final : public CoherentFollower<D> {
         this->counts().moved += static_cast<std::uint64_t>(from - to) + 1;
       }
     } else if (is_present(before)) {
-      const auto from = place_of({before.min[0], id});
+      const auto from = old_place_of({before.min[0], id});
       this->counts().moved += static_cast<std::uint64_t>(e_.end() - from);
       e_.erase(from);
     } else if (is_present(now)) {
-      const auto to = place_of({now.min[0], id});
+      const auto to = new_place_of({now.min[0], id});
       this->counts().moved += static_cast<std::uint64_t>(e_.end() - to) + 1;
       e_.insert(to, {now.min[0], id});
     }
@@ -187,12 +189,33 @@ class SweepListingFollower final : public CoherentFollower<D> {
     this->checkpoint().count(this->counts().moved - moved_before);
   }
 
-  /// The first entry that is not before `wanted`; counts comparisons as visits.
-  std::vector<SweepEntry>::iterator place_of(const SweepEntry& wanted) {
+  /// The entry itself. Where only a flag is known, its old key is not.
+  std::vector<SweepEntry>::iterator old_place_of(const SweepEntry& entry) {
+    if (method_ == ReorderMethod::binary) return binary_search(entry);
+    return first_from_begin([&](const SweepEntry& other) { return other.id == entry.id; });
+  }
+
+  /// The first entry that is not before `entry`.
+  std::vector<SweepEntry>::iterator new_place_of(const SweepEntry& entry) {
+    if (method_ == ReorderMethod::binary) return binary_search(entry);
+    return first_from_begin([&](const SweepEntry& other) { return !(other < entry); });
+  }
+
+  /// Counts comparisons as visits.
+  std::vector<SweepEntry>::iterator binary_search(const SweepEntry& wanted) {
     return std::lower_bound(e_.begin(), e_.end(), wanted, [this](const SweepEntry& a, const SweepEntry& b) {
       ++this->counts().visited;
       return a < b;
     });
+  }
+
+  template <typename IsWanted>
+  std::vector<SweepEntry>::iterator first_from_begin(const IsWanted& is_wanted) {
+    const auto place = std::ranges::find_if(e_, is_wanted);
+    const auto looked_at = static_cast<std::uint64_t>(place - e_.begin()) + 1;
+    this->counts().visited += looked_at;
+    this->checkpoint().count(looked_at);
+    return place;
   }
 
   ReorderMethod method_;
