@@ -1,25 +1,449 @@
-"""The comparison with other libraries: what its committed results come to."""
+"""The comparison with other libraries: what its processes come to, as facts, tables and figures.
+
+A lead is the time of a rival over that of ours, in the same rounds; its interval is between the processes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
 
+import numpy
+import pandas
+
+from . import figures
+from .archive import Archive
+from .comparison_cases import COMPARISON, DENSITIES, GROUPS, NUMBERS, Compared
 from .experiment import Unusable
-from .figures import Figure
+from .figures import COLOURS, Figure
+from .results import Results
+from .rules import RuleBook
+from .statistics import Estimate, between_runs, digits
 from .tables import Table
+
+# Debian compiles these libraries with assertions (docs/peers.md).
+WITH_ASSERTIONS = ("box2d", "embree", "fcl")
+KINDS = {"own": "ours", "paper": "the draft's", "literature": "the literature's", "peer": "a library's"}
+LIBRARIES = {"cgal": "CGAL", "boost": "Boost", "geos": "GEOS", "embree": "Embree", "bullet": "Bullet", "ode": "ODE",
+             "fcl": "FCL", "box2d": "Box2D", "chipmunk": "Chipmunk"}
+# Whom a lead is over, by kind and algorithm.
+RIVALS: dict[str, Callable[[str, str], bool]] = {
+    "peer": lambda kind, algorithm: kind == "peer",
+    "literature": lambda kind, algorithm: kind == "literature",
+    "released": lambda kind, algorithm: kind == "peer" and library_of(algorithm) not in WITH_ASSERTIONS,
+}
+OURS = ("auto", "best")  # what users call; the fastest of our others, chosen after timing
+
+
+def library_of(algorithm: str) -> str:
+    return algorithm.split("_", 1)[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Lead:
+    """The time of a rival over that of ours in a case."""
+
+    case: Compared
+    ours: str
+    rival: str
+    ratio: Estimate
+    ours_ms: Estimate
+    rival_ms: Estimate
+
+
+class Leads:
+    """Leads of several cases, by what their intervals say against the level of the rules."""
+
+    def __init__(self, leads: Sequence[Lead], level: float, confidence: float):
+        self.all = list(leads)
+        self._confidence = confidence
+        self.won = [lead for lead in leads if lead.ratio.is_above(level)]
+        self.lost = [lead for lead in leads if lead.ratio.is_below(1 / level)]
+        self.level = [lead for lead in leads if lead.ratio.is_above(1 / level) and lead.ratio.is_below(level)]
+        self.open = [lead for lead in leads if lead not in self.won + self.lost + self.level]
+        self.behind = [lead for lead in leads if lead.ratio.value < 1]  # whatever the interval says
+
+    @cached_property
+    def mean(self) -> Estimate | None:
+        """The geometric mean, taken in each process first: what slows a process slows it in many cases."""
+        if not self.all:
+            return None
+        of_runs = numpy.exp(numpy.mean(numpy.log([lead.ratio.runs for lead in self.all]), axis=0))
+        return between_runs(of_runs, self._confidence)
+
+    @property
+    def least(self) -> Lead:
+        return min(self.all, key=lambda lead: lead.ratio.value)
+
+    @property
+    def greatest(self) -> Lead:
+        return max(self.all, key=lambda lead: lead.ratio.value)
+
+
+class Times:
+    """What all processes measured: times and ratios, and who is fastest where."""
+
+    def __init__(self, results: Results, level: float):
+        self.confidence = results.confidence
+        self.level = level
+        self.processes = len(results.runs)
+        self.table = pandas.concat([run.table for run in results.runs], keys=range(self.processes), names=["run"])
+        by_case = self.table.groupby(level=["case", "algorithm"], sort=False)
+        self.measured = by_case.first()
+        self.measured["unsteady"] = by_case["unsteady"].agg(lambda values: values.dropna().astype(float).mean() > 0.5)
+        self.kinds = dict(zip(self.measured["algorithm"], self.measured["kind"]))
+        self._columns = {name: {key: values.to_numpy(dtype=float) for key, values in by_case[name]}
+                         for name in ("ratio", "median_ms", "p99_ms", "floor_ms")}
+        # Of what has a time in every process: what was too slow in one is fastest nowhere.
+        self._ratio = {key: values for key, values in self._columns["ratio"].items()
+                       if len(values) == self.processes and numpy.isfinite(values).all()}
+        self._ranked: dict[str, list[str]] = {}
+        for case, algorithm in sorted(self._ratio, key=lambda key: numpy.log(self._ratio[key]).mean()):
+            self._ranked.setdefault(case, []).append(algorithm)
+
+    def timed(self, case: str, is_one: Callable[[str, str], bool] = lambda kind, algorithm: True) -> list[str]:
+        """Those with a time that are such ones, the fastest first: one order for all processes."""
+        return [one for one in self._ranked.get(case, []) if is_one(self.kinds[one], one)]
+
+    def fastest(self, case: str, is_one: Callable[[str, str], bool]) -> str | None:
+        return next(iter(self.timed(case, is_one)), None)
+
+    @cache
+    def time(self, case: str, algorithm: str, column: str = "median_ms") -> Estimate:
+        return between_runs(self._columns[column][case, algorithm], self.confidence, "ms")
+
+    @cache
+    def over(self, case: str, algorithm: str, other: str) -> Estimate:
+        """The time of one over that of the other."""
+        return between_runs(self._ratio[case, algorithm] / self._ratio[case, other], self.confidence)
+
+    def ours(self, case: str, which: str) -> str | None:
+        """`auto`, or the best of our others; which are not in a case that lacks them."""
+        return self.fastest(case, lambda kind, algorithm: kind == "own" and (algorithm == "auto") == (which == "auto"))
+
+    def lead(self, case: Compared, which: str, rival: str) -> Lead | None:
+        return self.lead_over(case, self.ours(case.name, which), self.fastest(case.name, RIVALS[rival]))
+
+    def lead_over(self, case: Compared, ours: str | None, rival: str | None) -> Lead | None:
+        if ours is None or rival is None:
+            return None
+        return Lead(case, ours, rival, self.over(case.name, rival, ours), self.time(case.name, ours),
+                    self.time(case.name, rival))
+
+    def leads(self, cases: Iterable[Compared], which: str, rival: str) -> Leads:
+        return self.those(self.lead(case, which, rival) for case in cases)
+
+    def those(self, leads: Iterable[Lead | None]) -> Leads:
+        return Leads([lead for lead in leads if lead is not None], self.level, self.confidence)
+
+    def standings(self, cases: Sequence[Compared]) -> list[tuple[str, Estimate, int, int]]:
+        """Each algorithm with its time over that of each case's fastest, as a geometric mean, in how many cases it
+        has a time and in how many it is the fastest; the best first."""
+        ratios: dict[str, list[numpy.ndarray]] = {}
+        wins: dict[str, int] = {}
+        for case in cases:
+            ranked = self.timed(case.name)
+            for algorithm in ranked:
+                ratios.setdefault(algorithm, []).append(
+                    numpy.log(self._ratio[case.name, algorithm] / self._ratio[case.name, ranked[0]]))
+            if ranked:
+                wins[ranked[0]] = wins.get(ranked[0], 0) + 1
+        found = [(name, between_runs(numpy.exp(numpy.mean(logs, axis=0)), self.confidence), len(logs), wins.get(name, 0))
+                 for name, logs in ratios.items()]
+        return sorted(found, key=lambda standing: standing[1].value)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What templates may name: facts, ready to print with their intervals, tables and figures."""
+    """What templates may name: facts, ready to print with their intervals; tables; figures."""
 
     facts: Mapping[str, str | bool]
     tables: Mapping[str, Table]
     figures: Sequence[Figure]
 
 
-def comparison(folder: Path) -> Comparison:
-    """Throws Unusable, in one line, where there are no results of this version."""
-    raise Unusable(f"{folder} has no comparison; expected one")
+def load(folder: Path) -> Comparison:
+    """Of the processes in a folder. Throws Unusable, in one line, where there is none, where they are of several
+    revisions or machines, of other cases or rules than today's, or where a result was wrong."""
+    book = RuleBook()
+    results, runs = Archive(folder).results(COMPARISON, book)
+    return made(Times(results, book.of(COMPARISON.name).level), runs)
+
+
+def made(times: Times, runs: Sequence[Mapping]) -> Comparison:
+    cases = [case for case in COMPARISON.cases() if times.timed(case.name)]
+    if not times.leads(cases, "auto", "peer").all:
+        raise Unusable("the comparison has no case with times of auto and of a peer; expected one at least")
+    groups = {"all": cases, **{name: [case for case in cases if case.group == name] for name in GROUPS}}
+    leads = {(group, which, rival): times.leads(those, which, rival)
+             for group, those in groups.items() for which in OURS for rival in RIVALS}
+    tables = {
+        "groups": groups_table(leads, "peer"),
+        "literature": groups_table(leads, "literature"),
+        "released": groups_table(leads, "released"),
+        "numbers": curve_table(times, cases, "number", NUMBERS, "boxes:"),
+        "densities": curve_table(times, cases, "density", DENSITIES, "neighbours:"),
+        "rest": cases_table(times, [case for case in cases if not case.frames]),
+        "moving": cases_table(times, [case for case in cases if case.frames]),
+        "literature_cases": leads_table(leads["all", "best", "literature"].all),
+        "behind": leads_table(leads["all", "auto", "peer"].behind + leads["all", "auto", "literature"].behind),
+        "standings": standings_table(times, cases),
+        "scenes": scenes_table(times, cases),
+        "processes": processes_table(runs),
+    }
+    return Comparison(facts_of(times, cases, leads, runs), tables, [
+        mean_leads_figure(leads), *leads_figures(leads), curves_figure(times, cases), libraries_figure(times, cases)])
+
+
+def facts_of(times: Times, cases: Sequence[Compared], leads: Mapping[tuple, Leads],
+             runs: Sequence[Mapping]) -> dict[str, str | bool]:
+    """By name: "moving.auto.literature.mean" is the mean lead of auto over the literature's, where boxes move by a
+    rule; mean, least, greatest, won, lost, level, open and behind of each group, ours and rival."""
+    facts: dict[str, str | bool] = {}
+    for (group, which, rival), those in leads.items():
+        facts |= {f"{group}.{which}.{rival}.{name}": fact for name, fact in facts_of_leads(those).items()}
+    choices = times.those(times.lead_over(case, times.ours(case.name, "best"), times.ours(case.name, "auto"))
+                          for case in cases)
+    over_peers = {kind: leads_over_peers(times, cases, kind) for kind in ("literature", "paper")}
+    rival = max(over_peers["literature"], key=lambda name: len(over_peers["literature"][name].won), default="none")
+    rival_leads = over_peers["literature"].get(rival, times.those([]))
+    listings = {lead.case.name for those in over_peers["paper"].values() for lead in those.won}
+    table, first = times.table, runs[0]
+    timed = table[table["median_ms"].notna()]
+    agreeing = timed["verified_by"].dropna().astype(str).str.extract(r"by (\d+) structures? of (\d+)").dropna().astype(int)
+    floors = [ratio for case in cases if (best := times.ours(case.name, "best")) and not numpy.isnan(
+        ratio := times.time(case.name, best).value / times.time(case.name, best, "floor_ms").value)]
+    dates = sorted(run["date"][:10] for run in runs)
+    return facts | {
+        "cases": f"{len(cases):,}",
+        "cases_at_rest": f"{sum(not case.frames for case in cases):,}",
+        "cases_moving": f"{sum(bool(case.frames) for case in cases):,}",
+        "processes": f"{len(runs)}",
+        "busy": f"{sum(run['busy'] for run in runs)}",
+        "measurements": f"{len(timed):,}",
+        "skipped": f"{len(table) - len(timed):,}",
+        "unsteady": f"{sum(run['unsteady'] for run in runs):,}",
+        "level": f"{times.level:g}",
+        "minutes": digits(sum(run["seconds"] for run in runs) / len(runs) / 60),
+        "checked.by_definition": f"{(timed['verified_by'] == 'by definition').sum():,}",
+        "checked.by_others": f"{len(agreeing):,}",
+        "checked.least_structures": f"{agreeing[0].min()}" if len(agreeing) else "0",
+        "checked.least_libraries": f"{agreeing[1].min()}" if len(agreeing) else "0",
+        "algorithms.peer": f"{table[table['kind'] == 'peer']['algorithm'].nunique()}",
+        "algorithms.literature": f"{table[table['kind'] == 'literature']['algorithm'].nunique()}",
+        "choice.mean": choices.mean.text(), "choice.worst": choices.greatest.ratio.text(),
+        "choice.worst_case": choices.greatest.case.name,
+        **{f"rival.{name}": fact for name, fact in facts_of_leads(rival_leads).items()}, "rival": rival,
+        "listings.won": f"{len(listings)}",
+        "floor.least": digits(min(floors)) if floors else "-", "floor.greatest": digits(max(floors)) if floors else "-",
+        "date": dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}",
+        "processor": f"{first['machine'].get('cpu') or 'a processor'} with {first['machine'].get('cores') or 'some'} cores",
+        "instruction_set": next(iter(table["target"].dropna()), "unknown") if "target" in table else "unknown",
+        "system": first["machine"].get("os") or "an unknown system",
+        "compiler": first["build"]["compiler"], "revision": first["build"].get("revision") or "unknown",
+        **{f"version.{one['algorithm']}": one["version"] for _, one in times.measured.reset_index(drop=True).iterrows()
+           if one["kind"] == "peer"},
+    }
+
+
+def facts_of_leads(those: Leads) -> dict[str, str | bool]:
+    facts: dict[str, str | bool] = {"cases": f"{len(those.all)}", "any": bool(those.all)}
+    for name in ("won", "lost", "level", "open", "behind"):
+        found = getattr(those, name)
+        facts |= {name: f"{len(found)}", f"any_{name}": bool(found), f"{name}_named": named(found)}
+    facts["mean"] = those.mean.text() if those.mean else "-"
+    for name in ("least", "greatest"):
+        lead = getattr(those, name) if those.all else None
+        facts |= {name: lead.ratio.text() if lead else "-", f"{name}_case": lead.case.name if lead else "-",
+                  f"{name}_rival": lead.rival if lead else "-"}
+    return facts
+
+
+def named(leads: Sequence[Lead]) -> str:
+    """ "trembling in a pile, 2D, 2,000 boxes: 0.84 (0.79 to 0.86) against box2d_tree; ..." """
+    return "; ".join(f"{lead.case.name}: {lead.ratio.text()} against `{lead.rival}`" for lead in leads) or "none"
+
+
+def leads_over_peers(times: Times, cases: Sequence[Compared], kind: str) -> dict[str, Leads]:
+    """The leads of each algorithm of a kind over the fastest peer."""
+    found: dict[str, list[Lead | None]] = {}
+    for case in cases:
+        peer = times.fastest(case.name, RIVALS["peer"])
+        for algorithm in times.timed(case.name, lambda its_kind, _: its_kind == kind):
+            found.setdefault(algorithm, []).append(times.lead_over(case, algorithm, peer))
+    return {name: times.those(leads) for name, leads in found.items()}
+
+
+def groups_table(leads: Mapping[tuple, Leads], rival: str) -> Table:
+    """The leads of auto and of the best of ours, a line for each group of cases."""
+    def cells(those: Leads) -> list[str]:
+        return [those.mean.text(), those.least.ratio.text(),
+                f"{len(those.lost)} / {len(those.level)} / {len(those.open)}"] if those.all else ["-"] * 3
+    rows = [[GROUPS.get(group, group), str(len(leads[group, "auto", rival].all)), *cells(leads[group, "auto", rival]),
+             *cells(leads[group, "best", rival])] for group in [*GROUPS, "all"] if leads[group, "auto", rival].all]
+    heads = ["mean:", "least:", "lost / level / open:"]
+    return Table(["cases", "how many:", *(f"`auto`, {head}" for head in heads), *(f"best of ours, {head}" for head in heads)],
+                 rows)
+
+
+def curve_table(times: Times, cases: Sequence[Compared], what: str, values: Sequence[float], heading: str) -> Table:
+    """The leads of auto on uniform boxes."""
+    rows = [[f"{value:,}", *(lead.ratio.text() if (lead := lead_at(times, cases, what, value, dimension, rival)) else "-"
+                              for dimension in (2, 3) for rival in ("peer", "literature"))] for value in values]
+    return Table([heading, *(f"{dimension}D, over {whom}:" for dimension in (2, 3)
+                             for whom in ("the fastest peer", "the literature"))], rows)
+
+
+def lead_at(times: Times, cases: Sequence[Compared], what: str, value: float, dimension: int, rival: str) -> Lead | None:
+    return next((times.lead(case, "auto", rival) for case in cases
+                 if getattr(case, what) == value and case.dimension == dimension), None)
+
+
+def cases_table(times: Times, cases: Sequence[Compared]) -> Table:
+    """The times of auto, our best, the fastest peer and the fastest of the literature's, and auto's leads."""
+    moves = any(case.frames for case in cases)
+
+    def cell(case: Compared, algorithm: str | None, has_name: bool = True) -> str:
+        if algorithm is None:
+            return "-"
+        measured = times.measured.loc[(case.name, algorithm)]
+        marks = "†" * bool(measured["unsteady"]) + "‡" * (measured["kind"] == "peer" and library_of(algorithm) in WITH_ASSERTIONS)
+        slow = f", p99 {digits(times.time(case.name, algorithm, 'p99_ms').value)}" if moves else ""
+        return f"{f'`{algorithm}` ' if has_name else ''}{digits(times.time(case.name, algorithm).value)}{slow}{marks}"
+
+    def lead_cell(lead: Lead | None) -> str:
+        if lead is None:
+            return "-"
+        return f"**{lead.ratio.text()}**" if lead.ratio.value < 1 else lead.ratio.text()
+
+    rows = []
+    for case in cases:
+        peer, literature = (times.lead(case, "auto", rival) for rival in ("peer", "literature"))
+        rows.append([case.name, cell(case, times.ours(case.name, "auto"), has_name=False),
+                     cell(case, times.ours(case.name, "best")), cell(case, peer and peer.rival), lead_cell(peer),
+                     cell(case, literature and literature.rival), lead_cell(literature)])
+    return Table(["boxes", "`auto`, ms:", "best of our others, ms", "fastest peer, ms", "lead:", "the literature's fastest, ms",
+                  "lead:"], rows)
+
+
+def leads_table(leads: Sequence[Lead]) -> Table:
+    return Table(["boxes", "ours", "ms:", "rival", "ms:", "lead:"],
+                 [[lead.case.name, f"`{lead.ours}`", digits(lead.ours_ms.value), f"`{lead.rival}`",
+                   digits(lead.rival_ms.value), lead.ratio.text()] for lead in leads])
+
+
+def standings_table(times: Times, cases: Sequence[Compared]) -> Table:
+    return Table(["algorithm", "whose", "cases:", "fastest in:", "time over the fastest's:"],
+                 [[f"`{name}`", KINDS.get(times.kinds[name], times.kinds[name]), str(count), str(wins), ratio.text()]
+                  for name, ratio, count, wins in times.standings(cases)])
+
+
+def scenes_table(times: Times, cases: Sequence[Compared]) -> Table:
+    """How each case's boxes are made."""
+    rows = []
+    for case in cases:
+        one = times.measured.loc[case.name].iloc[0]
+        motion = f"{one['frames']:.0f} frames, {one['moving']:.2g} moving" if case.frames else ""
+        pairs = times.measured.loc[case.name]["pairs"].max()
+        rows.append([case.name, f"`{case.scene}`",
+                     ", ".join(f"{name} {value}" for name, value in one["scene_parameters"].items()), f"{one['boxes']:,.0f}",
+                     digits(2 * pairs / one["boxes"]), f"{one['seeds']:.0f}", motion])
+    return Table(["boxes", "scene", "parameters", "how many:", "overlaps of a box:", "seeds:", "motion"], rows)
+
+
+def processes_table(runs: Sequence[Mapping]) -> Table:
+    """Every process, busy ones too, with what it says of itself."""
+    def load(value: float | None) -> str:
+        return "unknown" if value is None else f"{value:.1f}"
+    return Table(["process:", "date", "minutes:", "share of a processor:", "load before:", "after:", "unsteady:"],
+                 [[str(run["run"]), run["date"][:10], digits(run["seconds"] / 60),
+                   f"{run['processor_share']:.0%}{' (busy)' if run['busy'] else ''}", load(run["load_before"]),
+                   load(run["load_after"]), f"{run['unsteady']} of {run['measurements']}"] for run in runs])
+
+
+def dots(axes, estimates: Sequence[Estimate], rows: Sequence[float], colour: str, marker: str, name: str) -> None:
+    """Figures with their intervals, a line each."""
+    values = numpy.array([at.value for at in estimates])
+    bars = numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in estimates])).T
+    axes.errorbar(values, rows, xerr=bars, fmt=marker, color=colour, label=name, capsize=2, elinewidth=0.8)
+
+
+def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Estimate]], rows: Sequence[str],
+                 x: str) -> Figure:
+    """A line for each row, with a dot for each of the series that has one there."""
+    drawing, (axes,) = figures.new(height=0.9 + 0.19 * len(rows) * max(1, len(series) / 3))
+    for number, (label, estimates) in enumerate(series.items()):
+        shown = [row for row in rows if row in estimates]
+        step = 0.6 * (number / max(len(series) - 1, 1) - 0.5) if len(series) > 1 else 0
+        dots(axes, [estimates[row] for row in shown], [rows.index(row) + step for row in shown], COLOURS[number],
+             figures.MARKERS[number], label)
+    axes.axvline(1, color="black", linewidth=0.8)
+    axes.set_yticks(range(len(rows)), rows)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    figures.label(axes, x, "", log="x")
+    if len(series) > 1:
+        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=2)
+    return Figure(name, caption, drawing)
+
+
+def mean_leads_figure(leads: Mapping[tuple, Leads]) -> Figure:
+    rows = [words for group, words in {**GROUPS, "all": "all"}.items() if leads[group, "auto", "peer"].all]
+    names = {words: group for group, words in {**GROUPS, "all": "all"}.items()}
+    series = {f"{'our own choice' if which == 'auto' else 'the best of our others'} over {whom}":
+              {row: those.mean for row in rows if (those := leads[names[row], which, rival]).all}
+              for rival, whom in (("peer", "the fastest library"), ("literature", "the literature")) for which in OURS}
+    return lines_figure("comparison_groups", "How many times as fast ours are, by group of cases: geometric means, with "
+                        "intervals between processes. At 1 a rival is as fast.", series, rows, "times as fast")
+
+
+def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
+    for name, words, is_shown in (("rest", "Boxes at rest", lambda case: not case.frames),
+                                  ("moving", "Boxes that move", lambda case: bool(case.frames))):
+        series = {whom: {lead.case.name: lead.ratio for lead in leads["all", "auto", rival].all if is_shown(lead.case)}
+                  for rival, whom in (("peer", "over the fastest library"), ("literature", "over the literature's fastest"))}
+        rows = list(dict.fromkeys(row for those in series.values() for row in those))
+        if rows:
+            yield lines_figure(f"comparison_{name}", f"{words}: how many times as fast our own choice is, case by case, with "
+                               "intervals between processes.", series, rows, "times as fast")
+
+
+def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
+    drawing, (left, right) = figures.new(2)
+    for axes, what, values in ((left, "number", NUMBERS), (right, "density", DENSITIES)):
+        for rival, whom in (("peer", "over libraries"), ("literature", "over the literature")):
+            for dimension in (2, 3):
+                at = {value: lead for value in values if (lead := lead_at(times, cases, what, value, dimension, rival))}
+                if at:
+                    figures.line(axes, list(at), [lead.ratio for lead in at.values()], f"{dimension}D, {whom}")
+        axes.axhline(1, color="black", linewidth=0.8)
+    figures.label(left, "boxes", "times as fast")
+    figures.label(right, "others that a box overlaps", "")
+    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
+    return Figure("comparison_curves", "How many times as fast our own choice is on uniform boxes, by their number and, for "
+                  "10,000, by their density.", drawing)
+
+
+def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
+    """Auto, and the best algorithm of each library and of the literature."""
+    best: dict[str, Estimate] = {}
+    for name, ratio, _, _ in times.standings(cases):
+        words = {"own": "our own choice" if name == "auto" else None, "literature": "the literature's best",
+                 "peer": LIBRARIES.get(library_of(name), library_of(name))}.get(times.kinds[name])
+        if words:
+            best.setdefault(words, ratio)
+    return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's: our own choice, and the best "
+                        "algorithm of each library, as a geometric mean of the cases that each does.",
+                        {"": best}, list(best), "times the time of the fastest")
+
+
+def disagreements(first: Path, second: Path) -> list[str]:
+    """Leads of auto that are won in one set of processes and lost in the other. There should be none."""
+    book = RuleBook()
+    sets = []
+    for folder in (first, second):
+        times = Times(Archive(folder).results(COMPARISON, book)[0], book.of(COMPARISON.name).level)
+        sets.append({rival: times.leads(COMPARISON.cases(), "auto", rival) for rival in RIVALS})
+    return [f"{case} over {rival}" for rival in RIVALS for one, other in (sets, reversed(sets))
+            for case in sorted({lead.case.name for lead in one[rival].won} & {lead.case.name for lead in other[rival].lost})]

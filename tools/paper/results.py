@@ -25,6 +25,10 @@ class Run:
         table = pandas.DataFrame(measurements)
         self._table = table.set_index(["case", "algorithm"], drop=False)
 
+    @property
+    def table(self) -> pandas.DataFrame:
+        return self._table
+
     def measurement(self, case: str, spec: str) -> pandas.Series:
         if (case, spec) not in self._table.index:
             raise KeyError(f"'{spec}' was not measured in case '{case}'")

@@ -1,0 +1,118 @@
+"""What is compared with other libraries, how it is measured, and what is kept of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .experiment import Case, Experiment
+from .run import Measuring
+
+# Of how many boxes and how dense uniform ones are; what is not varied is 10,000 boxes that touch 4 others each.
+NUMBERS = (100, 1_000, 10_000, 100_000, 1_000_000)
+DENSITIES = (0.25, 1, 4, 16, 64)
+# A million boxes are for what does them within seconds.
+FAST = ("auto", "grid", "bvh", "sweep_and_prune", "literature", "embree_collide", "boost_rtree",
+        "fcl_dynamic_aabb_tree_array", "bullet_dbvt", "cgal_box_intersection")
+
+GROUPS = {
+    "uniform": "uniform, at rest",
+    "rest_2d": "others in 2D, at rest",
+    "rest_3d": "others in 3D, at rest",
+    "real": "a mesh and two maps, at rest",
+    "moving": "moving by a rule",
+    "recorded": "recorded from engines",
+}
+
+EFFORT = {"budget_seconds": 0.25, "history_seconds": 1, "share_seconds": 0.1, "min_rounds": 5, "max_rounds": 100,
+          "slow_seconds": 0.05, "slow_history_seconds": 0.4, "slow_rounds": 3, "definition_boxes": 20_000}
+EFFORT_OF_A_MILLION = {**EFFORT, "budget_seconds": 2, "slow_rounds": 2}
+
+
+@dataclass(frozen=True)
+class Compared(Case):
+    """A case of the comparison: the group that it is of, and where it is on the curves of uniform boxes."""
+
+    group: str = ""
+    number: int | None = None
+    density: float | None = None
+
+
+def cases() -> list[Compared]:
+    return [*uniform(), *at_rest(), *moving()]
+
+
+def uniform() -> Iterator[Compared]:
+    for dimension in (2, 3):
+        for number in NUMBERS:
+            yield Compared(f"uniform, {dimension}D, {number:,} boxes", "uniform:neighbours=4",
+                           FAST if number == NUMBERS[-1] else ("all",), number, dimension, group="uniform",
+                           effort=EFFORT_OF_A_MILLION if number == NUMBERS[-1] else EFFORT, number=number,
+                           density=4 if number == 10_000 else None)
+        for density in DENSITIES:
+            if density != 4:
+                yield Compared(f"uniform with {density:g} neighbours, {dimension}D, 10,000 boxes",
+                               f"uniform:neighbours={density:g}", ("all",), 10_000, dimension, effort=EFFORT,
+                               group="uniform", density=density)
+
+
+def at_rest() -> Iterator[Compared]:
+    for scene, words in {"power_law": "sizes by a power law", "mixed": "one in a hundred huge", "clustered": "clustered",
+                         "one_line": "all on one line", "lattice": "touching on a lattice", "thin": "long and thin",
+                         "terdiman": "Terdiman's scene", "one_point": "all over one point"}.items():
+        boxes = 2_000 if scene == "one_point" else 10_000
+        for dimension in (2, 3):
+            yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
+                           effort=EFFORT, group=f"rest_{dimension}d")
+    for scene, words, dimension in (
+            ("bunny", "triangles of a mesh, seen from one side", 2), ("bunny", "triangles of a mesh", 3),
+            ("counties", "counties", 2), ("counties:boxes=segments", "segments of counties", 2),
+            ("coastlines", "coastlines", 2), ("coastlines:boxes=segments", "segments of coastlines", 2)):
+        yield Compared(f"{words}, {dimension}D", scene, ("all",), None, dimension, effort=EFFORT, group="real")
+
+
+def moving() -> Iterator[Compared]:
+    for boxes, share, frames in ((10_000, 0.01, 10), (10_000, 1, 10), (100_000, 0.1, 5)):
+        for dimension in (2, 3):
+            yield Compared(f"uniform, {dimension}D, {boxes:,} boxes, {share:.0%} moving".replace("%", " %"),
+                           "uniform", ("all",), boxes, dimension, frames=frames, moving=share, effort=EFFORT,
+                           group="moving")
+    for scene, words, boxes, frames in (("churn", "coming and going", 1_000, 20), ("pile", "trembling in a pile", 2_000, 10)):
+        for dimension in (2, 3):
+            yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
+                           frames=frames, effort=EFFORT, group="moving")
+    for scene, words, dimension in (("box2d_rain", "rain in Box2D", 2), ("box2d_pyramid", "a pyramid in Box2D", 2),
+                                    ("bullet_free_fall", "free fall in Bullet", 3)):
+        yield Compared(f"{words}, {dimension}D, 1,000 boxes", scene, ("all",), 1_000, dimension, frames=30,
+                       effort=EFFORT, group="recorded")
+
+
+COMPARISON = Experiment(title="The comparison with other libraries", measured="Times of all algorithms.", claims=(),
+                        cases=cases, judge=lambda results, rules: (), figures=lambda results, rules: (),
+                        name="comparison")
+
+# What is kept of a measurement. Samples are not: there are some hundred thousand in each process.
+KEPT = ("case", "scene_parameters", "seeds", "dimension", "boxes", "frames", "moving", "drift", "algorithm", "version",
+        "kind", "target", "pairs", "verified", "verified_by", "skipped", "rounds", "median_ms", "p99_ms", "unsteady",
+        "floor_ms")
+
+
+def kept(results: dict) -> dict:
+    """Results without samples. A measurement's `ratio` is its time over that of the case's fastest in this process,
+    in the rounds of both; so the quotient of two of these is the ratio of the two algorithms."""
+    measurements = []
+    for measured in results["measurements"]:
+        one = {name: measured.get(name) for name in KEPT}
+        one["seeds"] = len(measured["seeds"])
+        if measured["ratio_to_fastest"] is not None:
+            one["ratio"] = measured["ratio_to_fastest"]["median"]
+        measurements.append({name: float(f"{value:.5g}") if isinstance(value, float) else value
+                             for name, value in one.items() if value is not None or name in ("verified", "unsteady")})
+    return {**results, "measurements": measurements}
+
+
+class MeasuringComparison(Measuring):
+    """Measures processes of the comparison."""
+
+    def results_of(self, run: int, experiment: Experiment) -> dict:
+        return kept(super().results_of(run, experiment))
