@@ -10,6 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 MEASURED = ROOT / "build" / "experiments"
+COMPARED = ROOT / "build" / "comparison"
 PUBLISHED = Path(__file__).parent / "results"
 PAGES = ROOT / "docs" / "paper"
 PACKAGES = "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib and python3-jinja2"
@@ -17,7 +18,8 @@ PACKAGES = "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib and
 try:
     from . import draft, print as printing
     from .archive import Archive
-    from .comparison import Comparison, comparison
+    from .comparison import Comparison, disagreements, load
+    from .comparison_cases import COMPARISON, MeasuringComparison
     from .experiment import Experiment, Unusable, experiments_named
     from .rules import RuleBook
     from .run import Measuring
@@ -53,22 +55,34 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
                            help=f"the runs (default: {folder.relative_to(ROOT)})")
 
     verb(list_experiments, "list", "List the experiments and their statements")
+    def takes_runs(added: argparse.ArgumentParser, runs: int) -> None:
+        added.add_argument("--runs", type=int, default=runs, metavar="N", help=f"how many runs (default: {runs})")
+        added.add_argument("--first", type=int, default=1, metavar="N",
+                           help="the first one's number, by which its boxes are made (default: 1)")
+        added.add_argument("--quick", action="store_true", help="fewer rounds, for a first impression")
+        added.add_argument("--program", type=Path, default=ROOT / "build/release/broadside", metavar="FILE",
+                           help="the program (default: build/release/broadside)")
+
     measuring = verb(run, "run", "Measure; what is there already is kept")
     takes_experiments(measuring, MEASURED)
-    measuring.add_argument("--runs", type=int, default=3, metavar="N", help="how many runs (default: 3)")
-    measuring.add_argument("--first", type=int, default=1, metavar="N",
-                           help="the first one's number, by which its boxes are made (default: 1)")
-    measuring.add_argument("--quick", action="store_true", help="fewer rounds, for a first impression")
-    measuring.add_argument("--program", type=Path, default=ROOT / "build/release/broadside", metavar="FILE",
-                           help="the program (default: build/release/broadside)")
+    takes_runs(measuring, 3)
+    comparing = verb(compare, "compare", "Measure processes of the comparison; what is there already is kept")
+    comparing.add_argument("--results", type=Path, default=COMPARED, metavar="FOLDER",
+                           help="the runs (default: build/comparison)")
+    takes_runs(comparing, 10)
     takes_experiments(verb(judge, "judge", "Judge what was measured"), MEASURED)
     printed = verb(print_paper, "print", "Print what was measured")
     takes_experiments(printed, PUBLISHED)
     printed.add_argument("--to", type=Path, default=ROOT / "build/paper", metavar="FOLDER",
                          help="where pages, figures and PDF go (default: build/paper); into docs/paper goes only what "
                               "is whole, and README.md and docs/results.md are made to quote it")
-    published = verb(publish, "publish", "Make a complete set of runs the published one")
-    published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER")
+    published = verb(publish, "publish", "Make complete sets of runs the published ones")
+    published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER",
+                           help="those of the experiments (default: build/experiments)")
+    published.add_argument("--comparison", type=Path, default=COMPARED, metavar="FOLDER",
+                           help="those of the comparison (default: build/comparison)")
+    agreeing = verb(agree, "agree", "Say which verdicts, or leads of the comparison, two sets of runs disagree about")
+    agreeing.add_argument("sets", nargs=2, type=Path, metavar="FOLDER")
     return parser.parse_args(arguments)
 
 
@@ -80,11 +94,18 @@ def list_experiments(_: argparse.Namespace) -> int:
 
 
 def run(options: argparse.Namespace) -> int:
+    return measure(Measuring, experiments_named(options.names), options)
+
+
+def compare(options: argparse.Namespace) -> int:
+    return measure(MeasuringComparison, [COMPARISON], options)
+
+
+def measure(how: type[Measuring], experiments: Sequence[Experiment], options: argparse.Namespace) -> int:
     if options.runs < 1 or options.first < 1:
         raise Unusable(f"--runs is {options.runs} and --first {options.first}; expected 1 or more")
-    measuring = Measuring(options.program, Archive(options.results), options.results / "work", RuleBook(),
-                          options.quick)
-    measuring.measure(experiments_named(options.names), range(options.first, options.first + options.runs))
+    measuring = how(options.program, Archive(options.results), options.results / "work", RuleBook(), options.quick)
+    measuring.measure(experiments, range(options.first, options.first + options.runs))
     return 0
 
 
@@ -142,7 +163,7 @@ def print_paper(options: argparse.Namespace) -> int:
 
 def compared(folder: Path, is_whole: bool) -> Comparison | None:
     try:
-        return comparison(folder)
+        return load(folder / COMPARISON.name)
     except Unusable as error:
         if is_whole:
             raise
@@ -151,9 +172,21 @@ def compared(folder: Path, is_whole: bool) -> Comparison | None:
 
 
 def publish(options: argparse.Namespace) -> int:
+    """The experiments, the comparison, or both: what was measured."""
+    sets = [(experiments_named([]), Archive(options.results), PUBLISHED),
+            ([COMPARISON], Archive(options.comparison), PUBLISHED / COMPARISON.name)]
+    sets = [one for one in sets if any(one[1].folder.glob("run-*"))]
+    if not sets:
+        raise Unusable(f"{options.results} and {options.comparison} have no runs; expected some in one of them")
+    for experiments, archive, to in sets:
+        publish_set(experiments, archive, to)
+    return 0
+
+
+def publish_set(experiments: Sequence[Experiment], archive: Archive, to: Path) -> None:
     """Copies a set in which every experiment has all of its runs, by rules that were committed before them."""
-    archive, book = Archive(options.results), RuleBook()
-    for experiment in experiments_named([]):
+    book = RuleBook()
+    for experiment in experiments:
         _, runs = archive.results(experiment, book)
         least = book.of(experiment.name).min_runs
         if len(runs) < least:
@@ -164,12 +197,24 @@ def publish(options: argparse.Namespace) -> int:
             if not one["rules"]["commit"]:
                 raise Unusable(f"run {one['run']} of {experiment.name} was measured before its rules were "
                                f"committed; expected rules.toml committed first")
-    for old in PUBLISHED.glob("run-*"):
+    for old in to.glob("run-*"):
         shutil.rmtree(old)
     for folder in sorted(archive.folder.glob("run-*")):
-        shutil.copytree(folder, PUBLISHED / folder.name)
-    print(f"{PUBLISHED.relative_to(ROOT)} has what {archive.folder} has; commit it")
-    return 0
+        shutil.copytree(folder, to / folder.name)
+    print(f"{to.relative_to(ROOT)} has what {archive.folder} has; commit it")
+
+
+def agree(options: argparse.Namespace) -> int:
+    if all(Archive(folder).run_numbers(COMPARISON.name) for folder in options.sets):
+        found = disagreements(*options.sets)
+    else:
+        first, second = ({f"{experiment.name}, {claim.number}": claim.verdict for experiment in
+                          judged(argparse.Namespace(results=folder, names=[])) for claim in experiment.claims}
+                         for folder in options.sets)
+        found = [f"{name}: {first.get(name, 'none')}, then {second.get(name, 'none')}" for name in {**first, **second}
+                 if first.get(name) != second.get(name)]
+    print("\n".join(found) or "the two sets agree")
+    return 1 if found else 0
 
 
 if __name__ == "__main__":
