@@ -132,6 +132,7 @@ def environment(content: Content, words: Words | None) -> jinja2.Environment:
     made.globals.update(content=content, rules=content.book, machine=machine_words(content), total=totals(content),
                         evidence_table=evidence_table, runs_table=lambda: runs_table(content),
                         statements_table=lambda is_ours=False: statements_table(content, is_ours),
+                        verdicts_table=lambda is_ours=False: verdicts_table(content, words, is_ours),
                         **(words.names() if words else {}))
     return made
 
@@ -182,6 +183,16 @@ def statements_table(content: Content, is_ours: bool = False) -> str:
     return Table(["statement", "what it says", "verdict"],
                  [[one.number, one.says, verdict(one)] for one in content.statements.values()
                   if (one.kind == "our claim") == is_ours]).markdown()
+
+
+def verdicts_table(content: Content, words: Words, is_ours: bool = False) -> str:
+    """What can be decided: each with its verdict and what decided."""
+    numbers = {claim.number for one in [*content.unmeasured, *(one.experiment for one in content.experiments)]
+               for claim in one.claims}
+    return Table(["statement", "what it says", "verdict", "least and greatest of the figures that decided"],
+                 [[one.number, one.says, words.verdict(one.number), words.found(one.number)]
+                  for one in content.statements.values()
+                  if one.number in numbers and (one.kind == "our claim") == is_ours]).markdown()
 
 
 def evidence_table(claim: JudgedClaim) -> str:
