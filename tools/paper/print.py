@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .comparison import Comparison
 
 TEMPLATES = Path(__file__).parent / "templates"
+DIAGRAMS = Path(__file__).parents[2] / "docs" / "paper" / "diagrams"
 NOTICE = "<!-- Made by `make paper` from tools/paper/; edit the templates there. -->\n\n"
 PAPER = "paper.md"  # printed by pandoc; the other pages are Markdown as it is filled
 QUOTING = ("README.md", "docs/results.md")  # pages of the repository that quote results
@@ -118,6 +119,8 @@ def write_pages(content: Content, folder: Path) -> list[Path]:
             pages[name] = filled(environment(content, words), name)
     shutil.rmtree(folder / "figures", ignore_errors=True)  # those of other results
     folder.mkdir(parents=True, exist_ok=True)
+    if not (folder / "diagrams").exists():
+        shutil.copytree(DIAGRAMS, folder / "diagrams")
     for name, text in pages.items():
         (folder / name).write_text(NOTICE + text, encoding="utf-8")
     for drawing in drawings:
@@ -131,8 +134,7 @@ def environment(content: Content, words: Words | None) -> jinja2.Environment:
     made.filters["listing"] = listing
     made.globals.update(content=content, rules=content.book, machine=machine_words(content), total=totals(content),
                         evidence_table=evidence_table, runs_table=lambda: runs_table(content),
-                        statements_table=lambda is_ours=False: statements_table(content, is_ours),
-                        verdicts_table=lambda is_ours=False: verdicts_table(content, words, is_ours),
+                        statements_table=lambda **which: statements_table(content, **which),
                         **(words.names() if words else {}))
     return made
 
@@ -172,8 +174,8 @@ def machine_words(content: Content) -> dict[str, str]:
     }
 
 
-def statements_table(content: Content, is_ours: bool = False) -> str:
-    """All statements of the draft, or our own claims, with what became of each."""
+def statements_table(content: Content, is_ours: bool = False, is_whole: bool = True) -> str:
+    """All statements of the draft, or our own claims, with what became of each; or only those that can be decided."""
     claims = {claim.number: claim for experiment in content.experiments for claim in experiment.claims}
     unmeasured = {claim.number for experiment in content.unmeasured for claim in experiment.claims}
     def verdict(statement: draft.DraftStatement) -> str:
@@ -182,17 +184,8 @@ def statements_table(content: Content, is_ours: bool = False) -> str:
         return "not measured" if statement.number in unmeasured else f"({statement.kind})"
     return Table(["statement", "what it says", "verdict"],
                  [[one.number, one.says, verdict(one)] for one in content.statements.values()
-                  if (one.kind == "our claim") == is_ours]).markdown()
-
-
-def verdicts_table(content: Content, words: Words, is_ours: bool = False) -> str:
-    """What can be decided: each with its verdict and what decided."""
-    numbers = {claim.number for one in [*content.unmeasured, *(one.experiment for one in content.experiments)]
-               for claim in one.claims}
-    return Table(["statement", "what it says", "verdict", "least and greatest of the figures that decided"],
-                 [[one.number, one.says, words.verdict(one.number), words.found(one.number)]
-                  for one in content.statements.values()
-                  if one.number in numbers and (one.kind == "our claim") == is_ours]).markdown()
+                  if (one.kind == "our claim") == is_ours
+                  and (is_whole or one.number in claims or one.number in unmeasured)]).markdown()
 
 
 def evidence_table(claim: JudgedClaim) -> str:

@@ -34,9 +34,8 @@ class Words:
         self._pictures: list[str] = []  # in the order of the text, which gives them their numbers
 
     def names(self) -> dict[str, Callable]:
-        names = ("figure", "span", "least", "greatest", "verdict", "outcome", "by", "found", "picture", "see", "fact",
-                 "table")
-        return {name: getattr(self, name) for name in names} | {"Verdict": Verdict}
+        names = ("figure", "span", "least", "greatest", "verdict", "by", "picture", "see", "fact", "table")
+        return {name: getattr(self, name) for name in names}
 
     def claim(self, number: str) -> JudgedClaim | None:
         """None where no run is about it."""
@@ -79,29 +78,15 @@ class Words:
         return least if least == greatest else f"between {least} and {greatest}"
 
     def verdict(self, number: str) -> str:
-        """ "holds within bounds: it has leaves of 8"."""
+        """ "within bounds"; their condition is in the table of verdicts."""
         claim = self.claim(number)
-        return claim.verdict if claim else "not measured"
-
-    def outcome(self, number: str) -> Verdict | None:
-        claim = self.claim(number)
-        return claim.finding.verdict if claim else None
+        return claim.finding.verdict.value.removeprefix("holds ") if claim else "not measured"
 
     def by(self, number: str, *, confirmed: str, bounds: str, refuted: str, otherwise: str) -> str:
         """The text of the outcome; of one that is open, `otherwise`."""
-        return {Verdict.CONFIRMED: confirmed, Verdict.WITHIN_BOUNDS: bounds,
-                Verdict.REFUTED: refuted}.get(self.outcome(number), otherwise)
-
-    def found(self, number: str) -> str:
-        """What decided, in a table's cell: the figures, or of more than two the least and the greatest."""
         claim = self.claim(number)
-        if claim is None:
-            return NOT_MEASURED
-        evidence = dict(claim.finding.evidence)
-        if len(evidence) > 2:
-            ordered = sorted(evidence, key=lambda name: evidence[name].value)
-            evidence = {name: evidence[name] for name in (ordered[0], ordered[-1])}
-        return "; ".join(f"{name}: {at.text()}" for name, at in evidence.items())
+        texts = {Verdict.CONFIRMED: confirmed, Verdict.WITHIN_BOUNDS: bounds, Verdict.REFUTED: refuted}
+        return texts.get(claim.finding.verdict, otherwise) if claim else otherwise
 
     def picture(self, name: str, caption: str = "") -> str:
         """A drawing with its number and caption."""

@@ -52,7 +52,6 @@ class Pages(unittest.TestCase):
         shutil.rmtree(self.templates / "sections")
         before, printing.TEMPLATES = printing.TEMPLATES, self.templates
         self.addCleanup(setattr, printing, "TEMPLATES", before)
-        shutil.copytree(Path(__file__).parents[3] / "docs" / "paper" / "diagrams", self.pages / "diagrams")
         for page in self.templates.glob("*.md"):
             if page.name != "statements.md":
                 page.unlink()
