@@ -130,7 +130,7 @@ def write_pages(content: Content, folder: Path) -> list[Path]:
 
 def environment(content: Content, words: Words | None) -> jinja2.Environment:
     made = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), undefined=jinja2.StrictUndefined,
-                              trim_blocks=True, lstrip_blocks=True)
+                              trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True)
     made.filters["listing"] = listing
     made.globals.update(content=content, rules=content.book, machine=machine_words(content), total=totals(content),
                         evidence_table=evidence_table, runs_table=lambda: runs_table(content),

@@ -6,6 +6,11 @@ function Link(element)
   return pandoc.Code((("docs/paper/" .. path):gsub("[^/]+/%.%./", ""):gsub("[^/]+/%.%./", "")))
 end
 
+-- The sources, without the boxes that HTML has around them.
+function Div(element)
+  if FORMAT == "gfm" then return element.content end
+end
+
 function Para(element)
   local image = element.content[1]
   if FORMAT ~= "gfm" or #element.content ~= 1 or image.t ~= "Image" then return nil end
