@@ -55,8 +55,9 @@ class OfAnExperiment(unittest.TestCase):
         self.book = RuleBook()
         self.experiment = all_experiments()["quadtree_capacity"]
 
-    def quadtree(self, runs=3, small=2.0, references=lambda neighbours: neighbours, tests=lambda capacity: capacity):
-        """Small leaves take `small` times as long as others."""
+    def quadtree(self, runs=3, small=2.0, references=lambda neighbours: neighbours, tests=lambda capacity: capacity,
+                 fewer=0.1):
+        """Small leaves take `small` times as long as others; the larger, the fewer references by this power."""
         def capacity_of(spec):
             return float(spec.rpartition("=")[2]) if "capacity" in spec else 1000.0
 
@@ -64,7 +65,8 @@ class OfAnExperiment(unittest.TestCase):
             return small if capacity_of(spec) <= 8 else 1.0
 
         def counts(case, spec):
-            return tests(capacity_of(spec)), references(float(case.scene.rpartition("=")[2]))
+            neighbours = float(case.scene.rpartition("=")[2])
+            return tests(capacity_of(spec)), references(neighbours) / capacity_of(spec)**fewer
 
         return results_of(self.experiment, time, counts, runs=runs)
 
@@ -88,6 +90,7 @@ class OfAnExperiment(unittest.TestCase):
     def test_on_the_quadtree_follow_its_counts_and_the_times_of_small_leaves(self):
         self.assertEqual(self.verdicts(), [Verdict.CONFIRMED] * 3)
         self.assertEqual(self.verdicts(small=1.0)[1], Verdict.REFUTED)
+        self.assertEqual(self.verdicts(fewer=-0.1)[1], Verdict.REFUTED, "larger leaves alleviate nothing")
         self.assertEqual(self.verdicts(tests=lambda capacity: 1 / capacity)[2], Verdict.REFUTED)
         self.assertEqual(self.verdicts(tests=lambda capacity: abs(capacity - 4) + 1)[2], Verdict.WITHIN_BOUNDS)
 

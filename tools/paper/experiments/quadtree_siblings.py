@@ -1,0 +1,126 @@
+"""Section VI-D: a box that moves in a quadtree is inserted from the root, or from near where it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from .. import figures
+from ..experiment import Case, Claim, Experiment
+from ..judge import Asked, Finding, judged, judged_all
+from ..results import Results, Run
+from ..rules import Rules
+from ..statistics import Estimate, crossing
+
+BOXES = 8_000
+CAPACITIES = (8, 2)
+NEIGHBOURS = (0.05, 0.5, 2, 8, 32, 128)  # others that a box overlaps: boxes are ever larger against leaves
+DRIFTS = (0.02, 2, 10)
+WAYS = {"root": "from the root", "relative": "from the node that holds it", "siblings": "by siblings",
+        "cousins": "by siblings and cousins"}
+ACROSS = ("siblings", "cousins")
+At = tuple[int, float]
+EVERYWHERE: list[At] = [(capacity, neighbours) for capacity in CAPACITIES for neighbours in NEIGHBOURS]
+
+
+def spec(update: str, capacity: int = CAPACITIES[0]) -> str:
+    return f"paper_quadtree:capacity={capacity}:update={update}"
+
+
+def case_of(at: At) -> str:
+    return f"leaves of {at[0]} at {at[1]:g} neighbours"
+
+
+def step_case(drift: float) -> str:
+    return f"steps of {drift:g} boxes"
+
+
+def cases() -> list[Case]:
+    motion = {"boxes": BOXES, "moving": 0.1, "frames": 6, "take": ["phases"], "effort": {"min_rounds": 4}}
+    ways = [Case(case_of(at), f"uniform:neighbours={at[1]}", [spec(way, at[0]) for way in WAYS], drift=0.2, **motion)
+            for at in EVERYWHERE]
+    return ways + [Case(step_case(drift), "uniform", [*map(spec, WAYS)], drift=drift, **motion) for drift in DRIFTS]
+
+
+def leaves(run: Run, at: At) -> float:
+    """That a box is in."""
+    return run.count(case_of(at), spec("root", at[0]), "references")
+
+
+def mending(run: Run, at: At, way: str, other: str) -> float:
+    """The time of mending one way over that of another."""
+    return run.ratio(case_of(at), spec(way, at[0]), spec(other, at[0]), ["mending"])
+
+
+def over(results: Results, at: At, way: str, other: str) -> Estimate:
+    return results.ratio(case_of(at), spec(way, at[0]), spec(other, at[0]), ["mending"])
+
+
+def horrible(results: Results, rules: Rules, at: At) -> dict[str, Asked]:
+    single = (at[0], NEIGHBOURS[0])
+    return {
+        f"by siblings and cousins over from the root, {case_of(at)}": Asked(
+            over(results, at, "cousins", "root"), above=rules.clearly, fails_at=rules.level),
+        f"times as much as in one leaf, {case_of(at)}": Asked(results.between(
+            lambda run: mending(run, at, "cousins", "root") / mending(run, single, "cousins", "root")), above=1),
+    }
+
+
+def judge(results: Results, rules: Rules) -> Sequence[Finding]:
+    spans = {at: results.between(lambda run: leaves(run, at), "leaves of a box") for at in EVERYWHERE}
+    in_one = [at for at in EVERYWHERE if spans[at].is_below(rules.one_leaf)]
+    spanning = [at for at in EVERYWHERE if spans[at].is_above(rules.spanning)]
+    others = {case_of(at): span for at, span in spans.items()}
+    for capacity in CAPACITIES:
+        line = [(capacity, neighbours) for neighbours in NEIGHBOURS]
+        others[f"as fast as from the root at, leaves of {capacity}"] = results.between(lambda run: crossing(
+            [leaves(run, at) for at in line], [mending(run, at, "relative", "root") for at in line]),
+            "leaves of a box")
+    for drift in DRIFTS:
+        for way in list(WAYS)[1:]:
+            others[f"from the root over {WAYS[way]}, {step_case(drift)}"] = results.ratio(
+                step_case(drift), spec("root"), spec(way), ["mending"])
+    elsewhere = {f"from the root over {WAYS[way]}, {case_of(at)}": over(results, at, "root", way)
+                 for at in EVERYWHERE if at not in in_one for way in ACROSS}
+    return [
+        judged("14a", {case_of(at): over(results, at, "root", "relative") for at in EVERYWHERE}, above=rules.level,
+               where="there are {}", beside=others),
+        judged("14b", {f"{case_of(at)}, {WAYS[way]}": over(results, at, "root", way) for at in in_one
+                       for way in ACROSS}, above=rules.level, where="there are {}", beside=elsewhere),
+        judged_all("14c", {case_of(at): horrible(results, rules, at) for at in spanning}, where="there are {}",
+                   beside={f"by siblings over from the root, {case_of(at)}": over(results, at, "siblings", "root")
+                           for at in spanning}),
+    ]
+
+
+def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
+    drawing, axes = figures.new(columns=2)
+    for place, capacity in zip(axes, CAPACITIES):
+        line = [(capacity, neighbours) for neighbours in NEIGHBOURS]
+        spans = [results.between(lambda run: leaves(run, at)).value for at in line]
+        for way in list(WAYS)[1:]:
+            figures.line(place, spans, [over(results, at, way, "root") for at in line], WAYS[way])
+        figures.label(place, "leaves of a box", "time over that from the root", f"Leaves of {capacity} boxes")
+    axes[0].legend()
+    yield figures.Figure("quadtree_siblings", "Mending the draft's quadtree without beginning at the root: its time, "
+                         "by the leaves that a box is in. Bars: intervals between runs.", drawing)
+
+
+EXPERIMENT = Experiment(
+    title="By siblings and cousins, or from the root",
+    measured=f"The time of mending the draft's quadtree, in leaves of {CAPACITIES[0]} and of {CAPACITIES[1]}, where a "
+             f"tenth of {BOXES:,} uniform boxes move: from the root, or from near where the boxes were.",
+    claims=[
+        Claim("14a",
+              f"With {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours a box, to insert from the root takes more than "
+              "{level} times as long as from the least node above the old leaf that holds the box.",
+              "Nowhere it does."),
+        Claim("14b",
+              "Wherever a box is in fewer than {one_leaf} leaves on average (statement 14c is about the others), to "
+              "insert from the root takes more than {level} times as long as by siblings, and as by siblings and "
+              "cousins.", "Nowhere it does."),
+        Claim("14c",
+              "Wherever a box is in more than {spanning} leaves on average, siblings and cousins take more than "
+              "{clearly} times as long as from the root, and more of it than where a box is mostly in one leaf.",
+              "Everywhere they take less than {level} times as long, or less of its time than there."),
+    ],
+    cases=cases, judge=judge, figures=draw)
