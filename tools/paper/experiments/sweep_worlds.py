@@ -132,9 +132,8 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
 def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     drawing, (axes,) = figures.new(height=2.8)
     worst = [worst_axis(results, *at) for at in SCENES]
-    axes.barh([axis_case(*at) for at in SCENES], [at.value for at in worst], color=figures.COLOURS[0])
-    axes.errorbar([at.value for at in worst], range(len(worst)), fmt="none", ecolor="black", capsize=2,
-                  xerr=numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in worst])).T)
+    bars = numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in worst])).T
+    axes.errorbar([at.value for at in worst], [axis_case(*at) for at in SCENES], xerr=bars, fmt="o", capsize=2)
     axes.invert_yaxis()
     figures.label(axes, "time along the worst axis over that along the best", "", log="x")
     yield figures.Figure("sweep_axis", f"What the choice of its axis costs our sweep, on {BOXES:,} boxes. Bars: "
