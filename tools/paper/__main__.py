@@ -18,7 +18,7 @@ PACKAGES = "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib and
 try:
     from . import draft, print as printing
     from .archive import Archive
-    from .comparison import Comparison, disagreements, load
+    from .comparison import disagreements, load
     from .comparison_cases import COMPARISON, MeasuringComparison
     from .experiment import Experiment, Unusable, experiments_named
     from .rules import RuleBook
@@ -76,6 +76,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     printed.add_argument("--to", type=Path, default=ROOT / "build/paper", metavar="FOLDER",
                          help="where pages, figures and PDF go (default: build/paper); into docs/paper goes only what "
                               "is whole, and README.md and docs/results.md are made to quote it")
+    printed.add_argument("--comparison", type=Path, metavar="FOLDER",
+                         help="the comparison's runs (default: the folder comparison in that of the runs)")
     published = verb(publish, "publish", "Make complete sets of runs the published ones")
     published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER",
                            help="those of the experiments (default: build/experiments)")
@@ -137,23 +139,8 @@ def judge(options: argparse.Namespace) -> int:
 
 
 def print_paper(options: argparse.Namespace) -> int:
-    """What cannot be used is said in a line and printed as not measured; docs/paper takes only what is whole."""
     is_whole = options.to.resolve() == PAGES
-    archive, book, statements = Archive(options.results), RuleBook(), draft.statements()
-    found, unmeasured = [], []
-    named = {experiment.name for experiment in experiments_named(options.names)}
-    for experiment in experiments_named([]):
-        if not is_whole and experiment.name not in named:
-            unmeasured.append(experiment)
-            continue
-        try:
-            found.append(printing.judged_experiment(experiment, archive, book, statements))
-        except Unusable as error:
-            if is_whole:
-                raise
-            print(f"tools.paper: {error}; its statements are printed as not measured", file=sys.stderr)
-            unmeasured.append(experiment)
-    content = printing.Content(found, unmeasured, statements, book, compared(options.results, is_whole))
+    content = gathered(options.results, options.comparison, [] if is_whole else options.names, is_whole)
     printing.write_pages(content, options.to)
     printing.print_paper(options.to, content, ROOT / "build" / "paper" / "print")
     if is_whole:
@@ -161,14 +148,33 @@ def print_paper(options: argparse.Namespace) -> int:
     return 0
 
 
-def compared(folder: Path, is_whole: bool) -> Comparison | None:
+def gathered(results: Path, compared: Path | None, names: Sequence[str], is_whole: bool) -> printing.Content:
+    """What there is to print. What cannot be used is said in a line and printed as not measured, or raised where all
+    has to be there."""
+    archive, book, statements = Archive(results), RuleBook(), draft.statements()
+    found, unmeasured, missing = [], [], []
+    named = experiments_named(names)
+    for experiment in experiments_named([]):
+        try:
+            if experiment in named and (is_whole or archive.run_numbers(experiment.name)):
+                found.append(printing.judged_experiment(experiment, archive, book, statements))
+                continue
+            missing.append(experiment.name)
+        except Unusable as error:
+            if is_whole:
+                raise
+            printing.say(f"tools.paper: {error}; its statements are printed as not measured")
+        unmeasured.append(experiment)
+    if missing:
+        printing.say(f"tools.paper: {results} has no runs of {', '.join(missing)}: printed as not measured")
     try:
-        return load(folder / COMPARISON.name)
+        comparison = load(compared or results / COMPARISON.name)
     except Unusable as error:
         if is_whole:
             raise
-        print(f"tools.paper: {error}; the comparison is printed as not measured", file=sys.stderr)
-        return None
+        printing.say(f"tools.paper: {error}; the comparison is printed as not measured")
+        comparison = None
+    return printing.Content(found, unmeasured, statements, book, comparison)
 
 
 def publish(options: argparse.Namespace) -> int:

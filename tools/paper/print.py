@@ -228,7 +228,7 @@ def totals(content: Content) -> dict[str, int | float]:
     }
 
 
-def print_paper(folder: Path, content: Content, work: Path) -> None:
+def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True) -> None:
     """The paper as a page and as PDF in its folder, and as HTML in `work`. Where a program is missing, a line says
     which, and what is printed without it."""
     if shutil.which("pandoc") is None:
@@ -244,6 +244,8 @@ def print_paper(folder: Path, content: Content, work: Path) -> None:
     pandoc(source, folder, *printed, "--to", "html", "--self-contained", "--default-image-extension", "svg", "--css",
            str(TEMPLATES / "page.css"), "--output", str((work / "paper.html").resolve()))
     say(f"{folder / PAPER} and {work / 'paper.html'} are written")
+    if not has_pdf:
+        return
     missing = [program for program in ("pdflatex", "rsvg-convert") if shutil.which(program) is None]
     if missing:
         say(f"{listing(missing)} missing (packages-paper.txt): pages and HTML are written, {folder}/paper.pdf is not")

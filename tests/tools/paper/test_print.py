@@ -1,5 +1,6 @@
 """Pages and the printed paper, of results that are made."""
 
+import hashlib
 import io
 import os
 import re
@@ -13,6 +14,7 @@ from made_results import results_of
 from matplotlib import pyplot
 from test_run import SMALL, STATEMENTS
 from tools.paper import print as printing
+from tools.paper.__main__ import PAGES, PUBLISHED, ROOT, gathered
 from tools.paper.comparison import Comparison
 from tools.paper.experiment import Unusable
 from tools.paper.figures import Figure, new
@@ -144,6 +146,7 @@ class Pages(unittest.TestCase):
     def test_are_quoted_by_others(self):
         (self.templates / "quotes").mkdir(exist_ok=True)
         (self.templates / "quotes" / "leads.md").write_text('{{ table("leads") }}')
+        (self.folder / "docs").mkdir()
         for name in printing.QUOTING:
             (self.folder / name).write_text("one\n<!-- quote: leads -->\nold\n<!-- end of quote -->\ntwo\n")
         printing.fill_quotes(content(), self.folder)
@@ -153,6 +156,31 @@ class Pages(unittest.TestCase):
         (self.templates / "quotes" / "leads.md").unlink()
         with self.assertRaisesRegex(Unusable, "leads"):
             printing.fill_quotes(content(), self.folder)
+
+
+@unittest.skipUnless(PUBLISHED.exists(), "tools/paper/results is missing; expected what `make paper` prints")
+class PublishedPages(unittest.TestCase):
+    """docs/paper has what the committed results print: as text where there is pandoc, and the PDF by the page's sum."""
+
+    def test_are_what_the_results_print(self):
+        content = gathered(PUBLISHED, None, [], is_whole=True)
+        with tempfile.TemporaryDirectory() as name, redirect_stderr(io.StringIO()):
+            folder = Path(name)
+            pages = printing.write_pages(content, folder)
+            printing.print_paper(folder, content, folder / "work", has_pdf=False)
+            for page in pages:
+                if page.name != printing.PAPER or HAS_PRINTERS:
+                    self.assertEqual(page.read_text(), (PAGES / page.name).read_text(), f"{page}: make paper")
+            self.assertEqual(sorted(path.name for path in (folder / "figures").glob("*.svg")),
+                             sorted(path.name for path in (PAGES / "figures").glob("*.svg")))
+            (folder / "docs").mkdir()
+            for quoting in printing.QUOTING:
+                shutil.copy(ROOT / quoting, folder / quoting)
+            printing.fill_quotes(content, folder)
+            for quoting in printing.QUOTING:
+                self.assertEqual((folder / quoting).read_text(), (ROOT / quoting).read_text(), "make paper")
+        text = hashlib.sha256((PAGES / printing.PAPER).read_bytes()).hexdigest()
+        self.assertIn(text.encode(), (PAGES / "paper.pdf").read_bytes(), "paper.pdf is of another text: make paper")
 
 
 if __name__ == "__main__":
