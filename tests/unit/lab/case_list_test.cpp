@@ -27,7 +27,9 @@ nlohmann::json listed(const nlohmann::json& changes = {}) {
 
 std::vector<ListedCase> read(const nlohmann::json& cases, const nlohmann::json& effort = {}) {
   static const Catalogue catalogue;
-  nlohmann::json list = {{"schema", "broadside.cases/1"}, {"cases", cases}};
+  // Braces around a single case copy it, so that it is no list.
+  const nlohmann::json all = cases.is_array() ? cases : nlohmann::json::array({cases});
+  nlohmann::json list = {{"schema", "broadside.cases/1"}, {"cases", all}};
   if (!effort.is_null()) list["effort"] = effort;
   return read_case_list(list.dump(), "list.json", catalogue, scene_finder({}));
 }
