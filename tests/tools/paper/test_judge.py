@@ -103,15 +103,20 @@ class OnTheGrid(unittest.TestCase):
         """`optimum` is a scene's best size, in lengths of a box; times grow with the distance from it."""
         experiment = all_experiments()["grid_cell_size"]
 
+        def size_of(case, spec):
+            return float(spec.partition("cell=")[2].partition(":")[0]) / LENGTHS[case.scene][case.dimension - 2]
+
         def time(case, spec):
             if "cell=" not in spec:
                 return by_rule
-            length = LENGTHS[case.scene][case.dimension - 2]
-            size = float(spec.partition("cell=")[2].partition(":")[0]) / length
+            size = size_of(case, spec)
             return max(size / optimum(case.scene), optimum(case.scene) / size)
 
+        def counts(case, spec):
+            return (size_of(case, spec), 1 / size_of(case, spec)) if "cell=" in spec else (1.0, 1.0)
+
         return [(finding.verdict, finding.condition)
-                for finding in judge(experiment, results_of(experiment, time), RuleBook())]
+                for finding in judge(experiment, results_of(experiment, time, counts), RuleBook())]
 
     def test_a_valley_everywhere_is_a_balance(self):
         balance, tuned = self.verdicts(lambda scene: 4.0, by_rule=1.0)

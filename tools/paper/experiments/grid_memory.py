@@ -1,0 +1,145 @@
+"""Section III: a matrix of cells fills the memory, and larger cells no longer keep collections small."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy
+
+from .. import figures
+from ..experiment import Boxes, Case, Claim, Experiment
+from ..judge import Finding, judged
+from ..results import Results, Run
+from ..rules import Rules
+from ..statistics import Estimate, growth
+
+BOXES = 2_000
+CLUSTERS = 16
+DEVIATION = 3.0  # of a cluster's boxes from its middle, in lengths of a box: a box overlaps about 4 others
+CELL = 2.0       # in lengths of a box
+
+# Lengths of a world, in those of a box; the largest has 1.6 GB of cells.
+WORLDS = tuple(2**power for power in range(9, 15))
+SMALLEST, LARGEST = WORLDS[0], WORLDS[-1]
+# Cells in the middle one of these worlds, down to as many as the largest world has.
+MIDDLE = 1024
+CELLS = tuple(CELL * MIDDLE / world for world in WORLDS if world >= MIDDLE)
+
+ACROSS = 256  # cells across a world whose cells are as large as its size asks for
+OTHERS = ("grid", "bvh")
+
+
+def clusters(world: int, dimension: int = 2) -> Boxes:
+    """As many boxes in every world, in clusters that lie ever further apart."""
+    def make(random: numpy.random.Generator) -> numpy.ndarray:
+        middles = random.uniform(4 * DEVIATION, world - 4 * DEVIATION, (CLUSTERS, dimension))
+        centres = middles[random.integers(CLUSTERS, size=BOXES)]
+        centres = numpy.clip(random.normal(centres, DEVIATION), 1, world - 1)
+        half = random.uniform(0.25, 0.75, (BOXES, dimension))
+        return numpy.hstack([centres - half, centres + half])
+    return Boxes(f"clusters-{dimension}d-{world}", make, inputs=2)
+
+
+def spec(world: int, cell: float) -> str:
+    return f"paper_grid:cell={cell:g}:limit=none:left=0:top=0:width={world}:height={world}"
+
+
+def memory_case(world: int, cell: float) -> str:
+    return f"cells of {cell:g} in a world of {world}"
+
+
+def large_case(world: int, dimension: int = 2) -> str:
+    return f"{ACROSS} cells across a world of {world} in {dimension}D"
+
+
+def cases() -> list[Case]:
+    held = {(world, CELL) for world in WORLDS} | {(MIDDLE, cell) for cell in CELLS}
+    memory = [Case(memory_case(*one), clusters(one[0]), [spec(*one), f"paper_grid:cell={one[1]:g}", "grid"],
+                   take=["memory"]) for one in sorted(held)]
+    large = [Case(large_case(world), clusters(world), [spec(world, world / ACROSS), *OTHERS],
+                  take=["time", "counts"]) for world in WORLDS]
+    space = [Case(large_case(world, 3), clusters(world, 3), ["grid"], dimension=3, take=["time", "counts"])
+             for world in (SMALLEST, LARGEST)]
+    return memory + large + space
+
+
+def held(run: Run, world: int, cell: float = CELL) -> float:
+    return run.memory(memory_case(world, cell), spec(world, cell))
+
+
+def bytes_of_a_cell(run: Run) -> float:
+    return held(run, LARGEST) / (LARGEST / CELL)**2
+
+
+def grown(results: Results, algorithm: str, what: str, dimension: int = 2) -> Estimate:
+    """Tests a box, or the time, in the largest world over that in the smallest."""
+    def of(run: Run, world: int) -> float:
+        case = large_case(world, dimension)
+        one = spec(world, world / ACROSS) if algorithm == "paper_grid" else algorithm
+        return run.time(case, one) if what == "time" else run.count(case, one, what)
+    return results.between(lambda run: of(run, LARGEST) / of(run, SMALLEST))
+
+
+def judge(results: Results, rules: Rules) -> Sequence[Finding]:
+    largest, smallest = WORLDS[-3:], CELLS[-3:]
+    growing = {
+        "with the world's length": results.between(
+            lambda run: growth(largest, [held(run, world) for world in largest])),
+        "with the cells in a length": results.between(
+            lambda run: growth([1 / cell for cell in smallest], [held(run, MIDDLE, cell) for cell in smallest])),
+    }
+    case = memory_case(LARGEST, CELL)
+    memory = {
+        "a cell": results.between(bytes_of_a_cell, "bytes"),
+        f"the largest world, {LARGEST / CELL:,.0f} cells wide": results.between(
+            lambda run: held(run, LARGEST) / 1e6, "MB"),
+        f"cells across a world whose cells take {rules.full_gb:g} GB": results.between(
+            lambda run: (1e9 * rules.full_gb / bytes_of_a_cell(run))**0.5),
+        "the boxes": results.between(lambda run: BOXES * 16 / 1e6, "MB"),
+        "the draft's grid where its cells are enlarged to fit": results.between(
+            lambda run: run.memory(case, f"paper_grid:cell={CELL:g}") / 1e6, "MB"),
+        "our grid": results.between(lambda run: run.memory(case, "grid") / 1e6, "MB"),
+    }
+    tested = {"tests a box": grown(results, "paper_grid", "tests"), "time": grown(results, "paper_grid", "time")}
+    others = {f"{what}, {figures.NAMES[one]}": grown(results, one, count)
+              for one in OTHERS for what, count in (("tests a box", "tests"), ("time", "time"))}
+    others["tests a box, our grid in 3D"] = grown(results, "grid", "tests", 3)
+    return [
+        judged("3a", growing, above=rules.square_low, fails_at=rules.bounded, where="memory grows {}", beside=memory),
+        judged("3b", tested, above=rules.clearly, fails_at=rules.level, where="it shows in {}", beside=others),
+    ]
+
+
+def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
+    drawing, (memory, tests) = figures.new(columns=2)
+    specs = {"the draft's grid": lambda world: spec(world, CELL), "our grid": lambda world: "grid"}
+    for name, one in specs.items():
+        figures.line(memory, [world / CELL for world in WORLDS], [results.between(
+            lambda run: run.memory(memory_case(world, CELL), one(world)) / 1e6) for world in WORLDS], name)
+    figures.label(memory, "length of the world, in cells", "megabytes")
+    memory.legend()
+    figures.line(tests, WORLDS, [results.count(large_case(world), spec(world, world / ACROSS), "tests")
+                                 for world in WORLDS], f"the draft's grid, {ACROSS} cells across")
+    figures.line(tests, WORLDS, [results.count(large_case(world), "grid", "tests") for world in WORLDS], "our grid")
+    figures.label(tests, "length of the world, in lengths of a box", "tests a box")
+    tests.legend()
+    yield figures.Figure("grid_memory", f"{BOXES:,} boxes in {CLUSTERS} clusters that lie ever further apart. Left: "
+                         "memory with cells of two lengths of a box. Right: tests where cells grow with the world.",
+                         drawing)
+
+
+EXPERIMENT = Experiment(
+    title="Cells fill the memory, or the cells are full",
+    measured=f"The draft's grid on {BOXES:,} boxes in {CLUSTERS} clusters: its memory in ever larger worlds and with "
+             f"ever smaller cells, up to {LARGEST / CELL:,.0f} cells across, and its tests and time where {ACROSS} "
+             "cells across the world are all there are; beside it our grid and our tree of bounds.",
+    claims=[
+        Claim("3a",
+              "Memory grows as the length of the world, and as the cells in a length of it, to a power above "
+              "{square_low} at the three largest, though there are no more boxes.",
+              "It grows to a power below {bounded} with both."),
+        Claim("3b",
+              "Where cells grow with the world, tests a box and time in the largest world are both more than "
+              "{clearly} times those in the smallest.", "Both are less than {level} times those."),
+    ],
+    cases=cases, judge=judge, figures=draw)
