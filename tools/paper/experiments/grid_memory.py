@@ -119,7 +119,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.label(memory, "length of the world, in cells", "megabytes")
     memory.legend()
     figures.line(tests, WORLDS, [results.count(large_case(world), spec(world, world / ACROSS), "tests")
-                                 for world in WORLDS], f"the draft's grid, {ACROSS} cells across")
+                                 for world in WORLDS], "the draft's grid")
     figures.line(tests, WORLDS, [results.count(large_case(world), "grid", "tests") for world in WORLDS], "our grid")
     figures.label(tests, "length of the world, in lengths of a box", "tests a box")
     tests.legend()

@@ -55,7 +55,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     widths = [size[0] for size in SQUARES]
     figures.line(axes, widths, [over_product(results, size) for size in SQUARES], "counted")
     axes.plot(widths, [(1 + 1 / width)**2 for width in widths], ":", label="(1 + 1 / width) (1 + 1 / height)")
-    figures.label(axes, "width and height of a box, in cells", "references over width times height")
+    figures.label(axes, "width and height of a box, in cells", "references over its area")
     axes.legend()
     yield figures.Figure("grid_spanning", "References of a box at a random place in the draft's grid, over its width "
                          "times its height in cells.", drawing)
