@@ -1,6 +1,7 @@
 // broadside measure: a list of cases, each with its own algorithms, as JSON with every sample.
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@
 #include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/json.hpp"
+#include "paper/plain/plain.hpp"
 
 namespace broadside::cli {
 namespace {
@@ -38,9 +40,11 @@ Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
     check_extension("--json", arguments.json, {".json"});
     check_is_other_file("--json", arguments.json, arguments.list);
   }
+  lab::Catalogue all = catalogue;
+  for (Algorithm& algorithm : plain::algorithms()) all.add_outside_groups(std::move(algorithm));
   lab::Input input(arguments.list);
   const std::vector<lab::ListedCase> cases =
-      lab::read_case_list(input.bytes(), input.name(), catalogue, lab::scene_finder({}));
+      lab::read_case_list(input.bytes(), input.name(), all, lab::scene_finder({}));
   if (arguments.only_checks) {
     print(lab::counted(cases.size(), "case", "cases") + "\n");
     return Exit::fine;
@@ -55,11 +59,11 @@ Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
     progress.show(what, static_cast<double>(finished) / static_cast<double>(cases.size()));
   };
   const lab::Stopwatch watch;
-  const lab::Comparison comparison = lab::measure_cases(
-      catalogue, cases, {.stop = interrupted, .progress = show}, [&](const lab::CaseResult& result) {
-        ++finished;
-        steadiness.add(lab::steadiness_of(result));
-      });
+  const lab::Comparison comparison = lab::measure_cases(all, cases, {.stop = interrupted, .progress = show},
+                                                        [&](const lab::CaseResult& result) {
+                                                          ++finished;
+                                                          steadiness.add(lab::steadiness_of(result));
+                                                        });
   progress.clear();
   if (comparison.stopped) {
     say(fmt::format("stopped; nothing is written to {}", arguments.json));

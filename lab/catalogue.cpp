@@ -75,6 +75,11 @@ void Catalogue::add(Algorithm algorithm) {
   algorithms_.push_back(std::move(algorithm));
 }
 
+void Catalogue::add_outside_groups(Algorithm algorithm) {
+  outside_groups_.push_back(algorithm.name);
+  add(std::move(algorithm));
+}
+
 std::vector<Entry> Catalogue::select(std::string_view list) const {
   std::vector<Entry> selected;
   const auto select_once = [&selected](const Algorithm& algorithm, Spec spec) {
@@ -88,7 +93,7 @@ std::vector<Entry> Catalogue::select(std::string_view list) const {
     if (is_group(part)) {
       bool any = false;
       for (const Algorithm& algorithm : algorithms_) {
-        if (!in_group(algorithm, part)) continue;
+        if (!in_group(algorithm, part) || std::ranges::count(outside_groups_, algorithm.name) > 0) continue;
         select_once(algorithm, Spec{algorithm.name, {}});
         any = true;
       }

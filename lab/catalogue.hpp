@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,9 @@ class Catalogue {
   /// Adds an algorithm to this list alone. Throws InvalidSpec if its name is taken.
   void add(Algorithm algorithm);
 
+  /// Likewise, but in no group: it is found by its name alone.
+  void add_outside_groups(Algorithm algorithm);
+
   std::span<const Algorithm> algorithms() const noexcept { return algorithms_; }
 
   /// The entries that a list such as "grid:cell=2,paper" names: names, specs, or the groups own, paper,
@@ -44,6 +48,7 @@ class Catalogue {
 
  private:
   std::vector<Algorithm> algorithms_;
+  std::vector<std::string> outside_groups_;
 };
 
 }  // namespace broadside::lab

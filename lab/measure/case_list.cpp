@@ -7,8 +7,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "broadside/error.hpp"
+#include "broadside/executor.hpp"
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/json/json_place.hpp"
@@ -189,10 +191,27 @@ void read_algorithms(const JsonPlace& place, const Catalogue& catalogue, ListedC
         "a listing of the paper that has phases here, such as paper_grid, since they are to be taken");
 }
 
+std::string read_instruction_set(const JsonPlace& place) {
+  const std::string name = place.text();
+  const std::vector<std::string> known = instruction_sets();
+  if (std::ranges::find(known, name) == known.end())
+    place.refuse(fmt::format("one of this machine's instruction sets: {}", fmt::join(known, ", ")));
+  return name;
+}
+
+/// Holds the library to an instruction set, or to none, while it lives.
+class HeldToInstructionSet {
+ public:
+  explicit HeldToInstructionSet(const std::string& name) { limit_instruction_set(name); }
+  ~HeldToInstructionSet() { limit_instruction_set(""); }
+  HeldToInstructionSet(const HeldToInstructionSet&) = delete;
+  HeldToInstructionSet& operator=(const HeldToInstructionSet&) = delete;
+};
+
 ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const Catalogue& catalogue,
                             const FindScene& find) {
   place.check_fields({"name", "scene", "dimension", "boxes", "seed", "seeds", "moving", "frames", "drift",
-                      "teleport", "specs", "take", "made_anew", "effort"});
+                      "teleport", "specs", "take", "made_anew", "instruction_set", "effort"});
   ListedCase listed;
   listed.name = place.at("name").text();
   if (listed.name.empty()) place.at("name").refuse("a name");
@@ -200,6 +219,8 @@ ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const 
   if (place.has("effort")) read_effort(place.at("effort"), listed.effort);
   if (place.has("take")) read_taking(place.at("take"), listed);
   if (place.has("made_anew")) listed.taking.made_anew = place.at("made_anew").truth();
+  if (place.has("instruction_set"))
+    listed.instruction_set = read_instruction_set(place.at("instruction_set"));
   const std::size_t dimension = place.has("dimension") ? count_from(place.at("dimension"), 2, 3) : 2;
   listed.request.dimension = static_cast<int>(dimension);
   if (place.has("seed")) listed.seed = place.at("seed").count();
@@ -253,6 +274,7 @@ Comparison measure_cases(const Catalogue& catalogue, const std::vector<ListedCas
                        if (watch.progress) watch.progress(fmt::format("{}: {}", listed.name, what));
                      }};
     Comparison one;
+    const HeldToInstructionSet held(listed.instruction_set);
     try {
       one = compare(catalogue, options);
     } catch (const std::exception& error) {

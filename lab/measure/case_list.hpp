@@ -26,6 +26,7 @@ struct ListedCase {
   std::size_t seeds = 0;  ///< in rotation; 0: by the number of boxes, as in a comparison
   Taking taking{};
   Effort effort{};
+  std::string instruction_set{};  ///< one of instruction_sets(); empty: the best
 };
 
 /// Reads the list in `text`. Throws FileError if it is no such list: its text names the case, the field, what

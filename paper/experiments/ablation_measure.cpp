@@ -12,7 +12,7 @@
 
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/numbers.hpp"
-#include "paper/experiments/plain.hpp"
+#include "paper/plain/plain.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -181,7 +181,7 @@ Table table_of_shares() {
 
 std::vector<Table> measure_ablation(const Laboratory& laboratory) {
   Catalogue catalogue;
-  for (Algorithm algorithm : {plain_grid(), plain_bvh(), held_back()}) catalogue.add(std::move(algorithm));
+  for (Algorithm& algorithm : plain::algorithms()) catalogue.add(std::move(algorithm));
   const bool has_peer = find_algorithm(ablation_peer, catalogue.algorithms()) != nullptr;
   const std::string peer = has_peer ? ablation_peer : "";
   Table shares = table_of_shares();

@@ -4,10 +4,13 @@
 #include <csignal>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "broadside/executor.hpp"
 
 #include "process.hpp"
 #include "refusal.hpp"
@@ -64,6 +67,24 @@ TEST(MeasureVerb, WritesEverySampleWithTheMachineTheBuildAndTheLoad) {
   const Json& frames = json["measurements"][4];
   EXPECT_EQ(frames["phases"]["mending_ms"].size(), frames["samples_ms"].size());
   EXPECT_EQ(frames["phases"]["movers"][0], 30);
+}
+
+TEST(MeasureVerb, KnowsThePlainSearchesByNameBesideTheLibrarys) {
+  const TemporaryFolder folder;
+  Json plain = a_case("plain");
+  const std::string held = "held_back:search=bvh:simd=" + instruction_sets().back();
+  plain["specs"] = {"own", "plain_grid:carry=no", "plain_bvh", held};
+  const Ended ended =
+      run({"measure", folder.put("list.json", list_of({plain}).dump()), "--json", folder.file("out.json")});
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  std::vector<std::string> specs;
+  for (const Json& measurement : Json::parse(text_of(folder.file("out.json")))["measurements"]) {
+    specs.push_back(measurement["algorithm"]);
+    EXPECT_EQ(measurement["verified"], true) << specs.back();
+  }
+  EXPECT_THAT(specs, testing::Contains("plain_grid:carry=no"));
+  EXPECT_THAT(specs, testing::Contains(held));
+  EXPECT_THAT(specs, Not(testing::Contains("plain_grid"))) << "a group has none of them";
 }
 
 TEST(MeasureVerb, RefusesABadListBeforeAnythingRuns) {

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "broadside/executor.hpp"
+
 #include "lab/formats/format.hpp"
 #include "tests/support/message.hpp"
 
@@ -103,6 +105,7 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
       {{{"take", {"phases"}}, {"specs", {"paper_brute_force"}}, {"frames", 2}, {"moving", 1}},
        {"specs is [", "phases"}},
       {{{"made_anew", true}, {"frames", 2}, {"moving", 1}}, {"made_anew is true", "keeps its structure"}},
+      {{{"instruction_set", "AVX9"}}, {"instruction_set is \"AVX9\"", instruction_set()}},
       {{{"effort", {{"min_rounds", 50}, {"max_rounds", 5}}}}, {"effort is", "max_rounds"}},
       {{{"effort", {{"seconds", 5}}}}, {"effort has a field 'seconds'", "share_seconds"}},
   };
@@ -136,6 +139,15 @@ TEST(CaseList, MeasuresTheAlgorithmsOfACaseInTheSameRoundsOnItsSeeds) {
     EXPECT_EQ(measurement.statistics_by_seed[0]->tests, measurement.statistics->tests);
     EXPECT_NE(measurement.statistics_by_seed[1]->tests, measurement.statistics->tests);
   }
+}
+
+TEST(CaseList, HoldsACaseToItsInstructionSet) {
+  for (const std::string& set : instruction_sets()) {
+    const Measurement measurement =
+        measured({{"specs", {"grid"}}, {"instruction_set", set}}).measurements.at(0);
+    EXPECT_EQ(measurement.target, set);
+  }
+  EXPECT_EQ(instruction_set(), instruction_sets().front());
 }
 
 TEST(CaseList, RunsOnceOnEachSeedWhereOnlyCountsAreTaken) {

@@ -1,5 +1,6 @@
 // The library's two fastest searches written plainly, so that each thing that makes them fast can be left out
-// alone. For the experiment `ablation`: finite boxes only, and no care for the worst case.
+// alone. For the paper's ablation: finite boxes only, and no care for the worst case. Compiled without the
+// compiler's own SIMD. None of them is one of the library's, and results name no instruction set for them.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +8,16 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-namespace broadside::lab {
+namespace broadside::plain {
+
+/// All that follow, in this order.
+std::vector<Algorithm> algorithms();
 
 /// The algorithm of `grid`: cells on all axes but one, and a sweep along that one in each. Its tunables leave
 /// things out; SIMD it has none.
@@ -21,7 +26,8 @@ Algorithm plain_grid();
 /// The algorithm of `bvh`: boxes packed sixteen to a leaf, and the tree joined with itself. Likewise.
 Algorithm plain_bvh();
 
-/// The library's algorithm `search`, held to the instruction set `simd`.
+/// The library's algorithm `search`, held to the instruction set `simd`: in the same rounds as others that
+/// are not.
 Algorithm held_back();
 
 /// A tunable whose values are "yes", which is the standard, and "no".
@@ -75,4 +81,4 @@ bool overlap_at(bool branch_free, const Bounds& bounds, std::size_t i, const Oth
 
 inline Pair ordered_pair(BoxId a, BoxId b) { return {std::min(a, b), std::max(a, b)}; }
 
-}  // namespace broadside::lab
+}  // namespace broadside::plain

@@ -1,5 +1,5 @@
 // What the plain searches share, and the library's searches held to an instruction set.
-#include "paper/experiments/plain.hpp"
+#include "paper/plain/plain.hpp"
 
 #include <limits>
 #include <memory>
@@ -9,7 +9,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/searcher.hpp"
 
-namespace broadside::lab {
+namespace broadside::plain {
 namespace {
 
 /// A search of the library by its name.
@@ -39,15 +39,18 @@ class HeldBack final : public Searcher<D> {
 
 }  // namespace
 
+std::vector<Algorithm> algorithms() { return {plain_grid(), plain_bvh(), held_back()}; }
+
 Algorithm held_back() {
   return {.name = "held_back",
           .summary = "a search of the library, held to an instruction set",
-          .source = "for the experiment `ablation`",
+          .source = "for the paper's ablation",
+          .kind = AlgorithmKind::literature,
           .tunables = {{.name = "search",
                         .summary = "which",
                         .default_value = "grid",
                         .type = Tunable::Type::choice,
-                        .choices = {"grid", "bvh"}},
+                        .choices = {"grid", "bvh", "brute_force"}},
                        {.name = "simd",
                         .summary = "the instruction set",
                         .default_value = instruction_set(),
@@ -106,4 +109,4 @@ template struct Shape<3>;
 template Shape<2> shape_of(std::span<const Box2>, bool);
 template Shape<3> shape_of(std::span<const Box3>, bool);
 
-}  // namespace broadside::lab
+}  // namespace broadside::plain

@@ -12,9 +12,9 @@
 
 #include "broadside/finder.hpp"
 
-#include "paper/experiments/plain.hpp"
+#include "paper/plain/plain.hpp"
 
-namespace broadside::lab {
+namespace broadside::plain {
 namespace {
 
 /// Cells of one width along an axis. What lies beyond the first or the last one counts as in it.
@@ -294,7 +294,8 @@ Algorithm plain_grid() {
   return {
       .name = "plain_grid",
       .summary = "the algorithm of grid, written plainly",
-      .source = "for the experiment `ablation`",
+      .source = "for the paper's ablation",
+      .kind = AlgorithmKind::literature,
       .tunables = {switch_tunable("sample", "whether the swept axis and the cells are chosen by a sample"),
                    switch_tunable("carry", "whether a box is put into one cell and carried on to others"),
                    switch_tunable("buckets", "whether a cell's boxes are ordered by a counting sort"),
@@ -305,4 +306,4 @@ Algorithm plain_grid() {
       .limits = {.infinite_boxes = false}};
 }
 
-}  // namespace broadside::lab
+}  // namespace broadside::plain

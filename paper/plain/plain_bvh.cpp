@@ -12,9 +12,9 @@
 
 #include "broadside/finder.hpp"
 
-#include "paper/experiments/plain.hpp"
+#include "paper/plain/plain.hpp"
 
-namespace broadside::lab {
+namespace broadside::plain {
 namespace {
 
 constexpr std::size_t fan_out = 16;
@@ -250,7 +250,8 @@ Algorithm plain_bvh() {
   return {
       .name = "plain_bvh",
       .summary = "the algorithm of bvh, written plainly",
-      .source = "for the experiment `ablation`",
+      .source = "for the paper's ablation",
+      .kind = AlgorithmKind::literature,
       .tunables = {switch_tunable("buckets", "whether boxes are packed by counting sorts"),
                    switch_tunable("join", "whether the tree is joined with itself, or asked for each box"),
                    switch_tunable("arrays", "whether a level of the tree is an array for each bound"),
@@ -260,4 +261,4 @@ Algorithm plain_bvh() {
       .limits = {.infinite_boxes = false}};
 }
 
-}  // namespace broadside::lab
+}  // namespace broadside::plain
