@@ -39,7 +39,7 @@ std::vector<ListedCase> read(const nlohmann::json& cases, const nlohmann::json& 
 CaseResult measured(const nlohmann::json& changes) {
   static const Catalogue catalogue;
   const nlohmann::json effort = {{"share_seconds", 0}, {"min_rounds", 2}, {"max_rounds", 2}};
-  Comparison all = measure_cases(catalogue, read({listed(changes)}, effort), {});
+  Comparison all = measure_cases(catalogue, read(nlohmann::json::array({listed(changes)}), effort), {});
   EXPECT_TRUE(all.all_verified());
   return std::move(all.cases.at(0));
 }
@@ -80,32 +80,32 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
     std::vector<std::string> message;
   };
   const std::vector<Bad> all = {
-      {{{"boxes", 0}}, {"cases 2 'bad': boxes is 0", "at least 1"}},
-      {{{"boxes", -5}}, {"boxes is -5", "whole number"}},
-      {{{"boxes", "many"}}, {"boxes is \"many\"", "whole number"}},
+      {{{"boxes", 0}}, {"cases 2 'bad': boxes is '0'", "from 1"}},
+      {{{"boxes", -5}}, {"boxes is '-5'", "whole number"}},
+      {{{"boxes", "many"}}, {"boxes is '\"many\"'", "whole number"}},
       {{{"boxes", nullptr}}, {"has no 'boxes'"}},
       {{{"boxs", 10}}, {"has a field 'boxs'", "boxes"}},
-      {{{"name", ""}}, {"name is \"\"", "a name"}},
-      {{{"name", "small"}}, {"name is \"small\"", "no other case has"}},
+      {{{"name", ""}}, {"name is '\"\"'", "a name"}},
+      {{{"name", "small"}}, {"name is '\"small\"'", "no other case has"}},
       {{{"scene", "unifrom"}}, {"cases 2 'bad': scene: unknown scene 'unifrom'", "uniform"}},
       {{{"scene", "no/such.csv"}}, {"scene:", "no/such.csv"}},
-      {{{"scene", {"uniform"}}}, {"scene 1 is \"uniform\"", "a file of boxes at rest"}},
-      {{{"dimension", 4}}, {"dimension is 4", "from 2 to 3"}},
-      {{{"dimension", 3}}, {"specs 1 is \"paper_grid\"", "for 3D", "does not do 3D"}},
-      {{{"specs", nlohmann::json::array()}}, {"specs is []", "at least one"}},
+      {{{"scene", {"uniform"}}}, {"scene 1 is '\"uniform\"'", "a file of boxes at rest"}},
+      {{{"dimension", 4}}, {"dimension is '4'", "from 2 to 3"}},
+      {{{"dimension", 3}}, {"specs 1 is '\"paper_grid\"'", "for 3D", "does not do 3D"}},
+      {{{"specs", nlohmann::json::array()}}, {"specs is '[]'", "at least one"}},
       {{{"specs", {"grid:cell=-1"}}}, {"cases 2 'bad': specs 1: ", "cell", "-1"}},
       {{{"specs", {"gird"}}}, {"specs 1: ", "'gird'", "grid"}},
-      {{{"moving", 0.5}}, {"moving is 0.5", "frames as well"}},
-      {{{"moving", 2}, {"frames", 3}}, {"moving is 2", "from 0 to 1"}},
-      {{{"frames", 3}}, {"frames is 3", "moving"}},
-      {{{"scene", "churn"}, {"frames", 3}, {"moving", 0.5}}, {"moving is 0.5", "'churn' moves by itself"}},
-      {{{"scene", "integers"}, {"seeds", 0}}, {"seeds is 0", "from 1"}},
-      {{{"take", {"colour"}}}, {"take 1 is \"colour\"", "time, counts, memory or phases"}},
-      {{{"take", {"phases"}}, {"specs", {"grid"}}}, {"specs is [\"grid\"]", "a listing of the paper"}},
+      {{{"moving", 0.5}}, {"moving is '0.5'", "frames as well"}},
+      {{{"moving", 2}, {"frames", 3}}, {"moving is '2'", "from 0 to 1"}},
+      {{{"frames", 3}}, {"frames is '3'", "moving"}},
+      {{{"scene", "churn"}, {"frames", 3}, {"moving", 0.5}}, {"moving is '0.5'", "'churn' moves by itself"}},
+      {{{"scene", "integers"}, {"seeds", 0}}, {"seeds is '0'", "from 1"}},
+      {{{"take", {"colour"}}}, {"take 1 is '\"colour\"'", "time, counts, memory or phases"}},
+      {{{"take", {"phases"}}, {"specs", {"grid"}}}, {"specs is '[\"grid\"]'", "a listing of the paper"}},
       {{{"take", {"phases"}}, {"specs", {"paper_brute_force"}}, {"frames", 2}, {"moving", 1}},
-       {"specs is [", "phases"}},
-      {{{"made_anew", true}, {"frames", 2}, {"moving", 1}}, {"made_anew is true", "keeps its structure"}},
-      {{{"instruction_set", "AVX9"}}, {"instruction_set is \"AVX9\"", instruction_set()}},
+       {"specs is '[", "phases"}},
+      {{{"made_anew", true}, {"frames", 2}, {"moving", 1}}, {"made_anew is 'true'", "keeps its structure"}},
+      {{{"instruction_set", "AVX9"}}, {"instruction_set is '\"AVX9\"'", instruction_set()}},
       {{{"effort", {{"min_rounds", 50}, {"max_rounds", 5}}}}, {"effort is", "max_rounds"}},
       {{{"effort", {{"seconds", 5}}}}, {"effort has a field 'seconds'", "share_seconds"}},
   };
@@ -120,7 +120,7 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
   const Catalogue catalogue;
   for (const auto& [text, part] :
        {std::pair("{\"schema\": \"broadside.cases/9\", \"cases\": []}", "broadside.cases/1"),
-        std::pair("[]", "an object"), std::pair("{", "no JSON")}) {
+        std::pair("[]", "an object"), std::pair("{", "expected JSON")}) {
     EXPECT_THAT(
         message_of<FileError>([&] { read_case_list(text, "list.json", catalogue, scene_finder({})); }),
         AllOf(HasSubstr("list.json"), HasSubstr(part)));
@@ -199,7 +199,7 @@ TEST(CaseList, TakesSeveralFilesAsInputsInRotation) {
   nlohmann::json one = listed({{"scene", files}, {"specs", {"paper_brute_force"}}});
   one.erase("boxes");
   const Catalogue catalogue;
-  const Comparison all = measure_cases(catalogue, read({one}), {});
+  const Comparison all = measure_cases(catalogue, read(nlohmann::json::array({one})), {});
   const Measurement& measurement = all.cases.at(0).measurements.at(0);
   EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
   ASSERT_EQ(measurement.statistics_by_seed.size(), 2u);
