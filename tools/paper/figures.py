@@ -71,13 +71,20 @@ def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
             axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-def line(axes: Axes, x: Sequence[float], estimates: Sequence[Estimate], name: str = "") -> None:
-    """A line through figures, with their intervals as bars."""
-    y = numpy.array([at.value for at in estimates])
-    bars = numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in estimates])).T
+def line(axes: Axes, x: Sequence, y: Sequence, name: str = "") -> None:
+    """A line through figures, with their intervals as bars; numbers along one axis, estimates along the other."""
     number = len(axes.containers)
-    axes.errorbar(x, y, yerr=bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
+    (x, x_bars), (y, y_bars) = _values_and_bars(x), _values_and_bars(y)
+    axes.errorbar(x, y, y_bars, x_bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
                   elinewidth=0.8)
+
+
+def _values_and_bars(numbers: Sequence) -> tuple[Sequence[float], numpy.ndarray | None]:
+    numbers = list(numbers)
+    if not isinstance(numbers[0], Estimate):
+        return numbers, None
+    bars = numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in numbers])
+    return [at.value for at in numbers], numpy.abs(bars).T
 
 
 def check(figure: Figure) -> None:

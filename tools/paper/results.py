@@ -22,17 +22,18 @@ class Run:
     """
 
     def __init__(self, measurements: Sequence[dict]):
-        table = pandas.DataFrame(measurements)
-        self._table = table.set_index(["case", "algorithm"], drop=False)
+        self._measurements = {(one["case"], one["algorithm"]): one for one in measurements}
+        self._first_of_case = {one["case"]: one for one in reversed(measurements)}
 
     @property
     def table(self) -> pandas.DataFrame:
-        return self._table
+        """All measurements, by case and algorithm; looking up one at a time is slower in it."""
+        return pandas.DataFrame(self._measurements.values()).set_index(["case", "algorithm"], drop=False)
 
-    def measurement(self, case: str, spec: str) -> pandas.Series:
-        if (case, spec) not in self._table.index:
+    def measurement(self, case: str, spec: str) -> dict:
+        if (case, spec) not in self._measurements:
             raise KeyError(f"'{spec}' was not measured in case '{case}'")
-        return self._table.loc[(case, spec)]
+        return self._measurements[case, spec]
 
     def samples(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> numpy.ndarray:
         """Milliseconds: a row a round, a column a frame (one where boxes rest). No row: it was too slow."""
@@ -76,10 +77,10 @@ class Run:
         return float(self.measurement(case, spec)[f"{what}_bytes"])
 
     def boxes(self, case: str) -> int:
-        return int(self._table.xs(case, level="case", drop_level=False).iloc[0]["boxes"])
+        return self._first_of_case[case]["boxes"]
 
     def seeds(self, case: str) -> int:
-        return len(self._table.xs(case, level="case", drop_level=False).iloc[0]["seeds"])
+        return len(self._first_of_case[case]["seeds"])
 
 
 class Results:

@@ -24,7 +24,7 @@ class Experiments(unittest.TestCase):
         self.assertEqual(len(numbers), len(set(numbers)))
         for number in numbers:
             self.assertIn(number, statements)
-            self.assertIn(statements[number].kind, ("claim", "definition"))
+            self.assertIn(statements[number].kind, ("claim", "definition", "our claim"))
 
     def test_say_what_would_decide_in_values_that_the_rules_have(self):
         book = RuleBook()
@@ -70,11 +70,13 @@ class TheDraft(unittest.TestCase):
             page = Path(folder) / "draft.md"
             page.write_text("# What\n\n| statement | a | kind | errata |\n|---|---|---|---|\n\n## V. Trees\n\n"
                             "| statement | what | kind | errata |\n|---|---|---|---|\n| 8a | Many. | claim | |\n"
-                            "## VI. More\n### A. All\n\n| VI-A.1 | So. | opinion | T6 error |\n")
+                            "## VI. More\n### A. All\n\n| VI-A.1 | So. | opinion | T6 error |\n"
+                            "## Ours\n\n| B1a | None. | our claim | |\n")
             found = draft.statements(page)
-        self.assertEqual(list(found), ["8a", "VI-A.1"])
+        self.assertEqual(list(found), ["8a", "VI-A.1", "B1a"])
         self.assertEqual((found["8a"].says, found["8a"].section), ("Many.", "V. Trees"))
         self.assertEqual(found["VI-A.1"].section, "VI. More, A. All")
+        self.assertEqual(found["B1a"].section, "Ours")
 
 
 if __name__ == "__main__":
