@@ -13,9 +13,9 @@ from ..results import Results, Run
 from ..rules import Rules
 from ..statistics import Estimate
 
-BOXES = 2_000
+BOXES = 8_000
 CLUSTERS = 16
-DEVIATION = 3.0  # of a cluster's boxes from its middle, in lengths of a box: a box overlaps about 4 others
+DEVIATION = 6.0  # of a cluster's boxes from its middle, in lengths of a box: a box overlaps about 4 others
 CELL = 2.0       # in lengths of a box
 
 # Lengths of a world, in those of a box; the largest has 1.6 GB of cells.
