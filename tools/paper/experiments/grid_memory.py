@@ -122,7 +122,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.line(tests, WORLDS, [results.count(large_case(world), spec(world, world / ACROSS), "tests")
                                  for world in WORLDS], "the draft's grid")
     figures.line(tests, WORLDS, [results.count(large_case(world), "grid", "tests") for world in WORLDS], "our grid")
-    figures.label(tests, "length of the world, in lengths of a box", "tests a box")
+    figures.label(tests, "length of the world, in those of a box", "tests a box")
     tests.legend()
     yield figures.Figure("grid_memory", f"{BOXES:,} boxes in {CLUSTERS} clusters that lie ever further apart. Left: "
                          "memory with cells of two lengths of a box. Right: tests where cells grow with the world.",

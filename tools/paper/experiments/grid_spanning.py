@@ -13,7 +13,7 @@ from ..results import Results
 from ..rules import Rules
 from ..statistics import Estimate
 
-BOXES = 500
+BOXES = 200
 WORLD = 1024
 SPEC = "paper_grid:cell=1:limit=none"
 SQUARES = tuple((2**power, 2**power) for power in range(8))
@@ -54,7 +54,8 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     drawing, (axes,) = figures.new(height=2.2)
     widths = [size[0] for size in SQUARES]
     figures.line(axes, widths, [over_product(results, size) for size in SQUARES], "counted")
-    axes.plot(widths, [(1 + 1 / width)**2 for width in widths], ":", label="(1 + 1 / width) (1 + 1 / height)")
+    axes.plot(widths, [(1 + 1 / width)**2 for width in widths], "k:", zorder=5,
+              label="(1 + 1 / width) (1 + 1 / height)")
     figures.label(axes, "width and height of a box, in cells", "references over its area")
     axes.legend()
     yield figures.Figure("grid_spanning", "References of a box at a random place in the draft's grid, over its width "
