@@ -29,7 +29,8 @@ SPECS = [spec(across) for across in ACROSS]
 
 
 def case_of(boxes: int, neighbours: float, is_kept: bool = False) -> str:
-    return f"{boxes} boxes of {neighbours:g} neighbours" + (", cells kept" if is_kept else "")
+    return f"{boxes:,} boxes of {neighbours:g} neighbour{'s' if neighbours != 1 else ''}" + (
+        ", cells kept" if is_kept else "")
 
 
 def many(threshold: float) -> list[float]:
@@ -86,11 +87,11 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         case = case_of(COUNTS[-1], neighbours)
         timed = [across for across in ACROSS if results.timed(case, [spec(across)])]
         best = results.fastest(case, SPECS)
-        figures.line(shares, timed, [adding(results, case, [across]) for across in timed], f"{neighbours:g}")
-        figures.line(times, timed, [results.ratio(case, spec(across), best) for across in timed])
+        figures.line(shares, timed, [adding(results, case, [across]) for across in timed])
+        figures.line(times, timed, [results.ratio(case, spec(across), best) for across in timed], f"{neighbours:g}")
     figures.label(shares, "cells across a box", "share of the time for adding", log="x")
     figures.label(times, "cells across a box", "time over the best")
-    shares.legend(title="neighbours of a box", ncols=2)
+    times.legend(title="neighbours of a box", ncols=2)
     yield figures.Figure("grid_adding", f"The draft's grid, built anew for each call, on {COUNTS[-1]:,} boxes, by the "
                          "cells across a box. Bars: intervals between runs.", drawing)
 
