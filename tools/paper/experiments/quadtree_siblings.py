@@ -14,6 +14,8 @@ from ..statistics import Estimate, crossing
 BOXES = 8_000
 CAPACITIES = (8, 2)
 NEIGHBOURS = (0.05, 0.5, 2, 8, 32, 128)  # others that a box overlaps: boxes are ever larger against leaves
+STEP = 0.2                 # of a mover, in its sizes; where boxes are in the fewest leaves, far enough to take
+STEPS = {0.05: 5, 0.5: 2}  # many of them out of these
 DRIFTS = (0.02, 2, 10)
 WAYS = {"root": "from the root", "relative": "from the node that holds it", "siblings": "by siblings",
         "cousins": "by siblings and cousins"}
@@ -36,8 +38,8 @@ def step_case(drift: float) -> str:
 
 def cases() -> list[Case]:
     motion = {"boxes": BOXES, "moving": 0.1, "frames": 6, "take": ["phases"], "effort": {"min_rounds": 4}}
-    ways = [Case(case_of(at), f"uniform:neighbours={at[1]}", [spec(way, at[0]) for way in WAYS], drift=0.2, **motion)
-            for at in EVERYWHERE]
+    ways = [Case(case_of(at), f"uniform:neighbours={at[1]}", [spec(way, at[0]) for way in WAYS],
+                 drift=STEPS.get(at[1], STEP), **motion) for at in EVERYWHERE]
     return ways + [Case(step_case(drift), "uniform", [*map(spec, WAYS)], drift=drift, **motion) for drift in DRIFTS]
 
 
@@ -108,7 +110,8 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 EXPERIMENT = Experiment(
     title="By siblings and cousins, or from the root",
     measured=f"The time of mending the draft's quadtree, in leaves of {CAPACITIES[0]} and of {CAPACITIES[1]}, where a "
-             f"tenth of {BOXES:,} uniform boxes move: from the root, or from near where the boxes were.",
+             f"tenth of {BOXES:,} uniform boxes move by {STEP:g} of their size, or, in the fewest leaves, "
+             f"by {max(STEPS.values())} and {min(STEPS.values())} times their size.",
     claims=[
         Claim("14a",
               f"With {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours a box, to insert from the root takes more than "
