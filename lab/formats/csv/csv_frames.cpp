@@ -96,11 +96,12 @@ class FramesReader {
       // What others are numbered by must be right even where invalid boxes are skipped.
       if (!has_tracks_) check_frame(frame);
       std::vector<Listed>& listed = frames_[frame];
-      if (is_alone) continue;
-      if (!has_tracks_)
-        listed.push_back(listed_as(numbered(box)));
+      if (is_alone)
+        rows_.holds([&] { rows_.check_count(); });
+      else if (has_tracks_)
+        rows_.holds([&] { list_track(listed); });
       else
-        rows_.holds([&] { listed.push_back(listed_as(track())); });
+        listed.push_back(listed_as(numbered(box)));
     }
     History<D, double> history;
     for (const auto& [frame, listed] : frames_) {
@@ -138,6 +139,14 @@ class FramesReader {
     return box;
   }
 
+  void list_track(std::vector<Listed>& listed) {
+    Listed row = listed_as(no_place);
+    // Otherwise it says no more than that there is the frame.
+    if (is_absent(row.box)) return;
+    row.number = track();
+    listed.push_back(row);
+  }
+
   /// The number of the row's track.
   std::size_t track() {
     const std::string name = rows_.text(BoxColumns::track);
@@ -145,9 +154,13 @@ class FramesReader {
     const std::size_t number = numbers_.try_emplace(name, names_.size()).first->second;
     if (number == names_.size()) {
       names_.push_back(name);
-      ids_.push_back(rows_.has_column(BoxColumns::id) ? rows_.text(BoxColumns::id) : name);
+      ids_.emplace_back();
       places_.push_back(no_place);
     }
+    std::string id = rows_.has_column(BoxColumns::id) ? rows_.text(BoxColumns::id) : name;
+    if (!ids_[number].empty() && ids_[number] != id)
+      rows_.refuse(BoxColumns::id, fmt::format("{}, as {} has elsewhere", shown(ids_[number]), shown(name)));
+    ids_[number] = std::move(id);
     return number;
   }
 
@@ -167,8 +180,6 @@ class FramesReader {
     };
     for (const Listed& row : listed) {
       std::size_t& place = places_[row.number];
-      // Of a track, such a row says no more than that there is the frame.
-      if (has_tracks_ && is_absent(row.box)) continue;
       if (place == no_place) {
         place = boxes_.size();
         boxes_.push_back(absent_box<D, double>());
@@ -224,7 +235,7 @@ AnyFrameReader read_detections(CsvRows& rows) {
   while (rows.next()) {
     rows.holds([&] {
       auto& frame = frames[rows.number(BoxColumns::frame)];
-      if (rows.is_frame_alone()) return;
+      if (rows.is_frame_alone()) return rows.check_count();
       frame.boxes.push_back(in_dimension<D>(rows.box()));
       frame.ids.push_back(rows.text(BoxColumns::id));
     });

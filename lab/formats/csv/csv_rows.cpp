@@ -66,7 +66,7 @@ DoubleBox3 CsvRows::box() {
   return holds([&] { box = checked_box(); }) ? box : absent_box<3, double>();
 }
 
-DoubleBox3 CsvRows::checked_box() const {
+void CsvRows::check_count() const {
   const std::size_t found = fields_.size();
   const std::size_t expected = columns().places.size();
   if (found != expected)
@@ -74,6 +74,10 @@ DoubleBox3 CsvRows::checked_box() const {
         fmt::format("{} column{}{}", found, found == 1 ? "" : "s",
                     found == 2 * expected ? ", as decimal commas would make" : ""),
         fmt::format("the {} columns {}", expected, plainly(fmt::to_string(fmt::join(columns().names, ",")))));
+}
+
+DoubleBox3 CsvRows::checked_box() const {
+  check_count();
   const RowBox row = columns().has_geometry ? RowBox{geometry_box()} : box_of(fields_, columns());
   if (!row.is_held)
     refuse(row.wrong_place, "a whole number that a double holds exactly, as all up to 2^53 are");

@@ -67,6 +67,9 @@ class CsvRows {
   /// The row's box, where z repeats x in 2D; absent where it is invalid and is to be left out.
   DoubleBox3 box();
 
+  /// Refuses the row if it has more or fewer fields than there are columns.
+  void check_count() const;
+
   /// Whether the row says no more than the number of a frame.
   bool is_frame_alone() const;
 

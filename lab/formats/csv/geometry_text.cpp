@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "lab/formats/text.hpp"
+#include "lab/numbers.hpp"
 
 namespace broadside::lab::readers {
 namespace {
@@ -118,7 +119,7 @@ class GeometryText {
 
   bool take_bounds() {
     if (numbers_.size() != 4 && numbers_.size() != 6)
-      return fail(fmt::format(", which is {} number{}", numbers_.size(), numbers_.size() == 1 ? "" : "s"),
+      return fail(fmt::format(", which is {}", counted(numbers_.size(), "number", "numbers")),
                   "4 or 6, minima and then maxima");
     const std::size_t axes = numbers_.size() / 2;
     geometry_.dimension = static_cast<int>(axes);
@@ -173,7 +174,7 @@ class GeometryText {
   bool read_point(std::size_t wanted) {
     if (!read_numbers(false)) return false;
     if (numbers_.size() < 2 || numbers_.size() > 4 || (wanted != 0 && numbers_.size() != wanted))
-      return fail(fmt::format(", with a point of {} numbers", numbers_.size()),
+      return fail(fmt::format(", with a point of {}", counted(numbers_.size(), "number", "numbers")),
                   wanted == 0 ? "2 to 4" : fmt::format("{}", wanted));
     for (std::size_t axis = 0; axis < 2; ++axis) {
       geometry_.box.min[axis] = std::min(geometry_.box.min[axis], numbers_[axis]);

@@ -183,7 +183,9 @@ JsonValue read_json(std::string_view text, const std::string& name, const JsonWa
 std::string json_fault(const std::string& name, std::string_view what) {
   const std::size_t prefix = what.find("] ");  // "[json.exception.parse_error.101] "
   if (prefix != std::string_view::npos) what.remove_prefix(prefix + 2);
-  return fmt::format("{}: {}; expected JSON", name, plainly(what));
+  const bool is_number = what.starts_with("number overflow");
+  return fmt::format("{}: {}; expected {}", name, plainly(what),
+                     is_number ? "a number that a double can hold" : "JSON");
 }
 
 }  // namespace broadside::lab

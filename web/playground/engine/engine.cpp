@@ -31,6 +31,8 @@
 #ifndef BROADSIDE_OBSERVE
 #include "lab/formats/csv/csv_rows.hpp"
 #include "lab/formats/descriptions.hpp"
+#include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/unread_formats.hpp"
 #endif
 #include "lab/scenes/descriptions.hpp"
 #include "paper/listings/descriptions.hpp"
@@ -255,13 +257,31 @@ void make_scene(std::size_t count, std::uint32_t seed) {
 
 #ifndef BROADSIDE_OBSERVE  // what only one of the two modules has
 
+/// What to say of a file by its first bytes where the readers here do not take it; empty where they may.
+std::string unread(std::string_view beginning, const std::string& name) {
+  constexpr auto magics =
+      std::to_array<std::pair<std::string_view, const char*>>({{"\x1F\x8B", "compressed by gzip"},
+                                                               {"\x28\xB5\x2F\xFD", "compressed by zstd"},
+                                                               {"PK\x03\x04", "a zip archive"},
+                                                               {"\x93NUMPY", "a NumPy array"}});
+  std::string found;
+  for (const auto& [magic, what] : magics) {
+    if (beginning.starts_with(magic)) found = what;
+  }
+  const std::string_view mesh = lab::mesh_content(beginning);
+  if (!mesh.empty() && mesh != "ply" && mesh != "obj") found = "a mesh in " + std::string(mesh);
+  if (found.empty()) return lab::unread_format(beginning, "", name);
+  return "is " + found + "; expected CSV, a trace, PLY, OBJ or GeoJSON; the program reads more";
+}
+
 /// Opens a file by its content, as the program does, in the formats whose readers take no other library.
 lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
+  const std::string_view beginning = file->beginning();
+  if (const std::string why = unread(beginning, file->name()); !why.empty())
+    throw lab::FileError(file->name() + ": " + why);
   for (const lab::Format& format : {lab::readers::trace(), lab::readers::mesh(), lab::readers::map()}) {
-    if (format.recognises(file->beginning(), "")) return format.open(std::move(file), {});
+    if (format.recognises(beginning, "")) return format.open(std::move(file), {});
   }
-  if (file->beginning().starts_with("\x1F\x8B"))
-    throw lab::FileError(file->name() + ": is compressed by gzip; expected it decompressed, or the program");
   return lab::readers::open_csv(std::move(file), {});
 }
 
@@ -278,8 +298,8 @@ void read_frames(lab::AnyFrameReader frames, const std::string& name) {
       if (boxes.size() > most_boxes || answers.boxes.size() > most_numbers)
         throw lab::FileError(name + ": " + std::to_string(boxes.size()) + " boxes in frame " +
                              std::to_string(answers.numbers.size() - 1) +
-                             "; the playground takes up to 500,000, and 60 million numbers in all frames. The program "
-                             "takes more.");
+                             "; the playground takes up to 500,000, and 60 million numbers in all "
+                             "frames. The program takes more.");
       answers.numbers.push_back(static_cast<double>(boxes.size()));
       for (const Box<D, Real>& box : boxes) {
         for (const Real number : box.min) answers.boxes.push_back(static_cast<float>(number));

@@ -58,7 +58,12 @@ test("says what is wrong with a table as the program does", () => {
     /^Error: a\.csv:2: column max_y is 'one', text; expected a number/);
   assert.throws(() => read("0,0,10,10\n12,12,6,4\n", "a.csv"), /say --columns=x,y,w,h/);
   assert.throws(() => read("name,colour\na,red\n", "a.csv"), /a\.csv:1: 'name,colour': no columns that give bounds/);
-  assert.throws(() => read(Uint8Array.from([0x1f, 0x8b, 0, 0]), "a.gz"), /a\.gz: is compressed by gzip/);
+});
+
+test("names what the page does not read", () => {
+  assert.throws(() => read(Uint8Array.from([0x1f, 0x8b, 0, 0]), "a.gz"), /a\.gz: is compressed by gzip; expected CSV, a/);
+  assert.throws(() => read("solid thing\n", "a.stl"), /a\.stl: is a mesh in stl; expected CSV/);
+  assert.throws(() => read("SQLite format 3\0", "a.gpkg"), /a\.gpkg: is a GeoPackage .*ogr2ogr/);
 });
 
 test("reads meshes and maps", () => {
