@@ -95,13 +95,14 @@ class FramesReader {
       if (!is_read) continue;
       // What others are numbered by must be right even where invalid boxes are skipped.
       if (!has_tracks_) check_frame(frame);
-      std::vector<Listed>& listed = frames_[frame];
-      if (is_alone)
+      if (is_alone) {
+        frames_[frame];
         rows_.holds([&] { rows_.check_count(); });
-      else if (has_tracks_)
-        rows_.holds([&] { list_track(listed); });
-      else
-        listed.push_back(listed_as(numbered(box)));
+      } else if (has_tracks_) {
+        rows_.holds([&] { list_track(frame); });
+      } else {
+        frames_[frame].push_back(listed_as(numbered(box)));
+      }
     }
     History<D, double> history;
     for (const auto& [frame, listed] : frames_) {
@@ -139,12 +140,13 @@ class FramesReader {
     return box;
   }
 
-  void list_track(std::vector<Listed>& listed) {
+  void list_track(double frame) {
     Listed row = listed_as(no_place);
-    // Otherwise it says no more than that there is the frame.
-    if (is_absent(row.box)) return;
-    row.number = track();
-    listed.push_back(row);
+    const bool is_present = !is_absent(row.box);
+    if (is_present) row.number = track();
+    // Without a box, the row says no more than that there is the frame.
+    std::vector<Listed>& listed = frames_[frame];
+    if (is_present) listed.push_back(row);
   }
 
   /// The number of the row's track.

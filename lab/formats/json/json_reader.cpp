@@ -50,6 +50,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   bool null() override { return put({}); }
   bool boolean(bool value) override { return put({.kind = Kind::truth, .text = value ? "true" : "false"}); }
   bool number_integer(std::int64_t value) override {
+    if (value == 0) return number_float(-0.0, "-0");  // 0 itself is unsigned
     return put_number(static_cast<double>(value), [value] { return fmt::to_string(value); });
   }
   bool number_unsigned(std::uint64_t value) override {

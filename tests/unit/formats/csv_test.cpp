@@ -474,6 +474,13 @@ TEST_F(CsvTable, ReadsTracksWhoseRowsListWhatIsThere) {
               HasSubstr("column frame is 'one', text; expected a number"));
   EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,,0,0,1,1\n"),
               HasSubstr("column id is ''; expected an id"));
+  EXPECT_THAT(refusal_of("frame,id,min_x,min_y,max_x,max_y\n1,a,0,0,1,1\n2\n"),
+              HasSubstr("bad.csv:3: 1 column; expected the 6 columns frame,id,"))
+      << "cut off";
+  options = {};
+  options.ids = "name";
+  EXPECT_THAT(refusal(put("names.csv", "frame,id,name,x0,y0,x1,y1\n1,7,a,0,0,1,1\n2,7,b,0,0,1,1\n"), options),
+              HasSubstr("names.csv:3: column name is 'b'; expected 'a', as '7' has elsewhere"));
 }
 
 TEST_F(CsvTable, NumbersBoxesAnewInEachFrameWhereNothingTellsThemApart) {
@@ -548,7 +555,7 @@ TEST_F(CsvTable, ReadsGeometriesAndBoundsInOneField) {
   };
   EXPECT_THAT(refusal("POINT (1 2"),
               HasSubstr("column geom is 'POINT (1 2', which ends early; expected ')' there"));
-  EXPECT_THAT(refusal("POINT (1)"), HasSubstr("with a point of 1 numbers; expected 2 to 4"));
+  EXPECT_THAT(refusal("POINT (1)"), HasSubstr("with a point of 1 number; expected 2 to 4"));
   EXPECT_THAT(refusal("POINT (1 2,)"), HasSubstr("with '', empty; expected a number"));
   EXPECT_THAT(refusal("POINT (nan nan)"), HasSubstr("with 'nan', NaN; expected a number"));
   EXPECT_THAT(refusal("POINT (1 2) 3"), HasSubstr("with '3' behind its end"));

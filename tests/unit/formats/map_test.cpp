@@ -1,5 +1,7 @@
 // Maps: the boxes of their features, pieces and segments, and what is wrong with those that are refused.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -101,9 +103,10 @@ TEST_F(MapTest, ReadsAValueALine) {
 
 TEST_F(MapTest, ReadsEveryDoubleExactly) {
   const auto boxes = boxes_of(R"({"type":"MultiPoint","coordinates":[
-      [500000.001, 5000000.0009999997], [9007199254740993, 1.7976931348623157e308], [-0.1, 5e-324]]})",
+      [500000.001, 5000000.0009999997], [9007199254740993, 1.7976931348623157e308], [-0.1, 5e-324], [-0, 0]]})",
                               "pieces");
-  ASSERT_EQ(boxes.size(), 3u);
+  ASSERT_EQ(boxes.size(), 4u);
+  EXPECT_TRUE(std::signbit(boxes[3].min[0]) && !std::signbit(boxes[3].min[1]));
   EXPECT_EQ(boxes[0].min, (std::array{500000.001, 5000000.0009999997}));
   EXPECT_EQ(boxes[1].min, (std::array{9007199254740992.0, std::numeric_limits<double>::max()}));
   EXPECT_EQ(boxes[2].min, (std::array{-0.1, std::numeric_limits<double>::denorm_min()}));
@@ -164,7 +167,7 @@ TEST_F(MapTest, RefusesWhatIsWrongNamingTheFeatureOrThePlace) {
   EXPECT_THAT(point("[1,\"two\"]"), HasSubstr("a.json: feature 1: 'two'; expected a number"));
   EXPECT_THAT(point("[1,null]"), HasSubstr("feature 1: null; expected a number"));
   EXPECT_THAT(point("[1e999,2]"),
-              AllOf(HasSubstr("a.json: number overflow parsing '1e999'"), HasSubstr("expected")));
+              HasSubstr("a.json: number overflow parsing '1e999'; expected a number that a double can hold"));
   EXPECT_THAT(point("[NaN,2]"), HasSubstr("a.json: parse error at line 2, column 61"));
   EXPECT_THAT(point("[[1,2]]"), HasSubstr("an array; expected a number"));
   EXPECT_THAT(point("[1]"), HasSubstr("a position of 1 number; expected at least 2"));
