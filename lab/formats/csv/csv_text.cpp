@@ -11,7 +11,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-constexpr auto none = std::string_view::npos;
+constexpr auto npos = std::string_view::npos;
 
 /// Whether a character may stand around a value.
 bool is_padding(char c, Separator separator) {
@@ -23,24 +23,24 @@ std::size_t skip_padding(std::string_view line, std::size_t at, Separator separa
   return at;
 }
 
-/// Where the quotes of the field that begins at a place close; none if it is not all in quotes.
+/// Where the quotes of the field that begins at a place close; npos if it is not all in quotes.
 std::size_t closing_quote(std::string_view line, std::size_t begin, Separator separator) {
-  if (begin == line.size() || line[begin] != '"') return none;
+  if (begin == line.size() || line[begin] != '"') return npos;
   std::size_t close = line.find('"', begin + 1);
-  while (close != none && line.substr(close + 1).starts_with('"')) close = line.find('"', close + 2);
-  if (close == none) return none;
+  while (close != npos && line.substr(close + 1).starts_with('"')) close = line.find('"', close + 2);
+  if (close == npos) return npos;
   const std::size_t next = skip_padding(line, close + 1, separator);
   const bool ends =
       next == line.size() ||
       (separator == Separator::blanks ? next > close + 1 : line[next] == static_cast<char>(separator));
-  return ends ? close : none;
+  return ends ? close : npos;
 }
 
 }  // namespace
 
 Separator separator_of(std::string_view line) {
   for (const Separator separator : {Separator::semicolon, Separator::comma, Separator::tab}) {
-    if (line.find(static_cast<char>(separator)) != none) return separator;
+    if (line.find(static_cast<char>(separator)) != npos) return separator;
   }
   return Separator::blanks;
 }
@@ -49,18 +49,18 @@ void split(std::string_view line, Separator separator, std::vector<CsvField>& fi
   fields.clear();
   const bool are_blanks = separator == Separator::blanks;
   while (are_blanks && !line.empty() && is_padding(line.back(), separator)) line.remove_suffix(1);
-  for (std::size_t at = 0, next = 0; next != none; at = next + 1) {
+  for (std::size_t at = 0, next = 0; next != npos; at = next + 1) {
     at = skip_padding(line, at, separator);
     std::size_t end = closing_quote(line, at, separator);
-    const bool is_quoted = end != none;
+    const bool is_quoted = end != npos;
     if (is_quoted)
       ++at;
     else
       end = std::min(are_blanks ? line.find_first_of(" \t", at) : line.find(static_cast<char>(separator), at),
                      line.size());
     next = skip_padding(line, is_quoted ? end + 1 : end, separator);
-    if (next == line.size()) next = none;
-    if (are_blanks && next != none) --next;
+    if (next == line.size()) next = npos;
+    if (are_blanks && next != npos) --next;
     while (!is_quoted && end > at && is_padding(line[end - 1], separator)) --end;
     fields.push_back({line.substr(at, end - at), is_quoted});
   }
@@ -86,7 +86,7 @@ std::string unquoted(const CsvField& field) {
 void append_csv_field(std::string& line, std::string_view field) {
   const bool is_padded = !field.empty() && (is_padding(field.front(), Separator::comma) ||
                                             is_padding(field.back(), Separator::comma));
-  if (!is_padded && field.find_first_of("\",\r\n") == none) {
+  if (!is_padded && field.find_first_of("\",\r\n") == npos) {
     line += field;
     return;
   }
@@ -97,7 +97,7 @@ void append_csv_field(std::string& line, std::string_view field) {
 
 bool has_open_quote(std::string_view line, const std::vector<CsvField>& fields) {
   // Most lines have no quotes.
-  if (line.find('"') == none) return false;
+  if (line.find('"') == npos) return false;
   return std::ranges::any_of(fields, [line](const CsvField& field) {
     const char* const begin = field.text.data();
     return !field.is_quoted && field.text.starts_with('"') &&
@@ -109,7 +109,7 @@ bool is_held(std::string_view text, double value) {
   constexpr double exact = 9007199254740992;  // 2^53: up to there every whole number is held
   if (value < exact && value > -exact) return true;
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
-  if (text.find_first_not_of("0123456789") != none) return true;
+  if (text.find_first_not_of("0123456789") != npos) return true;
   text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
   return text == fmt::format("{:.0f}", std::abs(value));
 }
@@ -142,7 +142,7 @@ void CsvLines::take_slice(std::size_t slice, std::size_t slices) {
     const std::size_t place = rest_.size() / slices * number + std::min(number, rest_.size() % slices);
     if (place == 0 || place == rest_.size()) return place;
     const std::size_t end_of_line = rest_.find('\n', place - 1);
-    return end_of_line == none ? rest_.size() : end_of_line + 1;
+    return end_of_line == npos ? rest_.size() : end_of_line + 1;
   };
   const std::size_t begin = begin_of(slice);
   const std::size_t end = begin_of(slice + 1);

@@ -350,15 +350,15 @@ class MapReader {
   /// A point of the piece, which a segment joins to the one before if it is in a line.
   void add(const std::array<double, 2>& place, bool is_in_line) {
     const DoubleBox2 point{place, place};
-    piece_ = merged(piece_, point);
+    piece_ = merged(point, piece_);
     if (!is_in_line) return;
-    if (std::exchange(is_in_line_, true) && options_.boxes == "segments") put(merged(last_, point));
+    if (std::exchange(is_in_line_, true) && options_.boxes == "segments") put(merged(point, last_));
     last_ = point;
   }
 
   void end_piece() {
     if (options_.boxes == "pieces" && !is_absent(piece_)) put(piece_);
-    feature_ = merged(feature_, std::exchange(piece_, absent_box<2, double>()));
+    feature_ = merged(std::exchange(piece_, absent_box<2, double>()), feature_);
   }
 
   void put(const DoubleBox2& box) {
