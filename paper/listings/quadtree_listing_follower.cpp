@@ -114,22 +114,20 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     node->algorithm_7_add_element(id);
   }
 
-  /// Takes references out of the leaves that the box has left, and across the sides of leaves that it has
-  /// come to reach over, to the leaves there: also where the box leaves none, since it may have grown
+  /// Each reference whose leaf the box has left goes across the side through which it has left. Then
+  /// references go across the sides of leaves that the box has come to reach over, since it may have grown
   /// (erratum T12). False where that takes more than siblings and only these may be asked; what was done
   /// until then does not harm.
   bool translate(BoxId id, const Box2& from, const Box2& to) {
     std::vector<QuadTreeNode*>& leaves = tree_.leaves[index(id)];
-    QuadTreeNode* const first = leaves.front();
     before_ = leaves;
     for (QuadTreeNode* const leaf : before_) {
-      if (leaf->region().meets(to))
+      if (leaf->region().meets(to)) {
         leaf->split_if_full();
-      else
-        remove(*leaf, id);
-    }
-    if (leaves.empty()) {
-      QuadTreeNode* const node = walk(first, to);
+        continue;
+      }
+      remove(*leaf, id);
+      QuadTreeNode* const node = walk(leaf, to);
       if (node == nullptr) return false;
       node->add_where_missing(id);
     }
