@@ -82,14 +82,14 @@ void run(const std::vector<std::string>& programs, std::size_t rounds,
              lab::this_machine().cpu, lab::this_machine().cores, build.compiler);
   lab::Columns columns("<>>>");
   columns.add({"case and algorithm", "old ms", "new ms", "new over old"});
-  std::vector<lab::RatiosByProcess> pairs;
+  std::vector<lab::RatiosBySeed> pairs;
   for (const auto& [name, both] : times) {
     // Near the budget, an algorithm is skipped in some runs.
     if (both[0].size() != rounds || both[1].size() != rounds) continue;
-    pairs.emplace_back(lab::RatiosBySeed(both[1], both[0], 1));
+    pairs.emplace_back(both[1], both[0], 1);
     columns.add(
         {name, lab::rounded(lab::median(both[0])), lab::rounded(lab::median(both[1])),
-         fmt::format("{:.3f} ({})", pairs.back().ratio(), lab::interval_text(pairs.back().interval()))});
+         fmt::format("{:.3f} ({})", pairs.back().median(), lab::interval_text(pairs.back().interval()))});
   }
   if (pairs.empty()) throw std::runtime_error("no algorithm was timed by both builds; expected at least one");
   const lab::MeanRatio mean = lab::geometric_mean(pairs);

@@ -45,7 +45,6 @@ struct CompareArguments {
   std::optional<double> budget;
   ResultFiles files;
   std::string check;
-  std::vector<std::string> merge;
   bool is_long = false;
   bool has_details = false;
 };
@@ -83,8 +82,7 @@ void check(const CompareArguments& arguments) {
   if (arguments.budget && !(*arguments.budget > 0))
     throw Unusable(fmt::format("--budget is {}; expected a number of seconds above 0", *arguments.budget));
   for (const auto& [option, path] :
-       {std::pair("--json", arguments.files.json), std::pair("--samples", arguments.files.samples),
-        std::pair("--report", arguments.files.report)}) {
+       {std::pair("--json", arguments.files.json), std::pair("--report", arguments.files.report)}) {
     if (std::ranges::find(arguments.scenes, path) != arguments.scenes.end())
       throw Unusable(fmt::format("{} is {}, which is a scene as well; expected another file", option, path));
   }
@@ -119,58 +117,13 @@ std::size_t definition_boxes(const std::string& text) {
 
 /// Where to find what the lines leave out.
 std::string details_hint(const ResultFiles& files) {
-  const std::string samples =
-      files.any() ? "every sample is in " + (files.samples.empty() ? files.names() : files.samples)
-                  : "--json or --report FILE keeps every sample";
-  return fmt::format("details: --details prints each case's table; {}\n", samples);
-}
-
-/// The files of a comparison; `drawings` are the page's.
-void write_results(const ResultFiles& files, std::span<const lab::Results> machines,
-                   const std::function<std::string()>& drawings) {
-  const std::string whole = lab::json_of(machines);
-  write(
-      files, files.samples.empty() ? whole : lab::json_of(machines, lab::Samples::leave_out),
-      [&] {
-        return lab::PageContent{
-            .date = lab::today(), .comparison = whole, .experiments = {}, .drawings = drawings()};
-      },
-      whole);
-}
-
-/// Merges files instead of measuring.
-Exit merge(const CompareArguments& arguments, const CLI::App& verb) {
-  for (const CLI::Option* const option : verb.get_options()) {
-    const std::string name = option->get_name();
-    const bool applies = name == "--merge" || name == "--json" || name == "--samples" || name == "--report" ||
-                         name == "--details";
-    if (option->count() > 0 && !applies)
-      throw Unusable(fmt::format(
-          "{} says what to measure, and --merge measures nothing; expected one of the two", name));
-  }
-  for (const std::string& file : arguments.merge) check(arguments.files, file);
-  const std::vector<lab::Results> machines = lab::merge_results(arguments.merge);
-  if (machines.size() > 1 && !arguments.files.report.empty())
-    throw Unusable(
-        fmt::format("--report is '{}', and the files are of {} machines; expected one, whose page it is",
-                    arguments.files.report, machines.size()));
-  bool all_verified = true;
-  for (const lab::Results& results : machines) {
-    print(lab::heading_of(results) + "\n");
-    if (!arguments.has_details) print(lab::case_line_heading());
-    for (const lab::CaseResult& result : results.comparison.cases)
-      print(arguments.has_details ? lab::table_of(result) + '\n' : lab::case_line(result));
-    print((arguments.has_details ? "" : "\n") + lab::summary_of(results.comparison) + "\n");
-    all_verified = all_verified && results.comparison.all_verified();
-  }
-  if (machines.size() > 1) print(lab::leads_of(machines));
-  if (arguments.files.any()) write_results(arguments.files, machines, [] { return std::string(); });
-  return all_verified ? Exit::fine : Exit::failed;
+  return fmt::format(
+      "details: --details prints each case's table; {}\n",
+      files.any() ? "every sample is in " + files.names() : "--json or --report FILE keeps every sample");
 }
 
 Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
-  if (!arguments.merge.empty()) return merge(arguments, verb);
   arguments.scenes = each_of(arguments.scenes);
   check(arguments);
   ProgressLine progress;
@@ -207,10 +160,13 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::end);
-    const lab::Results results = lab::results_of(comparison, command);
-    write_results(arguments.files, {&results, 1}, [&] {
-      return lab::drawings_of(lab::scenes_of(comparison), options.find,
-                              catalogue.select(arguments.entries.algorithms));
+    const std::string json = lab::json_of(comparison, command);
+    write(arguments.files, json, [&] {
+      return lab::PageContent{.date = lab::today(),
+                              .comparison = json,
+                              .experiments = {},
+                              .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
+                                                           catalogue.select(arguments.entries.algorithms))};
     });
     if (comparison.stopped)
       say(fmt::format("stopped; wrote the {} that had ended to {}",
@@ -272,24 +228,14 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
                       "cross-checked",
                       lab::Effort{}.definition_boxes))
       ->type_name("definition=N");
-  verb->add_option(
-          "--merge", arguments->merge,
-          "Merge files that --json or --samples wrote, with their samples, gzipped or not, and measure "
-          "nothing: those of one machine become one, with each process as a unit; machines stand side by "
-          "side")
-      ->type_name("FILE")
-      ->allow_extra_args(true);
   add_result_files(*verb, arguments->files);
-  add_samples_file(*verb, arguments->files);
   verb->add_flag("--details", arguments->has_details,
                  "Print a table a case, with every algorithm's time, memory and tests, instead of a line");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   add_examples(
       *verb,
       {{"compare uniform clustered -n 1000,100k --algorithms own", "our algorithms on two scenes"},
-       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, while a tenth of them moves"},
-       {"compare --merge 1.json 2.json --json both.json --samples all.json",
-        "two runs as one, the samples apart"}});
+       {"compare boxes.csv --moving 0.1 --json out.json", "all on your boxes, while a tenth of them moves"}});
   return [arguments, verb, &catalogue, command] { return run(*arguments, *verb, catalogue, command); };
 }
 

@@ -70,7 +70,7 @@ Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
     return Exit::interrupted;
   }
   on_signal(OnSignal::end);
-  const std::string json = lab::json_of(lab::results_of(comparison, command));
+  const std::string json = lab::json_of(comparison, command);
   lab::write_file(arguments.json, [&json](std::ostream& file) { file << json; });
   for (const lab::CaseResult& result : comparison.cases) {
     for (const lab::Measurement& measurement : result.measurements) {

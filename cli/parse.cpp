@@ -40,6 +40,19 @@ std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.get_name(true, false) : option.get_name();
 }
 
+/// An option of earlier versions and what to use now; docs/migration.md has all of them.
+struct RemovedOption {
+  std::string_view verb;
+  std::string_view name;
+  std::string_view instead;
+};
+
+constexpr RemovedOption removed_options[] = {
+    {"compare", "--merge",
+     "`python3 -m tools.paper compare`, which measures several processes and gives intervals between them"},
+    {"compare", "--samples", "--json, which has every sample"},
+};
+
 /// An argument that neither an option nor a position takes.
 std::string about_extra(const CLI::App& verb, const std::string& argument) {
   if (!argument.starts_with('-'))
@@ -49,6 +62,10 @@ std::string about_extra(const CLI::App& verb, const std::string& argument) {
             ? "none"
             : "fewer");
   const std::string name = argument.substr(0, argument.find('='));
+  for (const RemovedOption& removed : removed_options) {
+    if (removed.verb == verb.get_name() && removed.name == name)
+      return fmt::format("option '{}' is no longer there; expected {}", name, removed.instead);
+  }
   const std::vector<std::string> known = names_of_options(verb);
   const std::string suggested = core::did_you_mean(name, known);
   return fmt::format("unknown option '{}'{}; expected {}", name, suggested,

@@ -30,7 +30,7 @@ void write_text(const std::string& path, const std::string& text) {
 
 std::string ResultFiles::names() const {
   std::string all;
-  for (const std::string& name : {json, samples, report}) {
+  for (const std::string& name : {json, report}) {
     if (!name.empty()) all += (all.empty() ? "" : " and ") + name;
   }
   return all;
@@ -44,20 +44,9 @@ void add_result_files(CLI::App& verb, ResultFiles& files) {
       ->type_name("FILE");
 }
 
-void add_samples_file(CLI::App& verb, ResultFiles& files) {
-  verb.add_option(
-          "--samples", files.samples,
-          "Write the results with every sample to this file, an archive, and leave the samples out of "
-          "--json")
-      ->type_name("FILE");
-}
-
 void check(const ResultFiles& files, const std::string& input) {
-  const std::array<std::pair<std::string, const std::string&>, 3> all = {
-      {{"--json", files.json}, {"--samples", files.samples}, {"--report", files.report}}};
-  if (!files.samples.empty() && files.json.empty())
-    throw Unusable(fmt::format(
-        "--samples is '{}', but there is no --json for the rest; expected both or neither", files.samples));
+  const std::array<std::pair<std::string, const std::string&>, 2> all = {
+      {{"--json", files.json}, {"--report", files.report}}};
   if (!files.report.empty()) {
     if (const std::string missing = lab::page_missing(); !missing.empty())
       throw Unusable(fmt::format("--report: {}", missing));
@@ -75,13 +64,10 @@ void check(const ResultFiles& files, const std::string& input) {
     if (!input.empty()) check_is_other_file(option, path, input);
   }
   check_extension("--json", files.json, {".json"});
-  check_extension("--samples", files.samples, {".json"});
   check_extension("--report", files.report, {".html", ".htm"});
 }
 
-void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page,
-           const std::string& samples) {
-  if (!files.samples.empty()) write_text(files.samples, samples);
+void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page) {
   if (!files.json.empty()) write_text(files.json, json);
   if (!files.report.empty()) write_text(files.report, lab::page_of(page()));
 }

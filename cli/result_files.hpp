@@ -1,4 +1,4 @@
-// The files that results are written to: --json, --samples and --report.
+// The files that results are written to: --json and --report.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,6 @@ namespace broadside::cli {
 struct ResultFiles {
   std::string json;
   std::string report;
-  std::string samples;  ///< of compare alone: what --json then leaves out
 
   bool any() const { return !json.empty() || !report.empty(); }
 
@@ -25,17 +24,12 @@ struct ResultFiles {
 /// Adds --json and --report to a verb.
 void add_result_files(CLI::App& verb, ResultFiles& files);
 
-/// Adds --samples.
-void add_samples_file(CLI::App& verb, ResultFiles& files);
-
 /// Throws Unusable, before hours of work, if one of the files cannot be made, if two are one, if one is the
-/// file at `input` (empty: there is none), if there are to be samples beside no --json, or if this program
-/// can make no page.
+/// file at `input` (empty: there is none), or if this program can make no page.
 void check(const ResultFiles& files, const std::string& input = "");
 
-/// Writes the files that are asked for, each whole or not at all; `samples` is the text of --samples. The
-/// page is made only if it is one of them. Throws FileError.
-void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page,
-           const std::string& samples = "");
+/// Writes the files that are asked for, each whole or not at all. The page is made only if it is one of them.
+/// Throws FileError.
+void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page);
 
 }  // namespace broadside::cli

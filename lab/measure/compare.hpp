@@ -43,7 +43,7 @@ struct Comparison {
   bool stopped = false;                 ///< by the watch; the case that was going on is left out
   double processor_share = 1;           ///< as ProcessorShare has it, of the whole run
   std::optional<double> load_before{};  ///< processes that ran or waited, over the last minute; empty where
-  std::optional<double> load_after{};   ///< the system does not tell, or several runs were merged
+  std::optional<double> load_after{};   ///< the system does not tell
 
   /// Whether something was measured and nothing broke the law.
   bool all_verified() const;

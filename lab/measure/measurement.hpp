@@ -74,9 +74,8 @@ struct PairedRatio {
   double median;   ///< over the seeds, of each seed's median ratio of its rounds, by logarithms
   std::optional<Interval> interval;  ///< by bootstrap; empty where there are too few rounds for one
   std::size_t rounds;                ///< that both took part in
-  std::size_t processes = 1;         ///< in which these rounds were
-  double ms = 0;     ///< the median time of these rounds, of several processes their geometric mean, and the
-  double of_ms = 0;  ///< other one's: measured with fewer others around, a time is less
+  double ms = 0;                     ///< the median time of these rounds, and the other one's: measured
+  double of_ms = 0;                  ///< with fewer others around, a time is less
 };
 
 /// Whether algorithms of this kind are no part of what users link: they are compared, and never advised.
@@ -97,9 +96,8 @@ struct Measurement {
   std::string reason;                  ///< why there is no time: what diverged first, or why it was skipped
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
-  std::vector<double> samples_ms;   ///< each a whole call, from boxes to pairs, or a frame
-  std::size_t samples_a_round = 1;  ///< the frames of a history; round r of all is on the same boxes
-  std::vector<std::size_t> rounds_of_processes{};  ///< where several were merged; empty: one process
+  std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
+  std::size_t samples_a_round = 1;   ///< the frames of a history; round r of all is on the same boxes
   std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;

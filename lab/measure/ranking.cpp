@@ -13,11 +13,6 @@
 namespace broadside::lab {
 namespace {
 
-bool is_faster(const Measurement& entry, const Measurement& other, const Case& measured) {
-  return were_together(entry, other) ? RatiosByProcess(measured, entry, other).ratio() < 1
-                                     : time_of(entry) < time_of(other);
-}
-
 /// The fastest of the measurements that `eligible` accepts: of two, the one that is faster in the rounds that
 /// both took part in, as ratios have it.
 template <typename Eligible>
@@ -25,7 +20,8 @@ const Measurement* fastest_among(const CaseResult& result, const Eligible& eligi
   const Measurement* fastest = nullptr;
   for (const Measurement& measurement : result.measurements) {
     if (!is_timed(measurement) || !eligible(measurement)) continue;
-    if (fastest == nullptr || is_faster(measurement, *fastest, result.of)) fastest = &measurement;
+    if (fastest == nullptr || ratios_of(result.of, measurement, *fastest).median() < 1)
+      fastest = &measurement;
   }
   return fastest;
 }

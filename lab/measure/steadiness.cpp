@@ -53,16 +53,7 @@ std::optional<double> spread(std::span<const double> samples, std::size_t period
 bool is_unsteady(const Case& of, const Measurement& measurement) {
   const std::size_t seeds = std::max<std::size_t>(of.seeds.size(), 1);
   const std::size_t period = of.mode == Mode::find ? seeds : seeds * std::max<std::size_t>(of.frames, 1);
-  const std::span<const double> samples = measurement.samples_ms;
-  if (measurement.rounds_of_processes.empty()) return spread(samples, period).value_or(1) > greatest_spread;
-  std::vector<double> spreads;
-  std::size_t first = 0;
-  for (const std::size_t rounds : measurement.rounds_of_processes) {
-    const std::size_t count = rounds * measurement.samples_a_round;
-    if (const auto one = spread(samples.subspan(first, count), period)) spreads.push_back(*one);
-    first += count;
-  }
-  return !spreads.empty() && median(spreads) > greatest_spread;
+  return spread(measurement.samples_ms, period).value_or(1) > greatest_spread;
 }
 
 Steadiness steadiness_of(const CaseResult& result) {

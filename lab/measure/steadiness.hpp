@@ -37,8 +37,8 @@ std::string busy_hint(double share);
 std::optional<double> spread(std::span<const double> samples, std::size_t period);
 
 /// Whether something else slowed the measurement down, so far as its samples tell: its spread() is over 1.5.
-/// Of several processes the median counts. False where there are too few repetitions to tell: other boxes of
-/// a scene, or other frames, take other times by themselves. docs/benchmarking.md says why so much.
+/// False where there are too few repetitions to tell: other boxes of a scene, or other frames, take other
+/// times by themselves. docs/benchmarking.md says why so much.
 bool is_unsteady(const Case& of, const Measurement& measurement);
 
 /// How many measurements have times, and how many of them are unsteady.

@@ -24,7 +24,6 @@ Json json_of(const std::optional<PairedRatio>& ratio) {
           {"low", interval ? Json(interval->low) : Json()},
           {"high", interval ? Json(interval->high) : Json()},
           {"rounds", ratio->rounds},
-          {"processes", ratio->processes},
           {"ms", ratio->ms},
           {"of_ms", ratio->of_ms}};
 }
@@ -55,7 +54,7 @@ Json phases_json(const std::vector<paper::Phases>& phases) {
   return json;
 }
 
-Json measurement_json(const CaseResult& result, const Measurement& measurement, Samples kept) {
+Json measurement_json(const CaseResult& result, const Measurement& measurement) {
   const Case& of = result.of;
   const std::vector<double>& samples = measurement.samples_ms;
   const bool timed = !samples.empty();
@@ -96,8 +95,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement, 
   json["min_ms"] = timed ? Json(std::ranges::min(samples)) : Json();
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();
   json["max_ms"] = timed ? Json(std::ranges::max(samples)) : Json();
-  json["samples_ms"] = timed && kept == Samples::keep ? Json(samples) : Json();
-  if (!measurement.rounds_of_processes.empty()) json["rounds_of_processes"] = measurement.rounds_of_processes;
+  json["samples_ms"] = timed ? Json(samples) : Json();
   json["unsteady"] = timed ? Json(is_unsteady(of, measurement)) : Json();
   json["build_ms"] = timed ? or_null(measurement.build_ms) : Json();
   json["ns_per_box"] =
@@ -113,55 +111,36 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement, 
     json["tests_by_seed"] = by_seed(measurement, &Statistics::tests);
     json["references_by_seed"] = by_seed(measurement, &Statistics::references);
   }
-  if (!measurement.phases.empty() && kept == Samples::keep) json["phases"] = phases_json(measurement.phases);
+  if (!measurement.phases.empty()) json["phases"] = phases_json(measurement.phases);
   json["explanation"] = or_null(measurement.explanation);
   json["own_bytes"] = or_null(measurement.own_bytes);
   json["peak_bytes"] = or_null(measurement.peak_bytes);
   return json;
 }
 
-/// The fields of one machine's results, one measurement a line: short, and readable where two results are
-/// compared.
-std::string fields_of(const Results& results, Samples samples) {
-  const Comparison& comparison = results.comparison;
-  std::string text = fmt::format("\"date\": {},\n\"machine\": {},\n\"build\": {},\n",
-                                 json_text(results.processes.back().date),
-                                 json_text(json_of(results.machine)), json_text(json_of(results.build)));
+}  // namespace
+
+// One measurement a line: short, and readable where two results are compared.
+std::string json_of(const Comparison& comparison, std::span<const std::string> command) {
+  std::string text = fmt::format(
+      "{{\n\"schema\": \"broadside.results/2\",\n\"date\": {},\n\"machine\": {},\n\"build\": {},\n",
+      json_text(today()), json_text(json_of(this_machine())), json_text(json_of(this_build())));
   text += fmt::format("\"command\": {},\n\"stopped\": {},\n\"processor_share\": {},\n\"busy\": {},\n",
-                      json_text(results.command), comparison.stopped, json_text(comparison.processor_share),
-                      is_busy(comparison.processor_share));
+                      json_text(std::vector<std::string>(command.begin(), command.end())), comparison.stopped,
+                      json_text(comparison.processor_share), is_busy(comparison.processor_share));
   if (comparison.load_before && comparison.load_after)
     text += fmt::format("\"load_before\": {},\n\"load_after\": {},\n", json_text(*comparison.load_before),
                         json_text(*comparison.load_after));
-  if (results.processes.size() > 1) {
-    Json processes = Json::array();
-    for (const ProcessRun& process : results.processes)
-      processes.push_back({{"date", process.date}, {"processor_share", process.processor_share}});
-    text += fmt::format("\"processes\": {},\n", json_text(processes));
-  }
   text += "\"measurements\": [";
   std::string_view separator = "\n";
   for (const CaseResult& result : comparison.cases) {
     for (const Measurement& measurement : result.measurements) {
       text += separator;
-      text += json_text(measurement_json(result, measurement, samples));
+      text += json_text(measurement_json(result, measurement));
       separator = ",\n";
     }
   }
-  return text + "\n]";
-}
-
-}  // namespace
-
-std::string json_of(std::span<const Results> machines, Samples samples) {
-  std::string text = "{\n\"schema\": \"broadside.results/2\",\n" + fields_of(machines[0], samples);
-  std::string_view separator = ",\n\"other_machines\": [\n{\n";
-  for (const Results& other : machines.subspan(1)) {
-    text += separator;
-    text += fields_of(other, samples) + "\n}";
-    separator = ",\n{\n";
-  }
-  return text + (machines.size() > 1 ? "]\n}\n" : "\n}\n");
+  return text + "\n]\n}\n";
 }
 
 }  // namespace broadside::lab

@@ -26,19 +26,19 @@ std::string mean_text(const MeanRatio& ratio) {
 
 /// The ratios of two entries over all cases that have both.
 struct Ratios {
-  std::vector<RatiosByProcess> pairs;
+  std::vector<RatiosBySeed> pairs;
   std::vector<std::string> names;  // of the cases
 
   void add(const CaseResult& result, const Measurement* entry, const Measurement* other) {
-    if (entry == nullptr || other == nullptr || entry == other || !were_together(*entry, *other)) return;
-    pairs.emplace_back(result.of, *entry, *other);
+    if (entry == nullptr || other == nullptr || entry == other) return;
+    pairs.push_back(ratios_of(result.of, *entry, *other));
     names.push_back(name_of(result.of));
   }
 
   /// The case whose ratio is the greatest, or the least.
   template <typename Order>
   std::size_t extreme(Order order) const {
-    const auto found = std::ranges::max_element(pairs, order, &RatiosByProcess::ratio);
+    const auto found = std::ranges::max_element(pairs, order, &RatiosBySeed::median);
     return static_cast<std::size_t>(found - pairs.begin());
   }
 };
@@ -53,7 +53,7 @@ std::string auto_text(const Comparison& comparison) {
   return fmt::format(
       "auto takes {} times as long as the best of our others, geometric mean of {}; at most {} times ({})\n",
       mean_text(geometric_mean(ratios.pairs)), counted(ratios.pairs.size(), "case", "cases"),
-      fmt::format("{:.3g}", ratios.pairs[worst].ratio()), ratios.names[worst]);
+      fmt::format("{:.3g}", ratios.pairs[worst].median()), ratios.names[worst]);
 }
 
 /// How many times as fast as the fastest of a kind, which is called `rival`, `name` is, which `entry_of`
@@ -69,7 +69,7 @@ std::string lead_text(const Comparison& comparison, AlgorithmKind kind, std::str
   return fmt::format(
       "{} is {} times as fast as the fastest {}, geometric mean of {}; at least {} times ({})\n", name,
       mean_text(geometric_mean(ratios.pairs)), rival, counted(ratios.pairs.size(), "case", "cases"),
-      fmt::format("{:.3g}", ratios.pairs[least].ratio()), ratios.names[least]);
+      fmt::format("{:.3g}", ratios.pairs[least].median()), ratios.names[least]);
 }
 
 struct Standing {

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 
 #include "lab/measure/compare.hpp"
 #include "lab/measure/measurement.hpp"
-#include "lab/report/results.hpp"
 
 namespace broadside::lab {
 
@@ -35,14 +33,6 @@ std::string case_line(const CaseResult& result);
 /// without a time last. Where the floor was timed, its line ends the table, and each time is given in floors
 /// as well. Plain text.
 std::string table_of(const CaseResult& result);
-
-/// "AMD EPYC, 2 cores, AVX-512: 10 processes from 2026-11-21 to 2026-11-23, revision a2bd2dd, GNU 12.2.0
-/// ...".
-std::string heading_of(const Results& results);
-
-/// How many times as fast as the fastest peer our best is, a line a case and a column a machine, and at last
-/// their geometric means. All have the cases of the first.
-std::string leads_of(std::span<const Results> machines);
 
 /// What all cases come to: each algorithm's ratio to the fastest as a geometric mean, how many measurements
 /// there were and whether all were verified, each failure with what diverged first, and what could not be

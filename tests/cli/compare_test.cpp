@@ -148,46 +148,14 @@ TEST(CompareVerb, LeavesAnOlderFileAsItWasWhenNoCaseHadEnded) {
   EXPECT_EQ(text_of(file), "older");
 }
 
-TEST(CompareVerb, MergesItsRunsAndKeepsTheSamplesApart) {
-  const TemporaryFolder folder;
-  const std::vector<std::string> files = {folder.file("1.json"), folder.file("2.json")};
-  for (const std::string& file : files) ASSERT_EQ(run(with(small, {"--json", file})).status, 0);
-  const std::string merged = folder.file("merged.json");
-  const std::string samples = folder.file("samples.json");
-  const Ended ended = run({"compare", "--merge", files[0], files[1], "--json", merged, "--samples", samples});
-  ASSERT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output, AllOf(HasSubstr(": 2 processes, "), HasSubstr("All 8 cases")));
-  const Json summary = Json::parse(text_of(merged));
-  Json archive = Json::parse(text_of(samples));
-  EXPECT_TRUE(summary["measurements"][0]["samples_ms"].is_null());
-  for (Json& measurement : archive["measurements"]) {
-    EXPECT_EQ(measurement["samples_ms"].size(), measurement["rounds"]);
-    measurement["samples_ms"] = nullptr;
-  }
-  EXPECT_EQ(archive, summary);
-
-  // An archive is merged as what it was made of, gzipped too; the summary has no samples to merge.
-  EXPECT_EQ(shell("gzip -kn " + samples).status, 0);
-  const std::string again = folder.file("again.json");
-  EXPECT_EQ(run({"compare", "--merge", samples + ".gz", "--json", again}).status, 0);
-  EXPECT_EQ(text_of(again), text_of(samples));
-  EXPECT_THAT(run({"compare", "--merge", merged}).errors,
-              HasSubstr("samples_ms is 'null'; expected the samples"));
+TEST(CompareVerb, NamesWhatToUseInsteadOfOptionsThatItHadOnce) {
+  EXPECT_THAT(run({"compare", "--merge", "1.json"}).errors,
+              HasSubstr("'--merge' is no longer there; expected `python3 -m tools.paper compare`"));
+  EXPECT_THAT(run({"compare", "uniform", "--samples=s.json"}).errors,
+              HasSubstr("'--samples' is no longer there; expected --json"));
 }
 
-TEST(CompareVerb, WritesNothingWhereItCannotMerge) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("1.json");
-  ASSERT_EQ(run(with(small, {"--json", file})).status, 0);
-  const std::string merged = folder.put("merged.json", "older");
-  const Ended twice = run({"compare", "--merge", file, file, "--json", merged});
-  EXPECT_EQ(twice.status, 2);
-  EXPECT_THAT(twice.errors, HasSubstr("1.json: holds a run that is in "));
-  EXPECT_EQ(text_of(merged), "older");
-  EXPECT_THAT(run({"compare", "--merge", file, "--long"}).errors, HasSubstr("--long says what to measure"));
-  EXPECT_THAT(run({"compare", "--merge", file, "--json", file}).errors, HasSubstr("which is the input"));
-  EXPECT_THAT(run({"compare", "uniform", "--samples", folder.file("s.json")}).errors,
-              HasSubstr("expected both or neither"));
+TEST(CompareVerb, RefusesACheckThatIsNone) {
   EXPECT_THAT(run({"compare", "uniform", "--check", "all"}).errors,
               HasSubstr("--check is 'all'; expected definition= and a number of boxes"));
 }

@@ -111,8 +111,6 @@ export interface Ratio {
   high: number | null;
   /** Rounds in which both took part; null where it is not known. */
   rounds: number | null;
-  /** Processes in which these were; not in results of before processes were merged. */
-  processes?: number;
   /** The median times of the two in those rounds, in milliseconds; not in older results. */
   ms?: number;
   of_ms?: number;
@@ -154,8 +152,6 @@ export interface Measurement {
   p99_ms: number | null;
   max_ms: number | null;
   samples_ms: number[] | null;
-  /** Where processes were merged: the rounds of each, in the order of samples_ms. */
-  rounds_of_processes?: number[];
   /** Each null where there is nothing to compare with. */
   ratio_to_fastest: Ratio | null;
   ratio_to_best_own: Ratio | null;
@@ -175,8 +171,8 @@ export interface Measurement {
 
 export type RatioName = "ratio_to_fastest" | "ratio_to_best_own" | "ratio_to_fastest_peer";
 
-/** The results of one machine. */
-export interface MachineResults {
+export interface Comparison {
+  schema: "broadside.results/2";
   /** "2026-11-21"; null where it is not known. */
   date: string | null;
   machine: Machine;
@@ -186,13 +182,5 @@ export interface MachineResults {
   /** Processor time over wall time of the run, about 1 for one thread; null where it is not known. */
   processor_share: number | null;
   busy: boolean | null;
-  /** The processes that were merged; absent where there was one. */
-  processes?: { date: string; processor_share: number }[];
   measurements: Measurement[];
-}
-
-export interface Comparison extends MachineResults {
-  schema: "broadside.results/2";
-  /** The same cases on other machines, where results were merged. */
-  other_machines?: MachineResults[];
 }

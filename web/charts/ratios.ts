@@ -1,25 +1,12 @@
 // Ratios of times with their intervals, and how they are shown.
 import type { Ratio } from "./data.ts";
-import { geometricMean, ratioText } from "./numbers.ts";
+import { ratioText } from "./numbers.ts";
 
 export type Interval = readonly [low: number, high: number];
 
 /** The interval of a ratio; undefined where there is none, as of an algorithm's ratio to itself, which is just 1. */
 export function intervalOf({ low, high }: Ratio): Interval | undefined {
   return low === null || high === null || low === high ? undefined : [low, high];
-}
-
-/** The geometric mean of ratios, with the 95 % interval that follows from theirs, which are of measurements apart. */
-export function meanRatio(ratios: readonly Ratio[]): Ratio {
-  const median = geometricMean(ratios.map((ratio) => ratio.median));
-  // Half widths of logarithms add up by their squares. A ratio without an interval is not known so well.
-  let squares = 0;
-  for (const { median: ratio, low, high } of ratios) {
-    if (low === null || high === null) return { of: "", median, low: null, high: null, rounds: null };
-    if (ratio !== 1) squares += (Math.log(high / low) / 2) ** 2;
-  }
-  const width = Math.exp(Math.sqrt(squares) / ratios.length);
-  return { of: "", median, low: median / width, high: median * width, rounds: null };
 }
 
 /** One over a ratio, the other way round. */
@@ -31,11 +18,6 @@ export function inverse({ of, median, low, high, rounds }: Ratio): Ratio {
 export function isLevel(ratio: Ratio): boolean {
   const interval = intervalOf(ratio);
   return interval !== undefined && interval[0] <= 1 && interval[1] >= 1;
-}
-
-/** Whether the time is clearly the shorter one; without an interval, whether the ratio says so. */
-export function isFaster(ratio: Ratio): boolean {
-  return (intervalOf(ratio)?.[1] ?? ratio.median) < 1;
 }
 
 /** Whether to say that the two are level: isLevel() by an interval that is not wide. */

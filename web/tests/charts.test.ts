@@ -8,7 +8,7 @@ import {
   intervalText, ratioText, timeText,
 } from "../charts/index.ts";
 import type { ChartSpec, Drawn, Place, Table } from "../charts/index.ts";
-import { inverse, meanRatio } from "../charts/ratios.ts";
+import { inverse } from "../charts/ratios.ts";
 import { logTicks } from "../charts/frame.ts";
 import { svgOf } from "../charts/render.ts";
 import { comparison } from "./fixture.ts";
@@ -198,14 +198,6 @@ test("every chart is drawn in Node, in both themes, the same each time, whatever
       }
     }
   }
-});
-
-test("the mean of ratios has an interval that is narrower than theirs", () => {
-  const ratio = { of: "a", median: 2, low: 1.6, high: 2.5, rounds: 8 };
-  const mean = meanRatio([ratio, ratio, ratio, ratio]);
-  assert.equal(mean.median.toFixed(3), "2.000");
-  assert.deepEqual([mean.low!.toFixed(3), mean.high!.toFixed(3)], ["1.789", "2.236"]);
-  assert.equal(meanRatio([ratio, { ...ratio, low: null, high: null }]).low, null);
 });
 
 test("a ratio the other way round keeps its interval in order", () => {

@@ -86,23 +86,6 @@ describe("the program", { skip: missing }, () => {
       assert.ok(measurements.some((measurement) => measurement[name] === value), `${name} ${value}`);
   });
 
-  test("merges comparisons to what fits their schema, with samples and without", () => {
-    const words = ["compare", "--scenes", "uniform", "-n", "60", "--algorithms", "auto,grid,paper_grid"];
-    const files = [1, 2].map((i) => {
-      const file = join(folder, `run${i}.json`);
-      execFileSync(program, [...words, "--json", file]);
-      return file;
-    });
-    const samples = join(folder, "samples.json");
-    const merged = written("compare", "--merge", ...files, "--samples", samples);
-    assert.equal(faultOfResults(merged), "");
-    assert.equal(faultOfResults(readJson(samples)), "");
-    assert.equal((merged["processes"] as Json[]).length, 2);
-    const { schema: _, ...other } = merged;
-    assert.equal(faultOfResults({ ...merged, other_machines: [other] }), "");
-    assert.match(faultOfResults({ ...merged, other_machines: [] }), /must NOT have fewer than 1 items/);
-  });
-
   test("writes experiments that fit their schema", () => {
     const results = written("experiment", "--quick", "brute_force_tests");
     assert.equal(faultOfExperiments(results), "");

@@ -2,7 +2,6 @@
 #include "lab/formats/json/json_place.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,15 +65,6 @@ double JsonPlace::number() const {
 std::uint64_t JsonPlace::count() const {
   if (!value_->is_number_unsigned()) refuse("a whole number of at least 0");
   return value_->get<std::uint64_t>();
-}
-
-std::uint64_t JsonPlace::hash() const {
-  const std::string digits = text();
-  std::uint64_t hash = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [rest, error] = std::from_chars(digits.data(), end, hash, 16);
-  if (error != std::errc() || rest != end || digits.size() != 16) refuse("16 hexadecimal digits");
-  return hash;
 }
 
 }  // namespace broadside::lab

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,7 +28,6 @@ class JsonPlace {
   /// What errors call it.
   const std::string& name() const { return place_; }
 
-  bool is_null() const { return value_->is_null(); }
   const nlohmann::ordered_json& json() const { return *value_; }
 
   /// Whether it is an object with this field.
@@ -43,7 +41,6 @@ class JsonPlace {
 
   std::vector<JsonPlace> list() const;
   std::string text() const;
-  std::string text_or_empty() const { return is_null() ? "" : text(); }
   bool truth() const;
 
   /// A number of at least 0.
@@ -51,14 +48,6 @@ class JsonPlace {
 
   /// A whole number of at least 0.
   std::uint64_t count() const;
-
-  /// A text of 16 hexadecimal digits.
-  std::uint64_t hash() const;
-
-  template <typename Value>
-  std::optional<Value> or_empty(Value (JsonPlace::*read)() const) const {
-    return is_null() ? std::nullopt : std::optional<Value>((this->*read)());
-  }
 
  private:
   const nlohmann::ordered_json* value_;

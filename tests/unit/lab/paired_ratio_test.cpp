@@ -101,11 +101,11 @@ TEST(RatiosBySeed, KnowLessOfOneSeedRepeatedThanOfManySeeds) {
 TEST(GeometricMean, AveragesNoiseOutOverCases) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.1);
-  std::vector<RatiosByProcess> pairs;
+  std::vector<RatiosBySeed> pairs;
   for (int i = 0; i < 20; ++i) {
     std::vector<double> times;
     for (int round = 0; round < 10; ++round) times.push_back(2 * std::exp(noise(random)));
-    pairs.emplace_back(RatiosBySeed(times, std::vector<double>(10, 1.0), 10));
+    pairs.emplace_back(times, std::vector<double>(10, 1.0), 10);
   }
   const MeanRatio mean = geometric_mean(pairs);
   const Interval one = pairs[0].interval().value();
@@ -114,91 +114,14 @@ TEST(GeometricMean, AveragesNoiseOutOverCases) {
   EXPECT_TRUE(mean.interval.includes(2));
 }
 
-Measurement in_processes(std::string algorithm, const std::vector<std::vector<double>>& processes) {
-  Measurement measurement = with(std::move(algorithm), {});
-  for (const std::vector<double>& samples : processes) {
-    measurement.samples_ms.insert(measurement.samples_ms.end(), samples.begin(), samples.end());
-    measurement.rounds_of_processes.push_back(samples.size());
-  }
-  return measurement;
-}
-
-Case with_seeds(std::size_t count) {
-  Case of;
-  of.seeds.assign(count, 1);
-  return of;
-}
-
-TEST(RatiosByProcess, ComeWithTheTimesOfTheRoundsThatTheyAreOf) {
+TEST(PairedRatio, ComesWithTheTimesOfTheRoundsThatItIsOf) {
   // The entry is faster once the other one, which left early, is gone.
-  const Measurement entry = in_processes("a", {{2, 2, 1, 1, 1}, {8}});
-  const Measurement other = in_processes("b", {{6, 6}, {6}});
-  const PairedRatio ratio = paired_ratio(with_seeds(1), entry, other);
-  EXPECT_DOUBLE_EQ(ratio.ms, 4);
+  Case of;
+  of.seeds = {1};
+  const PairedRatio ratio = paired_ratio(of, with("a", {2, 2, 1, 1, 1}), with("b", {6, 6}));
+  EXPECT_DOUBLE_EQ(ratio.ms, 2);
   EXPECT_DOUBLE_EQ(ratio.of_ms, 6);
   EXPECT_DOUBLE_EQ(ratio.median, ratio.ms / ratio.of_ms);
-}
-
-TEST(RatiosByProcess, TakeEachProcessForOneRatio) {
-  // A thousand rounds of each of two processes say no more than the two.
-  const Measurement entry = in_processes("a", {std::vector<double>(1'000, 2), std::vector<double>(1'000, 8)});
-  const Measurement other = in_processes("b", {std::vector<double>(1'000, 1), std::vector<double>(1'000, 1)});
-  const RatiosByProcess ratios(with_seeds(1), entry, other);
-  EXPECT_EQ(ratios.process_count(), 2u);
-  EXPECT_EQ(ratios.rounds(), 2'000u);
-  EXPECT_NEAR(ratios.ratio(), 4, 1e-12);
-  // Half the distance of the logarithms is their mean's standard error; Student's quantile is 12.706.
-  EXPECT_NEAR(ratios.interval()->high, 4 * std::exp(12.706 * std::log(2)), 1e-3 * ratios.interval()->high);
-}
-
-TEST(RatiosByProcess, PairRoundsAndSeedsWithinAProcess) {
-  // In the first process only the first two rounds are common; its seeds' ratios are 2 and 4, the other's 3
-  // and 4.
-  const Measurement entry = in_processes("a", {{2, 4}, {6, 12, 6, 12}});
-  const Measurement other = in_processes("b", {{1, 1, 9}, {2, 3, 2, 3}});
-  const RatiosByProcess ratios(with_seeds(2), entry, other);
-  EXPECT_EQ(ratios.rounds(), 6u);
-  EXPECT_NEAR(ratios.ratio(), std::sqrt(std::sqrt(2 * 4) * std::sqrt(3 * 4)), 1e-12);
-}
-
-TEST(RatiosByProcess, LeaveOutAProcessInWhichOneWasSkipped) {
-  const Measurement entry = in_processes("a", {{2}, {}, {2}});
-  const Measurement other = in_processes("b", {{1}, {1}, {}});
-  const RatiosByProcess ratios(with_seeds(1), entry, other);
-  EXPECT_EQ(ratios.process_count(), 1u);
-  EXPECT_EQ(ratios.ratio(), 2);
-  EXPECT_FALSE(ratios.interval());
-  EXPECT_FALSE(were_together(entry, in_processes("c", {{}, {1}, {}})));
-}
-
-TEST(RatiosByProcess, HoldTheTruthAsOftenAsTheySayThoughRoundsDependOnTheirProcess) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> of_process(0, 0.1);
-  std::normal_distribution<double> of_round(0, 0.02);
-  std::size_t held = 0;
-  constexpr std::size_t trials = 400;
-  for (std::size_t trial = 0; trial < trials; ++trial) {
-    std::vector<std::vector<double>> times(10);
-    for (std::vector<double>& process : times) {
-      const double shift = of_process(random);
-      for (int round = 0; round < 20; ++round) process.push_back(2 * std::exp(shift + of_round(random)));
-    }
-    const Measurement one =
-        in_processes("b", std::vector<std::vector<double>>(10, std::vector<double>(20, 1.0)));
-    if (RatiosByProcess(with_seeds(4), in_processes("a", times), one).interval()->includes(2)) ++held;
-  }
-  EXPECT_GE(held, trials * 92 / 100);
-  EXPECT_LE(held, trials * 98 / 100);
-}
-
-TEST(GeometricMean, CountsAProcessThatIsSlowInEveryCaseOnce) {
-  // Ten cases that all say the same of two processes say no more than one case.
-  std::vector<RatiosByProcess> pairs;
-  for (int i = 0; i < 10; ++i)
-    pairs.emplace_back(with_seeds(1), in_processes("a", {{2}, {8}}), in_processes("b", {{1}, {1}}));
-  const MeanRatio mean = geometric_mean(pairs);
-  EXPECT_NEAR(mean.mean, 4, 1e-12);
-  EXPECT_NEAR(mean.interval.high, pairs[0].interval()->high, 1e-6 * mean.interval.high);
 }
 
 TEST(AddRatios, ComparesWithTheFastestOurBestAndTheFastestPeer) {
