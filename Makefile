@@ -2,12 +2,10 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper paper-results published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
-results := paper/results
-published := build/published
 PROCESSES := 10
 sources := find $(wildcard include src bindings distributed integrations paper lab cli tests bench examples) -name '*.[ch]pp'
 # The sources that a build compiles, of which some include several others.
@@ -30,23 +28,11 @@ experiments: program ## Measure the paper's experiments in RUNS=3 runs and judge
 	$(debian_python) -m tools.paper run --runs $(RUNS)
 	$(debian_python) -m tools.paper judge
 
-paper-results: program ## Measure what the paper quotes, on this machine: half an hour
-	mkdir -p build/paper $(results)
-	build/release/broadside experiment --json build/paper/measured.json
-	build/release/broadside compare --json $(results)/comparison.json --samples build/paper/samples.json
-	cp build/paper/measured.json $(results)/experiments.json
-
-# Commits alone tell a revision from another, so there must be nothing that is not committed. Files of other machines,
-# made by the same target there, are merged in by OTHERS.
-published: program ## The comparison in PROCESSES=10 processes, merged with OTHERS=: $(published)/
+# Commits alone tell a revision from another, so there must be nothing that is not committed.
+published: program ## Measure the comparison in PROCESSES=10 processes, then publish it and the experiments: tools/paper/results
 	git diff --quiet HEAD
-	rm -rf $(published)/processes
-	mkdir -p $(published)/processes
-	for i in $$(seq -w $(PROCESSES)); do \
-	  build/release/broadside compare --check definition=100000 --json $(published)/processes/$$i.json || exit 1; done
-	build/release/broadside compare --merge $(published)/processes/*.json $(OTHERS) \
-	  --json $(published)/comparison.json --samples $(published)/samples.json
-	gzip -9nf $(published)/samples.json
+	$(debian_python) -m tools.paper compare --runs $(PROCESSES)
+	$(debian_python) -m tools.paper publish
 
 bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak
 	cmake --build --preset release --target motion $(soak)
@@ -159,7 +145,7 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench paper-results published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper experiments: setup_options := --paper
 
