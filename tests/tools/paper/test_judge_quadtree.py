@@ -46,8 +46,8 @@ class OnSizes(unittest.TestCase):
         self.assertEqual(self.verdicts(leaves=lambda size, side: 16.0 / side**2)[0], Verdict.REFUTED)
 
     def test_bookkeeping_takes_references_and_time(self):
-        self.assertEqual(self.verdicts(references=1.1)[2], Verdict.REFUTED)
-        self.assertEqual(self.verdicts(time=1.0)[2], Verdict.OPEN)
+        self.assertEqual(self.verdicts(references=1.1, time=1.0)[2], Verdict.REFUTED)
+        self.assertEqual(self.verdicts(time=1.0)[2], Verdict.WITHIN_BOUNDS)
 
 
 class OnSiblings(unittest.TestCase):

@@ -13,9 +13,9 @@ from ..results import Results, Run
 from ..rules import Rules
 from ..statistics import Estimate
 
-SIDE = 64                           # of the world in which one box is followed; a small box stands in each unit square
-LEAVES = (16, 8, 4, 2, 1)           # sides of leaves: a level each
-SINGLE = (0.25, 1.0, 4.0, 16.0, 32.0)  # lengths of the box that is followed
+SIDE = 32                        # of the world in which one box is followed; a small box stands in each unit square
+LEAVES = (8, 4, 2, 1)            # sides of leaves: a level each
+SINGLE = (0.25, 1.0, 4.0, 16.0)  # lengths of the box that is followed
 LARGE_SIDE = 100
 LARGE = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)  # lengths of one box in a hundred
 TREE, YARDSTICK = "paper_quadtree", "bvh"
@@ -34,7 +34,7 @@ def with_one(size: float) -> Boxes:
         small = small_boxes(SIDE, random)
         minima = random.uniform(0, SIDE - size, 2)
         return numpy.vstack([small, [*minima, *(minima + size)]])
-    return Boxes(f"one-{size:g}", make, inputs=16)
+    return Boxes(f"one-{size:g}", make, inputs=64)
 
 
 def with_large(size: float) -> Boxes:
@@ -107,10 +107,10 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
 
     references = grown(results, TREE, lambda run, case, spec: run.count(case, spec, "references"))
     time = grown(results, TREE, lambda run, case, spec: run.ratio(case, spec, YARDSTICK))
-    bookkeeping = {"one box in a hundred is large": {
-        "times as many references": Asked(references, above=rules.twice, fails_at=rules.clearly),
-        "time over a tree of bounds, times as much": Asked(time, above=rules.level, fails_at=0),
-    }}
+    bookkeeping = {
+        "in references": {"times as many references": Asked(references, above=rules.twice, fails_at=rules.clearly)},
+        "in time": {"time over a tree of bounds, times as much": Asked(time, above=rules.level)},
+    }
     beside = {}
     for size in LARGE:
         beside[f"references of a box, large ones of {size:g}"] = results.count(large_case(size), TREE, "references")
@@ -120,7 +120,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     return [
         judged_all("7a", unit, where="it is {}"),
         judged_all("7b", fourfold, beside=levels),
-        judged_all("7c", bookkeeping, beside=beside),
+        judged_all("7c", bookkeeping, where="it is counted {}", beside=beside),
     ]
 
 
@@ -155,6 +155,7 @@ EXPERIMENT = Experiment(
         Claim("7c",
               "With one box in a hundred large, a box has more than {twice} times as many references as with small "
               "ones alone; and the time, over that of a tree of bounds, which has the same pairs to report and one "
-              "reference a box, is more than {level} times as much.", "A box has fewer than {clearly} times as many."),
+              "reference a box, is more than {level} times as much.",
+              "A box has fewer than {clearly} times as many, and the time is less than {level} times as much."),
     ],
     cases=cases, judge=judge, figures=draw)

@@ -85,11 +85,13 @@ def axis_case(scene: str, dimension: int) -> str:
 
 
 def cases() -> list[Case]:
+    effort = {"min_rounds": 4}  # of what is slow
     worlds = [Case(world, Boxes(f"world-{place}", make), [SWEEP, "sweep_and_prune", *BOUNDED],
-                   take=["time", "counts", "memory"]) for place, (world, (make, _)) in enumerate(WORLDS.items())]
+                   take=["time", "counts", "memory"], effort=effort)
+              for place, (world, (make, _)) in enumerate(WORLDS.items())]
     axes = [Case(axis_case(scene, dimension), towers(dimension) if scene == "towers" else scene,
                  [*axes_of(dimension), CHOSEN, STRIPES, SWEEP], boxes=BOXES, dimension=dimension,
-                 effort={"min_rounds": 4}) for scene, dimension in SCENES]
+                 effort=effort) for scene, dimension in SCENES]
     return worlds + axes
 
 
