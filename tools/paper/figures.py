@@ -71,12 +71,13 @@ def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
             axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-def line(axes: Axes, x: Sequence, y: Sequence, name: str = "") -> None:
-    """A line through figures, with their intervals as bars; numbers along one axis, estimates along the other."""
+def line(axes: Axes, x: Sequence, y: Sequence, name: str = "", joined: bool = True) -> None:
+    """A line through figures, with their intervals as bars; numbers along one axis, estimates along the other.
+    Points alone where nothing lies between them."""
     number = len(axes.containers)
     (x, x_bars), (y, y_bars) = _values_and_bars(x), _values_and_bars(y)
     axes.errorbar(x, y, y_bars, x_bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
-                  elinewidth=0.8)
+                  elinewidth=0.8, linestyle="-" if joined else "none")
 
 
 def _values_and_bars(numbers: Sequence) -> tuple[Sequence[float], numpy.ndarray | None]:

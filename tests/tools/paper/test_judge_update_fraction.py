@@ -42,7 +42,7 @@ class OnWhatChanged(unittest.TestCase):
         self.assertEqual(found["9d"].condition.split("; ")[:2], [
             "by a flag alone where 10 of 10,000 move: grid, sweep and quadtree",
             "by a flag alone where 100 of 10,000 move: quadtree"])
-        even = found["9d"].beside["by a flag alone in the grid, no longer faster from (of 1,000)"]
+        even = found["9d"].beside["by a flag alone in the grid of 1,000, no longer faster from"]
         self.assertAlmostEqual(even.value, 50, delta=5)
         self.assertEqual(self.findings(mending=2.0, searching=lambda structure, movers: 2.0)["9d"].verdict,
                          Verdict.REFUTED)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import isfinite
 
 from .. import figures
 from ..experiment import Case, Claim, Experiment
@@ -89,6 +90,11 @@ def even(results: Results, numbers: Sequence[int], boxes: int, way: Callable[[in
         run.ratio(case_of(movers, boxes), one, anew(one), part) for movers, one in ways_of.items()]), "movers")
 
 
+def reached(figures_by_name: Mapping[str, Estimate]) -> dict[str, Estimate]:
+    """Without crossings beyond what was measured."""
+    return {name: at for name, at in figures_by_name.items() if isfinite(at.value)}
+
+
 def judge_mending(number: str, part: Sequence[str], results: Results, rules: Rules,
                   beside: Mapping[str, Estimate]) -> Finding:
     """By what happens where the fewest move; how far it goes stands beside."""
@@ -101,7 +107,7 @@ def judge_mending(number: str, part: Sequence[str], results: Results, rules: Rul
             results, case_of(BOXES), best(results, structure, BOXES), part)
     return judged(number, {f"the structure is the {name}": over_rebuilding(
         results, case_of(FEWEST), best(results, structure, FEWEST), part)
-        for structure, name in STRUCTURES.items()}, below=1 / rules.level, beside={**shown, **beside})
+        for structure, name in STRUCTURES.items()}, below=1 / rules.level, beside={**reached(shown), **beside})
 
 
 def judge_detection(results: Results, rules: Rules) -> Finding:
@@ -119,20 +125,20 @@ def judge_searching(results: Results, rules: Rules) -> Finding:
     """By a flag alone a box is searched in the whole structure; by its previous state, where it was."""
     places, shown, held = {}, {}, []
     for words, way in KNOWN.items():
-        for structure, name in STRUCTURES.items():
-            for boxes in (BOXES, FEWER_BOXES):
-                shown[f"{words} in the {name}, no longer faster from (of {boxes:,})"] = even(
-                    results, SEARCHED, boxes, lambda _: way(structure), MENDING)
         for movers in (FEWEST, FEW):
             ratios = {name: over_rebuilding(results, case_of(movers), way(structure))
                       for structure, name in STRUCTURES.items()}
             places |= {f"{words} in the {name}, {movers:,} movers": at for name, at in ratios.items()}
             if names := [name for name, at in ratios.items() if at.is_below(1 / rules.level)]:
                 held.append(f"{words} where {movers:,} of {BOXES:,} move: {listing(names)}")
+    for structure, name in STRUCTURES.items():
+        for boxes in (BOXES, FEWER_BOXES):
+            shown[f"by a flag alone in the {name} of {boxes:,}, no longer faster from"] = even(
+                results, SEARCHED, boxes, lambda _: spec(structure, SEARCH), MENDING)
     for movers in (FEWEST, FEW):
         shown[f"the grid searched once for all, {movers:,} movers"] = over_rebuilding(
             results, case_of(movers), spec("paper_grid", "search_once"))
-    finding = judged("9d", places, below=1 / rules.level, beside=shown)
+    finding = judged("9d", places, below=1 / rules.level, beside=reached(shown))
     is_bounded = finding.verdict is Verdict.WITHIN_BOUNDS
     return replace(finding, condition="; ".join(held)) if is_bounded else finding
 
