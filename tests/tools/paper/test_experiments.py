@@ -55,8 +55,10 @@ class Experiments(unittest.TestCase):
     def test_list_cases_that_the_program_takes(self):
         for experiment in all_experiments().values():
             with tempfile.TemporaryDirectory() as folder:
-                numpy.save(Path(folder) / "boxes.npy", numpy.array([[0, 0, 1, 1]], dtype=numpy.float32))
-                cases = [case.listed(1, ["boxes.npy"]) for case in experiment.cases()]
+                for dimension in (2, 3):
+                    box = numpy.array([[0] * dimension + [1] * dimension], dtype=numpy.float32)
+                    numpy.save(Path(folder) / f"{dimension}.npy", box)
+                cases = [case.listed(1, [f"{case.dimension}.npy"]) for case in experiment.cases()]
                 listed = Path(folder) / "cases.json"
                 listed.write_text(json.dumps({"schema": "broadside.cases/1", "effort": EFFORT, "cases": cases}))
                 ended = subprocess.run([PROGRAM, "measure", listed, "--check"], cwd=folder, capture_output=True,
