@@ -19,7 +19,7 @@ import jinja2
 
 from . import draft, figures
 from .archive import Archive
-from .experiment import Claim, Experiment, Unusable
+from .experiment import Claim, Experiment, Unusable, order_of
 from .judge import Finding, Verdict, judge, listing
 from .rules import RuleBook, Rules
 from .statistics import digits
@@ -182,10 +182,12 @@ def statements_table(content: Content, is_ours: bool = False, is_whole: bool = T
         if statement.number in claims:
             return claims[statement.number].verdict
         return "not measured" if statement.number in unmeasured else f"({statement.kind})"
+    shown = [one for one in content.statements.values() if (one.kind == "our claim") == is_ours]
+    if not is_whole:
+        shown = sorted((one for one in shown if one.number in unmeasured or one.number in claims),
+                       key=lambda one: order_of(one.number))
     return Table(["statement", "what it says", "verdict"],
-                 [[one.number, one.says, verdict(one)] for one in content.statements.values()
-                  if (one.kind == "our claim") == is_ours
-                  and (is_whole or one.number in claims or one.number in unmeasured)]).markdown()
+                 [[one.number, one.says, verdict(one)] for one in shown]).markdown()
 
 
 def evidence_table(claim: JudgedClaim) -> str:
