@@ -30,7 +30,7 @@ matplotlib.rcParams.update({
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd",
     "grid.linewidth": 0.5, "lines.linewidth": 1.2, "lines.markersize": 3.5, "axes.prop_cycle":
     matplotlib.cycler(color=COLOURS), "svg.hashsalt": "broadside", "svg.fonttype": "path",
-    "figure.constrained_layout.use": True, "pdf.fonttype": 42,
+    "figure.constrained_layout.use": True, "figure.max_open_warning": 0, "pdf.fonttype": 42,
 })
 
 # What algorithms are called in figures and tables.

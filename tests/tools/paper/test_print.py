@@ -9,14 +9,18 @@ import tempfile
 import unittest
 from contextlib import redirect_stderr
 from pathlib import Path
+from unittest import mock
 
+import test_comparison
 from made_results import results_of
 from matplotlib import pyplot
 from test_run import SMALL, STATEMENTS
-from tools.paper import print as printing
+from tools.paper import draft, print as printing
 from tools.paper.__main__ import PAGES, PUBLISHED, ROOT, gathered
-from tools.paper.comparison import Comparison
-from tools.paper.experiment import Unusable
+from tools.paper.archive import Archive
+from tools.paper.comparison import Comparison, load
+from tools.paper.comparison_cases import COMPARISON, kept
+from tools.paper.experiment import Unusable, all_experiments
 from tools.paper.figures import Figure, new
 from tools.paper.judge import judge
 from tools.paper.rules import RuleBook
@@ -25,6 +29,7 @@ from tools.paper.tables import Table
 RUN = {"run": 1, "quick": False, "seconds": 30.0, "date": "2026-11-26", "machine": {"cpu": "one", "cores": 2},
        "build": {"version": "1.0"}, "processor_share": 0.5, "busy": True, "load_before": None, "load_after": 0.25,
        "measurements": 5, "unsteady": 1}
+PHASES = ("initializing_ms", "adding_ms", "searching_ms", "detecting_ms", "finding", "written")
 HAS_PRINTERS = all(map(shutil.which, ("pandoc", "pdflatex", "rsvg-convert")))
 
 
@@ -156,6 +161,37 @@ class Pages(unittest.TestCase):
         (self.templates / "quotes" / "leads.md").unlink()
         with self.assertRaisesRegex(Unusable, "leads"):
             printing.fill_quotes(content(), self.folder)
+
+
+class TheTemplates(unittest.TestCase):
+    def judged(self, experiment) -> printing.JudgedExperiment:
+        """By results of a model in which algorithms differ somehow."""
+        book, statements = RuleBook(), draft.statements()
+        results = results_of(experiment, lambda case, spec: 1 + len(case.name + spec) % 7 / 7,
+                             lambda case, spec: (2.0 + len(spec) % 5, 3.0), lambda case, spec: dict.fromkeys(PHASES, 1.0))
+        claims = [printing.judged_claim(claim, finding, book.of(experiment.name), statements, experiment.name)
+                  for claim, finding in zip(experiment.claims, judge(experiment, results, book))]
+        return printing.JudgedExperiment(experiment, claims, list(experiment.figures(results, book.of(experiment.name))),
+                                         [RUN])
+
+    def test_name_only_what_there_is(self):
+        self.addCleanup(pyplot.close, "all")
+        with tempfile.TemporaryDirectory() as name, mock.patch("tools.paper.figures.save"):
+            folder = Path(name)
+            for process in range(1, 6):
+                Archive(folder).write(process, COMPARISON, RuleBook(), "program", False, 60,
+                                      kept(test_comparison.results_of(process)))
+            content = printing.Content([self.judged(one) for one in all_experiments().values()], [],
+                                       draft.statements(), RuleBook(), load(folder))
+            pages = {page.name: page.read_text() for page in printing.write_pages(content, folder / "pages")}
+            (folder / "docs").mkdir()
+            for quoting in printing.QUOTING:
+                shutil.copy(ROOT / quoting, folder / quoting)
+            printing.fill_quotes(content, folder)
+        self.assertNotIn(printing.NOT_MEASURED, "".join(pages.values()))
+        known = set(re.findall(r"^@\w+{(\w+),", (printing.TEMPLATES / "references.bib").read_text(), re.M))
+        cited = set(re.findall(r"(?<![\w`])@(\w+)", pages[printing.PAPER]))
+        self.assertEqual(cited, known)
 
 
 @unittest.skipUnless(PUBLISHED.exists(), "tools/paper/results is missing; expected what `make paper` prints")
