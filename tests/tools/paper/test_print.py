@@ -167,12 +167,12 @@ class TheTemplates(unittest.TestCase):
     def judged(self, experiment) -> printing.JudgedExperiment:
         """By results of a model in which algorithms differ somehow."""
         book, statements = RuleBook(), draft.statements()
+        rules = book.of(experiment.name)
         results = results_of(experiment, lambda case, spec: 1 + len(case.name + spec) % 7 / 7,
-                             lambda case, spec: (2.0 + len(spec) % 5, 3.0), lambda case, spec: dict.fromkeys(PHASES, 1.0))
-        claims = [printing.judged_claim(claim, finding, book.of(experiment.name), statements, experiment.name)
+                             lambda case, spec: (2 + len(spec) % 5, 3), lambda case, spec: dict.fromkeys(PHASES, 1.0))
+        claims = [printing.judged_claim(claim, finding, rules, statements, experiment.name)
                   for claim, finding in zip(experiment.claims, judge(experiment, results, book))]
-        return printing.JudgedExperiment(experiment, claims, list(experiment.figures(results, book.of(experiment.name))),
-                                         [RUN])
+        return printing.JudgedExperiment(experiment, claims, list(experiment.figures(results, rules)), [RUN])
 
     def test_name_only_what_there_is(self):
         self.addCleanup(pyplot.close, "all")
@@ -196,7 +196,7 @@ class TheTemplates(unittest.TestCase):
 
 @unittest.skipUnless(PUBLISHED.exists(), "tools/paper/results is missing; expected what `make paper` prints")
 class PublishedPages(unittest.TestCase):
-    """docs/paper has what the committed results print: as text where there is pandoc, and the PDF by the page's sum."""
+    """docs/paper has what the committed results print; the paper's page where there is pandoc, the PDF by its sum."""
 
     def test_are_what_the_results_print(self):
         content = gathered(PUBLISHED, None, [], is_whole=True)
