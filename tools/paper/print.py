@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -180,7 +181,8 @@ def statements_table(content: Content, is_ours: bool = False, is_whole: bool = T
     unmeasured = {claim.number for experiment in content.unmeasured for claim in experiment.claims}
     def verdict(statement: draft.DraftStatement) -> str:
         if statement.number in claims:
-            return claims[statement.number].verdict
+            text = claims[statement.number].verdict
+            return text if is_whole else textwrap.shorten(text, 150, placeholder=" ...")
         return "not measured" if statement.number in unmeasured else f"({statement.kind})"
     shown = [one for one in content.statements.values() if (one.kind == "our claim") == is_ours]
     if not is_whole:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 LINE = 110   # characters of a printed line of a table
-SHORT = 14   # a column up to so wide keeps its width, the others share what is left
+SHORT = 22   # a column up to so wide keeps its width, the others share what is left
 
 
 @dataclass(frozen=True)

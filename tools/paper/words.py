@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from .print import JudgedClaim
 
 NOT_MEASURED = "(not measured)"
+NONE = "none that was measured"
 DIAGRAMS = ("swept_grid", "packed_tree")  # docs/paper/diagrams/
 
 
@@ -34,7 +36,7 @@ class Words:
         self._pictures: list[str] = []  # in the order of the text, which gives them their numbers
 
     def names(self) -> dict[str, Callable]:
-        names = ("figure", "span", "least", "greatest", "verdict", "by", "picture", "see", "fact", "table")
+        names = ("figure", "span", "verdict", "by", "picture", "see", "fact", "table")
         return {name: getattr(self, name) for name in names}
 
     def claim(self, number: str) -> JudgedClaim | None:
@@ -62,20 +64,22 @@ class Words:
         claim = self.claim(number)
         if claim is None:
             return NOT_MEASURED
-        return named({**claim.finding.evidence, **claim.finding.beside}, name, f"figure of {number}").text()
-
-    def least(self, number: str, part: str = "") -> str:
-        found = self.estimates(number, part).values()
-        return min(found, key=lambda at: at.value).text() if found else NOT_MEASURED
-
-    def greatest(self, number: str, part: str = "") -> str:
-        found = self.estimates(number, part).values()
-        return max(found, key=lambda at: at.value).text() if found else NOT_MEASURED
+        at = named({**claim.finding.evidence, **claim.finding.beside}, name, f"figure of {number}")
+        return at.text() if math.isfinite(at.value) else NONE
 
     def span(self, number: str, part: str = "") -> str:
-        """ "between 1.42 (1.38 to 1.46) and 3.20 (3.11 to 3.29)" of the figures that have a text in their name."""
-        least, greatest = self.least(number, part), self.greatest(number, part)
-        return least if least == greatest else f"between {least} and {greatest}"
+        """ "between 1.42 (1.38 to 1.46) and 3.20 (3.11 to 3.29)" of the figures that have a text in their name. A
+        crossing that was not reached is counted apart."""
+        every = self.estimates(number, part)
+        if not every:
+            return NOT_MEASURED
+        found = sorted((at for at in every.values() if math.isfinite(at.value)), key=lambda at: at.value)
+        if not found:
+            return NONE
+        texts = list(dict.fromkeys([found[0].text(), found[-1].text()]))
+        missing = len(every) - len(found)
+        return (texts[0] if len(texts) == 1 else f"between {texts[0]} and {texts[1]}") + (
+            f" (and nowhere in {missing} of {len(every)} series)" if missing else "")
 
     def verdict(self, number: str) -> str:
         """ "within bounds"; their condition is in the table of verdicts."""
@@ -118,10 +122,15 @@ class Words:
     def fact(self, name: str) -> str | bool:
         return named(self._comparison.facts, name, "fact of the comparison") if self._comparison else NOT_MEASURED
 
-    def table(self, name: str) -> str:
+    def table(self, name: str, without: Sequence[str] = ()) -> str:
+        """A table of the comparison, but for some columns."""
         if self._comparison is None:
             return NOT_MEASURED
-        return named(self._comparison.tables, name, "table of the comparison").markdown()
+        table = named(self._comparison.tables, name, "table of the comparison")
+        for heading in without:
+            named(dict.fromkeys(table.headings), heading, f"column of {name}")
+        kept = [i for i, heading in enumerate(table.headings) if heading not in without]
+        return Table([table.headings[i] for i in kept], [[row[i] for i in kept] for row in table.rows]).markdown()
 
 
 def named(things: Mapping, name: str, what: str):
