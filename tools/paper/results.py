@@ -50,26 +50,38 @@ class Run:
     def was_timed(self, case: str, spec: str) -> bool:
         return self.samples(case, spec).size > 0
 
+    def lacks(self, case: str, spec: str, what: str) -> Unusable:
+        """That a measurement has no such thing: most often since it was too slow here."""
+        why = self.measurement(case, spec).get("skipped") or "it was not taken"
+        return Unusable(f"case '{case}': {spec} has no {what} ({why}); expected some, as on a faster machine")
+
+    def needed(self, case: str, spec: str, part: Sequence[str]) -> numpy.ndarray:
+        if not self.was_timed(case, spec):
+            raise self.lacks(case, spec, "time")
+        return self.samples(case, spec, part)
+
     def time(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> float:
         """Milliseconds: the median of all calls or frames."""
-        return float(numpy.median(self.samples(case, spec, part)))
+        return float(numpy.median(self.needed(case, spec, part)))
 
     def ratio(self, case: str, spec: str, other: str, part: Sequence[str] = WHOLE,
               other_part: Sequence[str] | None = None) -> float:
         """The time of one over that of another, in the rounds of both."""
-        return median_ratio(self.samples(case, spec, part), self.samples(case, other, other_part or part))
+        return median_ratio(self.needed(case, spec, part), self.needed(case, other, other_part or part))
 
     def count(self, case: str, spec: str, what: str) -> float:
         """Tests or references a box: the mean over the seeds."""
         measured = self.measurement(case, spec)
         by_seed = [number for number in measured[f"{what}_by_seed"] if number is not None]
         if not by_seed:
-            raise KeyError(f"'{spec}' counts no {what}")
+            raise self.lacks(case, spec, what)
         return float(numpy.mean(by_seed)) / self.boxes(case)
 
     def per_mover(self, case: str, spec: str, what: str) -> float:
         """Entries `visited` or `moved` for each box that changed."""
         phases = self.measurement(case, spec)["phases"]
+        if phases is None:
+            raise self.lacks(case, spec, "phases")
         return float(numpy.sum(phases[what]) / max(numpy.sum(phases["movers"]), 1))
 
     def memory(self, case: str, spec: str, what: str = "own") -> float:

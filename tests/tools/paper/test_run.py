@@ -166,6 +166,16 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(Unusable, "is wrong in case 'small'"):
             self.archive.results(SMALL, RuleBook())
 
+    def test_in_which_something_was_too_slow_say_what(self):
+        self.measure()
+        results, _ = self.archive.results(SMALL, RuleBook())
+        for run in results.runs:
+            run.measurement("small", "grid").update(samples_ms=None, tests_by_seed=[None], skipped="estimated 9 s")
+        for figure in (lambda: results.ratio("small", "paper_grid", "grid"), lambda: results.time("small", "grid"),
+                       lambda: results.count("small", "grid", "tests")):
+            with self.assertRaisesRegex(Unusable, r"case 'small': grid has no \w+ \(estimated 9 s\)"):
+                figure()
+
     def test_that_are_not_there_are_asked_for(self):
         with self.assertRaisesRegex(Unusable, "has no run of small; expected one at least"):
             self.archive.results(SMALL, RuleBook())
