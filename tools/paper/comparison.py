@@ -187,7 +187,6 @@ def made(times: Times, runs: Sequence[Mapping]) -> Comparison:
         "densities": curve_table(times, cases, "density", DENSITIES, "neighbours:"),
         "rest": cases_table(times, [case for case in cases if not case.frames]),
         "moving": cases_table(times, [case for case in cases if case.frames]),
-        "literature_cases": leads_table(leads["all", "best", "literature"].all),
         "behind": leads_table(leads["all", "auto", "peer"].behind + leads["all", "auto", "literature"].behind),
         "standings": standings_table(times, cases),
         "scenes": scenes_table(times, cases),
@@ -391,15 +390,16 @@ def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Esti
 def mean_leads_figure(leads: Mapping[tuple, Leads]) -> Figure:
     rows = [words for group, words in {**GROUPS, "all": "all"}.items() if leads[group, "auto", "peer"].all]
     names = {words: group for group, words in {**GROUPS, "all": "all"}.items()}
-    series = {f"{'our own choice' if which == 'auto' else 'the best of our others'} over {whom}":
+    series = {f"our {'own choice' if which == 'auto' else 'best'}, over {whom}":
               {row: those.mean for row in rows if (those := leads[names[row], which, rival]).all}
-              for rival, whom in (("peer", "the fastest library"), ("literature", "the literature")) for which in OURS}
+              for rival, whom in (("peer", "libraries"), ("literature", "the literature")) for which in OURS}
     return lines_figure("comparison_groups", "How many times as fast ours are, by group of cases: geometric means, with "
                         "intervals between processes. At 1 a rival is as fast.", series, rows, "times as fast")
 
 
 def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
-    for name, words, is_shown in (("rest", "Boxes at rest", lambda case: not case.frames),
+    for name, words, is_shown in (("rest", "Boxes at rest, but for uniform ones",
+                                   lambda case: not case.frames and case.group != "uniform"),
                                   ("moving", "Boxes that move", lambda case: bool(case.frames))):
         series = {whom: {lead.case.name: lead.ratio for lead in leads["all", "auto", rival].all if is_shown(lead.case)}
                   for rival, whom in (("peer", "over the fastest library"), ("literature", "over the literature's fastest"))}
@@ -418,9 +418,10 @@ def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
                 if at:
                     figures.line(axes, list(at), [lead.ratio for lead in at.values()], f"{dimension}D, {whom}")
         axes.axhline(1, color="black", linewidth=0.8)
-    figures.label(left, "boxes", "times as fast")
-    figures.label(right, "others that a box overlaps", "")
-    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
+    figures.label(left, "boxes", "times as fast", "\n\n")  # the legend's place
+    figures.label(right, "others that a box overlaps", "", "\n\n")
+    left.set_xticks(NUMBERS[::2])
+    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2).set_in_layout(False)
     return Figure("comparison_curves", "How many times as fast our own choice is on uniform boxes, by their number and, for "
                   "10,000, by their density.", drawing)
 

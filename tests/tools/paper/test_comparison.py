@@ -5,6 +5,7 @@ import unittest
 from pathlib import Path
 
 import numpy
+from matplotlib import pyplot
 
 from tools.paper import comparison, figures
 from tools.paper.archive import Archive
@@ -59,6 +60,7 @@ class TheComparison(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
+        self.addCleanup(pyplot.close, "all")
         self.folder = Path(folder.name)
 
     def write(self, process: int, results: dict, folder: str = "") -> None:
