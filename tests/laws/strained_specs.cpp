@@ -50,7 +50,7 @@ std::vector<Spec> strained_specs(const LawCase& law_case) {
     }
   }
   // Leaves of a few boxes are many: only then does a mover have far to go in a tree.
-  for (const char* const update : {"search_delete_reinsert", "siblings", "cousins"}) {
+  for (const char* const update : {"siblings", "cousins"}) {
     const Spec spec{"paper_quadtree", {{"capacity", "3"}, {"update", update}}};
     if (law_case.algorithm->name == spec.name && is_accepted(law_case, spec)) specs.push_back(spec);
   }
