@@ -39,7 +39,7 @@ std::vector<ListedCase> read(const nlohmann::json& cases, const nlohmann::json& 
 CaseResult measured(const nlohmann::json& changes) {
   static const Catalogue catalogue;
   const nlohmann::json effort = {{"share_seconds", 0}, {"min_rounds", 2}, {"max_rounds", 2}};
-  Comparison all = measure_cases(catalogue, read(nlohmann::json::array({listed(changes)}), effort), {});
+  Comparison all = measure_cases(catalogue, read({listed(changes)}, effort), {});
   EXPECT_TRUE(all.all_verified());
   return std::move(all.cases.at(0));
 }
@@ -199,7 +199,7 @@ TEST(CaseList, TakesSeveralFilesAsInputsInRotation) {
   nlohmann::json one = listed({{"scene", files}, {"specs", {"paper_brute_force"}}});
   one.erase("boxes");
   const Catalogue catalogue;
-  const Comparison all = measure_cases(catalogue, read(nlohmann::json::array({one})), {});
+  const Comparison all = measure_cases(catalogue, read({one}), {});
   const Measurement& measurement = all.cases.at(0).measurements.at(0);
   EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
   ASSERT_EQ(measurement.statistics_by_seed.size(), 2u);
