@@ -68,28 +68,12 @@ export function bestOwn(of: Case): Timed | undefined {
   return referenceOf(of, "ratio_to_best_own", others.length > 0 ? others : own);
 }
 
-/** One of the other libraries, or of the literature, over our best. */
-export interface LeadOf {
-  ratio: Ratio;
-  own: Timed;
-  peer: Timed;
-  /** Their times, in milliseconds, in the rounds that the ratio is of. */
-  own_ms: number;
-  peer_ms: number;
-}
-
-/** The time of `peer` over that of our best; undefined where one of them is not there. */
-export function leadOver(of: Case, peer: Timed | undefined): LeadOf | undefined {
-  const own = bestOwn(of);
-  const ratio = peer?.ratio_to_best_own;
-  if (own === undefined || peer === undefined || !ratio) return undefined;
-  return { ratio, own, peer, own_ms: ratio.of_ms ?? own.median_ms, peer_ms: ratio.ms ?? peer.median_ms };
-}
-
 /** The time of the fastest peer over that of our best; undefined where one of them is not there. */
-export function leadOf(of: Case): LeadOf | undefined {
-  const peers = ranking(of).filter((measurement) => measurement.kind === "peer");
-  return leadOver(of, referenceOf(of, "ratio_to_fastest_peer", peers));
+export function leadOf(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
+  const own = bestOwn(of);
+  const peer = referenceOf(of, "ratio_to_fastest_peer", ranking(of).filter(({ kind }) => kind === "peer"));
+  const ratio = peer?.ratio_to_best_own;
+  return own === undefined || peer === undefined || !ratio ? undefined : { ratio, own, peer };
 }
 
 export interface Standing {

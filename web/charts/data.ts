@@ -109,11 +109,8 @@ export interface Ratio {
   /** The 95 % interval; null where it is not known. */
   low: number | null;
   high: number | null;
-  /** Rounds in which both took part; null where it is not known. */
-  rounds: number | null;
-  /** The median times of the two in those rounds, in milliseconds; not in older results. */
-  ms?: number;
-  of_ms?: number;
+  /** Rounds in which both took part. */
+  rounds: number;
 }
 
 /** One algorithm in one case. What was skipped has no times. */
@@ -137,16 +134,11 @@ export interface Measurement {
   pairs: number | null;
   pair_hash: string | null;
   verified: boolean | null;
-  /** "by definition" or "cross-checked by 9 structures of 6 libraries"; in older results what it was compared with. */
+  /** "by definition" or "cross-checked by 9 structures of 6 libraries". */
   verified_by: string | null;
-  /** Algorithms and libraries of the case that gave the same pairs; not in older results. */
-  agreeing_structures?: number | null;
-  agreeing_libraries?: number | null;
   skipped: string | null;
-  /** Where it was skipped for its budget; not in older results. */
-  estimated_ms?: number | null;
-  /** In how many rounds it was timed; null where it is not known. */
-  rounds: number | null;
+  /** In how many rounds it was timed. */
+  rounds: number;
   median_ms: number | null;
   min_ms: number | null;
   p99_ms: number | null;
@@ -156,8 +148,8 @@ export interface Measurement {
   ratio_to_fastest: Ratio | null;
   ratio_to_best_own: Ratio | null;
   ratio_to_fastest_peer: Ratio | null;
-  /** Whether its samples lie too far apart to be trusted; not in results of before it was noted. */
-  unsteady?: boolean | null;
+  /** Whether its samples lie too far apart to be trusted. */
+  unsteady: boolean | null;
   build_ms: number | null;
   ns_per_box: number | null;
   ns_per_mover: number | null;
@@ -173,14 +165,14 @@ export type RatioName = "ratio_to_fastest" | "ratio_to_best_own" | "ratio_to_fas
 
 export interface Comparison {
   schema: "broadside.results/2";
-  /** "2026-11-21"; null where it is not known. */
-  date: string | null;
+  /** "2026-11-21". */
+  date: string;
   machine: Machine;
   build: Build;
   command: string[];
   stopped: boolean;
-  /** Processor time over wall time of the run, about 1 for one thread; null where it is not known. */
-  processor_share: number | null;
-  busy: boolean | null;
+  /** Processor time over wall time of the run, about 1 for one thread. */
+  processor_share: number;
+  busy: boolean;
   measurements: Measurement[];
 }

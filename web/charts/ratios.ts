@@ -9,11 +9,6 @@ export function intervalOf({ low, high }: Ratio): Interval | undefined {
   return low === null || high === null || low === high ? undefined : [low, high];
 }
 
-/** One over a ratio, the other way round. */
-export function inverse({ of, median, low, high, rounds }: Ratio): Ratio {
-  return { of, median: 1 / median, low: high === null ? null : 1 / high, high: low === null ? null : 1 / low, rounds };
-}
-
 /** Whether nothing tells the two apart: the interval holds 1. */
 export function isLevel(ratio: Ratio): boolean {
   const interval = intervalOf(ratio);

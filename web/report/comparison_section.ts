@@ -18,8 +18,7 @@ import type { Doubts } from "./summary.ts";
 function outcomeOf(measurement: Measurement): string {
   if (measurement.verified === null) return "skipped";
   if (!measurement.verified) return "FAILED";
-  // Older results name what the pairs were compared with.
-  const by = measurement.agreeing_libraries == null ? "verified" : `verified ${measurement.verified_by}`;
+  const by = `verified ${measurement.verified_by}`;
   return measurement.unsteady === true ? `${by}, unsteady` : by;
 }
 
@@ -127,7 +126,7 @@ function caseTable(of: Case): HTMLElement {
       ratioColumn("to our best", (m) => m.ratio_to_best_own),
       ratioColumn("to the fastest peer", (m) => m.ratio_to_fastest_peer),
       { title: "p99", value: (m) => m.p99_ms, text: (m) => time(m.p99_ms) },
-      { title: "rounds", value: (m) => m.rounds, text: (m) => (isTimed(m) && m.rounds !== null ? grouped(m.rounds) : "–") },
+      { title: "rounds", value: (m) => m.rounds, text: (m) => (isTimed(m) ? grouped(m.rounds) : "–") },
       { title: "tests", value: (m) => m.tests, text: (m) => number(m.tests) },
       { title: "memory", value: (m) => m.own_bytes, text: (m) => (m.own_bytes === null ? "–" : bytesText(m.own_bytes)) },
     ],
