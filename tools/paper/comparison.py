@@ -164,18 +164,20 @@ class Comparison:
     figures: Sequence[Figure]
 
 
+def read(folder: Path) -> tuple[Times, list[dict]]:
+    """The times, and what each process says of itself."""
+    book = RuleBook()
+    results, runs = Archive(folder).results(COMPARISON, book)
+    return Times(results, book.of(COMPARISON.name).level), runs
+
+
 def load(folder: Path) -> Comparison:
     """Of the processes in a folder. Throws Unusable, in one line, where there is none, where they are of several
     revisions or machines, of other cases or rules than today's, or where a result was wrong."""
-    book = RuleBook()
-    results, runs = Archive(folder).results(COMPARISON, book)
-    return made(Times(results, book.of(COMPARISON.name).level), runs)
-
-
-def made(times: Times, runs: Sequence[Mapping]) -> Comparison:
+    times, runs = read(folder)
     cases = [case for case in COMPARISON.cases() if times.timed(case.name)]
     if not times.leads(cases, "auto", "peer").all:
-        raise Unusable("the comparison has no case with times of auto and of a peer; expected one at least")
+        raise Unusable(f"{folder} has no case with times of auto and of a peer; expected one at least")
     groups = {"all": cases, **{name: [case for case in cases if case.group == name] for name in GROUPS}}
     leads = {(group, which, rival): times.leads(those, which, rival)
              for group, those in groups.items() for which in OURS for rival in RIVALS}
@@ -362,13 +364,6 @@ def processes_table(runs: Sequence[Mapping]) -> Table:
                    load(run["load_after"]), f"{run['unsteady']} of {run['measurements']}"] for run in runs])
 
 
-def dots(axes, estimates: Sequence[Estimate], rows: Sequence[float], colour: str, marker: str, name: str) -> None:
-    """Figures with their intervals, a line each."""
-    values = numpy.array([at.value for at in estimates])
-    bars = numpy.abs(numpy.nan_to_num([[at.value - at.low, at.high - at.value] for at in estimates])).T
-    axes.errorbar(values, rows, xerr=bars, fmt=marker, color=colour, label=name, capsize=2, elinewidth=0.8)
-
-
 def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Estimate]], rows: Sequence[str],
                  x: str) -> Figure:
     """A line for each row, with a dot for each of the series that has one there."""
@@ -376,8 +371,10 @@ def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Esti
     for number, (label, estimates) in enumerate(series.items()):
         shown = [row for row in rows if row in estimates]
         step = 0.6 * (number / max(len(series) - 1, 1) - 0.5) if len(series) > 1 else 0
-        dots(axes, [estimates[row] for row in shown], [rows.index(row) + step for row in shown], COLOURS[number],
-             figures.MARKERS[number], label)
+        at = [estimates[row] for row in shown]
+        bars = numpy.abs(numpy.nan_to_num([[one.value - one.low, one.high - one.value] for one in at])).T
+        axes.errorbar([one.value for one in at], [rows.index(row) + step for row in shown], xerr=bars, label=label,
+                      fmt=figures.MARKERS[number], color=COLOURS[number], capsize=2, elinewidth=0.8)
     axes.axvline(1, color="black", linewidth=0.8)
     axes.set_yticks(range(len(rows)), rows)
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -441,10 +438,7 @@ def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
 
 def disagreements(first: Path, second: Path) -> list[str]:
     """Leads of auto that are won in one set of processes and lost in the other. There should be none."""
-    book = RuleBook()
-    sets = []
-    for folder in (first, second):
-        times = Times(Archive(folder).results(COMPARISON, book)[0], book.of(COMPARISON.name).level)
-        sets.append({rival: times.leads(COMPARISON.cases(), "auto", rival) for rival in RIVALS})
+    sets = [{rival: times.leads(COMPARISON.cases(), "auto", rival) for rival in RIVALS}
+            for times in (read(first)[0], read(second)[0])]
     return [f"{case} over {rival}" for rival in RIVALS for one, other in (sets, reversed(sets))
             for case in sorted({lead.case.name for lead in one[rival].won} & {lead.case.name for lead in other[rival].lost})]
