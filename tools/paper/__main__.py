@@ -214,7 +214,7 @@ def agree(options: argparse.Namespace) -> int:
     if all(Archive(folder).run_numbers(COMPARISON.name) for folder in options.sets):
         found = disagreements(*options.sets)
     else:
-        first, second = ({f"{experiment.name}, {claim.number}": claim.verdict for experiment in
+        first, second = ({f"{experiment.name}, {claim.number}": claim.finding.verdict.value for experiment in
                           judged(argparse.Namespace(results=folder, names=[])) for claim in experiment.claims}
                          for folder in options.sets)
         found = [f"{name}: {first.get(name, 'none')}, then {second.get(name, 'none')}" for name in {**first, **second}
