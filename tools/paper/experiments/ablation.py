@@ -24,7 +24,7 @@ SWITCHES = {
              "sample": "no sample"},
     "bvh": {**LAYOUT, "buckets": "sorting by comparisons to pack", "join": "a query for each box"},
 }
-SEARCHES = {"grid": "grid", "bvh": "packed tree"}
+SEARCHES = {"grid": "grid", "bvh": "tree of bounds"}
 
 
 def plain(search: str, *left_out: str) -> str:
@@ -93,7 +93,8 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         for axes, dimension in zip(columns, DIMENSIONS):
             for scene in SCENES:
                 case = case_of(search, scene, dimension)
-                figures.line(axes, [results.ratio(case, one, search) for one in forms], range(len(forms)), scene, joined=False)
+                figures.line(axes, [results.ratio(case, one, search) for one in forms], range(len(forms)), scene,
+                             joined=False)
             axes.set_yticks(range(len(forms)), forms.values() if axes is columns[0] else [])
             figures.label(axes, "time over the library's", "", f"in {dimension}D", log="x")
             axes.invert_yaxis()
@@ -105,11 +106,11 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 
 EXPERIMENT = Experiment(
     title="What makes the fastest searches fast",
-    measured=f"Our grid and our packed tree on {BOXES:,} uniform and clustered boxes, in the plane and in space; the "
-             "same structures in plain code without SIMD, with one thing after the other left out, and with all; and "
+    measured=f"Our grid and our tree of bounds on {BOXES:,} uniform and clustered boxes, in the plane and in space; "
+             "the same structures in plain code without SIMD, with one thing after the other left out, and with all; and "
              "the library held to its scalar target, which is SIMD's code with one lane and no plain code.",
     claims=[Claim("B2", "Of the whole gain over the plainest form, by logarithms, more than {most_of_the_gain} is "
                   "the gain over the fastest scalar code of the same structure, be it a plain form or the library's "
-                  "code for one lane, for grid and packed tree on both scenes in the plane and in space.",
+                  "code for one lane, for grid and tree of bounds on both scenes in the plane and in space.",
                   "It is less than that in all of these.")],
     cases=cases, judge=judge, figures=draw)
