@@ -73,7 +73,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     for place in PLACES:
         search, case = place[0], case_of(*place)
         plainly = results.fastest(case, plain_forms(search))
-        shares[case] = share(results, case, search, results.fastest(case, [plainly, scalar(search)]))
+        shares[f"SIMD in {case}"] = share(results, case, search, results.fastest(case, [plainly, scalar(search)]))
         beside[f"share by the fastest plain form, {case}"] = share(results, case, search, plainly)
         for one, words in ((plainly, "the fastest plain form"), (nothing(search), "the plainest form"),
                            (scalar(search), "the library held to its scalar target")):
@@ -107,7 +107,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 EXPERIMENT = Experiment(
     title="What makes the fastest searches fast",
     measured=f"Our grid and our tree of bounds on {BOXES:,} uniform and clustered boxes, in the plane and in space; "
-             "the same structures in plain code without SIMD, with one thing after the other left out, and with all; and "
+             "the same structures in plain code without SIMD, with one thing after the other left out, and all; and "
              "the library held to its scalar target, which is SIMD's code with one lane and no plain code.",
     claims=[Claim("B2", "Of the whole gain over the plainest form, by logarithms, more than {most_of_the_gain} is "
                   "the gain over the fastest scalar code of the same structure, be it a plain form or the library's "
