@@ -116,10 +116,10 @@ class OnTranslation(Judgement):
 
     def test_offset_is_the_distance_to_the_lower_border_alone(self):
         finding = self.expect("grid_translation", "10c", WITHIN, phases=self.phases(lambda case: 1.0),
-                              condition="towards the lower border, steps of 1 cells and towards the lower border")
+                              condition="towards the lower border, steps of a cell and towards the lower border")
         self.assertEqual([at.value for way, at in finding.evidence.items() if "lower" in way], [1, 1])
-        self.assertEqual(finding.beside["with the sign of the change, towards the upper border, steps of 1 cells"],
-                         finding.evidence["towards the upper border, steps of 1 cells"])
+        self.assertEqual(finding.beside["with the sign of the change, towards the upper border, steps of a cell"],
+                         finding.evidence["towards the upper border, steps of a cell"])
 
 
 class OnRebuilding(Judgement):

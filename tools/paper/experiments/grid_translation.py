@@ -21,6 +21,7 @@ FRAMES = 6
 # Boxes that span cells, each overlapping 16 others: the length of a cell in lengths of a box, and steps in cells.
 CELLS = (8, 4, 2, 1, 1 / 2, 1 / 4, 1 / 8)
 STEPS = {1: CELLS, 0.1: CELLS[::3]}
+STEP_NAMES = {1: "steps of a cell", 0.1: "steps of a tenth of a cell"}
 SPANNING = 2_500
 
 # Boxes in a single cell, of 1 x 1. A step along a direction is so long that it leaves the cell on one axis at least.
@@ -41,11 +42,11 @@ def specs(cell: float) -> list[str]:
 
 
 def spanning(step: float, cell: float) -> str:
-    return f"cells of {cell:g} boxes, steps of {step:g} cells"
+    return f"cells of {cell:g} box lengths, {STEP_NAMES[step]}"
 
 
 def single(moving: float, in_a_cell: int) -> str:
-    return f"{moving:.0%} move, {in_a_cell} boxes in a cell".replace("%", " %")
+    return f"{100 * moving:g} % move, {in_a_cell} {'box' if in_a_cell == 1 else 'boxes'} in a cell"
 
 
 def squares(count: int, world: float) -> Boxes:
@@ -100,7 +101,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     signed = {}
     for is_down, border in ((True, "lower"), (False, "upper")):
         for step in STEPS:
-            way = f"towards the {border} border, steps of {step:g} cells"
+            way = f"towards the {border} border, {STEP_NAMES[step]}"
             offset[way] = rule_is_right(results, step, is_down)
             signed[f"with the sign of the change, {way}"] = rule_is_right(results, step, is_down, True)
     return [
@@ -120,7 +121,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     for step, cells in STEPS.items():
         figures.line(large, [cells_of_a_box(results, cell).value for cell in cells],
                      [over_translating(results, spanning(step, cell), cell) for cell in cells],
-                     f"steps of {step:g} cell{'s' if step != 1 else ''}")
+                     STEP_NAMES[step])
     figures.label(large, "cells of a box", "reinserting over translating", "Boxes that span cells")
     large.legend()
     for in_a_cell in IN_A_CELL:
