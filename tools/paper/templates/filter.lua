@@ -6,6 +6,17 @@ function Link(element)
   return pandoc.Code((("docs/paper/" .. path):gsub("[^/]+/%.%./", ""):gsub("[^/]+/%.%./", "")))
 end
 
+-- A table of few rows is not cut in two: LaTeX's long tables may be, and run over the foot of pages that have figures.
+function Table(element)
+  local rows = 0
+  for _, body in ipairs(element.bodies) do rows = rows + #body.body end
+  if FORMAT ~= "latex" or rows > 14 then return nil end
+  local text = pandoc.write(pandoc.Pandoc({element}), "latex"):gsub("\\endhead\n", "")
+    :gsub("\\begin{longtable}%[%]", "\\begin{center}\\footnotesize\\begin{tabular}")
+    :gsub("\\end{longtable}", "\\end{tabular}\\end{center}")
+  return pandoc.RawBlock("latex", text)
+end
+
 -- The sources, without the boxes that HTML has around them.
 function Div(element)
   if FORMAT == "gfm" then return element.content end
