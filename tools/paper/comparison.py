@@ -150,8 +150,8 @@ class Times:
                     numpy.log(self._ratio[case.name, algorithm] / self._ratio[case.name, ranked[0]]))
             if ranked:
                 wins[ranked[0]] = wins.get(ranked[0], 0) + 1
-        found = [(name, between_runs(numpy.exp(numpy.mean(logs, axis=0)), self.confidence), len(logs), wins.get(name, 0))
-                 for name, logs in ratios.items()]
+        found = [(name, between_runs(numpy.exp(numpy.mean(logs, axis=0)), self.confidence), len(logs),
+                  wins.get(name, 0)) for name, logs in ratios.items()]
         return sorted(found, key=lambda standing: standing[1].value)
 
 
@@ -211,9 +211,9 @@ def facts_of(times: Times, cases: Sequence[Compared], leads: Mapping[tuple, Lead
     rival = max(over_peers["literature"], key=lambda name: len(over_peers["literature"][name].won), default="none")
     rival_leads = over_peers["literature"].get(rival, times.those([]))
     listings = {lead.case.name for those in over_peers["paper"].values() for lead in those.won}
-    table, first = times.table, runs[0]
+    table, machine, build = times.table, runs[0]["machine"], runs[0]["build"]
     timed = table[table["median_ms"].notna()]
-    agreeing = timed["verified_by"].dropna().astype(str).str.extract(r"by (\d+) structures? of (\d+)").dropna().astype(int)
+    agreeing = timed["verified_by"].astype(str).str.extract(r"by (\d+) structures? of (\d+)").dropna().astype(int)
     floors = [ratio for case in cases if (best := times.ours(case.name, "best")) and not numpy.isnan(
         ratio := times.time(case.name, best).value / times.time(case.name, best, "floor_ms").value)]
     dates = sorted(run["date"][:10] for run in runs)
@@ -238,12 +238,13 @@ def facts_of(times: Times, cases: Sequence[Compared], leads: Mapping[tuple, Lead
         "choice.worst_case": choices.greatest.case.name,
         **{f"rival.{name}": fact for name, fact in facts_of_leads(rival_leads).items()}, "rival": rival,
         "listings.won": f"{len(listings)}",
-        "floor.least": digits(min(floors)) if floors else "-", "floor.greatest": digits(max(floors)) if floors else "-",
+        "floor.least": digits(min(floors)) if floors else "-",
+        "floor.greatest": digits(max(floors)) if floors else "-",
         "date": dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}",
-        "processor": f"{first['machine'].get('cpu') or 'a processor'} with {first['machine'].get('cores') or 'some'} cores",
+        "processor": f"{machine.get('cpu') or 'a processor'} with {machine.get('cores') or 'some'} cores",
         "instruction_set": next(iter(table["target"].dropna()), "unknown") if "target" in table else "unknown",
-        "system": first["machine"].get("os") or "an unknown system",
-        "compiler": first["build"]["compiler"], "revision": first["build"].get("revision") or "unknown",
+        "system": machine.get("os") or "an unknown system",
+        "compiler": build["compiler"], "revision": build.get("revision") or "unknown",
         **{f"version.{one['algorithm']}": one["version"] for _, one in times.measured.reset_index(drop=True).iterrows()
            if one["kind"] == "peer"},
     }
@@ -284,20 +285,24 @@ def groups_table(leads: Mapping[tuple, Leads], rival: str) -> Table:
                 f"{len(those.lost)} / {len(those.level)} / {len(those.open)}"] if those.all else ["-"] * 3
     rows = [[GROUPS.get(group, group), str(len(leads[group, "auto", rival].all)), *cells(leads[group, "auto", rival]),
              *cells(leads[group, "best", rival])] for group in [*GROUPS, "all"] if leads[group, "auto", rival].all]
-    heads = ["mean:", "least:", "lost / level / open:"]
-    return Table(["cases", "how many:", *(f"`auto`, {head}" for head in heads), *(f"best of ours, {head}" for head in heads)],
-                 rows)
+    heads = [f"{whose}, {what}:" for whose in ("`auto`", "best of ours")
+             for what in ("mean", "least", "lost / level / open")]
+    return Table(["cases", "how many:", *heads], rows)
 
 
 def curve_table(times: Times, cases: Sequence[Compared], what: str, values: Sequence[float], heading: str) -> Table:
     """The leads of auto on uniform boxes."""
-    rows = [[f"{value:,}", *(lead.ratio.text() if (lead := lead_at(times, cases, what, value, dimension, rival)) else "-"
-                              for dimension in (2, 3) for rival in ("peer", "literature"))] for value in values]
+    def cell(value: float, dimension: int, rival: str) -> str:
+        lead = lead_at(times, cases, what, value, dimension, rival)
+        return lead.ratio.text() if lead else "-"
+    rows = [[f"{value:,}", *(cell(value, dimension, rival) for dimension in (2, 3)
+                             for rival in ("peer", "literature"))] for value in values]
     return Table([heading, *(f"{dimension}D, over {whom}:" for dimension in (2, 3)
                              for whom in ("the fastest peer", "the literature"))], rows)
 
 
-def lead_at(times: Times, cases: Sequence[Compared], what: str, value: float, dimension: int, rival: str) -> Lead | None:
+def lead_at(times: Times, cases: Sequence[Compared], what: str, value: float, dimension: int,
+            rival: str) -> Lead | None:
     return next((times.lead(case, "auto", rival) for case in cases
                  if getattr(case, what) == value and case.dimension == dimension), None)
 
@@ -310,7 +315,8 @@ def cases_table(times: Times, cases: Sequence[Compared]) -> Table:
         if algorithm is None:
             return "-"
         measured = times.measured.loc[(case.name, algorithm)]
-        marks = "†" * bool(measured["unsteady"]) + "‡" * (measured["kind"] == "peer" and library_of(algorithm) in WITH_ASSERTIONS)
+        has_assertions = measured["kind"] == "peer" and library_of(algorithm) in WITH_ASSERTIONS
+        marks = "†" * bool(measured["unsteady"]) + "‡" * has_assertions
         slow = f", p99 {digits(times.time(case.name, algorithm, 'p99_ms').value)}" if moves else ""
         return f"{f'`{algorithm}` ' if has_name else ''}{digits(times.time(case.name, algorithm).value)}{slow}{marks}"
 
@@ -325,8 +331,8 @@ def cases_table(times: Times, cases: Sequence[Compared]) -> Table:
         rows.append([case.name, cell(case, times.ours(case.name, "auto"), has_name=False),
                      cell(case, times.ours(case.name, "best")), cell(case, peer and peer.rival), lead_cell(peer),
                      cell(case, literature and literature.rival), lead_cell(literature)])
-    return Table(["boxes", "`auto`, ms:", "best of our others, ms", "fastest peer, ms", "lead:", "the literature's fastest, ms",
-                  "lead:"], rows)
+    return Table(["boxes", "`auto`, ms:", "best of our others, ms", "fastest peer, ms", "lead:",
+                  "the literature's fastest, ms", "lead:"], rows)
 
 
 def leads_table(leads: Sequence[Lead]) -> Table:
@@ -348,8 +354,8 @@ def scenes_table(times: Times, cases: Sequence[Compared]) -> Table:
         one = times.measured.loc[case.name].iloc[0]
         motion = f"{one['frames']:.0f} frames, {one['moving']:.2g} moving" if case.frames else ""
         pairs = times.measured.loc[case.name]["pairs"].max()
-        rows.append([case.name, f"`{case.scene}`",
-                     ", ".join(f"{name} {value}" for name, value in one["scene_parameters"].items()), f"{one['boxes']:,.0f}",
+        parameters = ", ".join(f"{name} {value}" for name, value in one["scene_parameters"].items())
+        rows.append([case.name, f"`{case.scene}`", parameters, f"{one['boxes']:,.0f}",
                      digits(2 * pairs / one["boxes"]), f"{one['seeds']:.0f}", motion])
     return Table(["boxes", "scene", "parameters", "how many:", "overlaps of a box:", "seeds:", "motion"], rows)
 
@@ -390,8 +396,8 @@ def mean_leads_figure(leads: Mapping[tuple, Leads]) -> Figure:
     series = {f"our {'own choice' if which == 'auto' else 'best'}, over {whom}":
               {row: those.mean for row in rows if (those := leads[names[row], which, rival]).all}
               for rival, whom in (("peer", "libraries"), ("literature", "the literature")) for which in OURS}
-    return lines_figure("comparison_groups", "How many times as fast ours are, by group of cases: geometric means, with "
-                        "intervals between processes. At 1 a rival is as fast.", series, rows, "times as fast")
+    return lines_figure("comparison_groups", "How many times as fast ours are, by group of cases: geometric means, "
+                        "with intervals between processes. At 1 a rival is as fast.", series, rows, "times as fast")
 
 
 def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
@@ -399,11 +405,12 @@ def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
                                    lambda case: not case.frames and case.group != "uniform"),
                                   ("moving", "Boxes that move", lambda case: bool(case.frames))):
         series = {whom: {lead.case.name: lead.ratio for lead in leads["all", "auto", rival].all if is_shown(lead.case)}
-                  for rival, whom in (("peer", "over the fastest library"), ("literature", "over the literature's fastest"))}
+                  for rival, whom in (("peer", "over the fastest library"),
+                                      ("literature", "over the literature's fastest"))}
         rows = list(dict.fromkeys(row for those in series.values() for row in those))
         if rows:
-            yield lines_figure(f"comparison_{name}", f"{words}: how many times as fast our own choice is, case by case, with "
-                               "intervals between processes.", series, rows, "times as fast")
+            yield lines_figure(f"comparison_{name}", f"{words}: how many times as fast our own choice is, case by "
+                               "case, with intervals between processes.", series, rows, "times as fast")
 
 
 def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
@@ -411,7 +418,8 @@ def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
     for axes, what, values in ((left, "number", NUMBERS), (right, "density", DENSITIES)):
         for rival, whom in (("peer", "over libraries"), ("literature", "over the literature")):
             for dimension in (2, 3):
-                at = {value: lead for value in values if (lead := lead_at(times, cases, what, value, dimension, rival))}
+                at = {value: lead_at(times, cases, what, value, dimension, rival) for value in values}
+                at = {value: lead for value, lead in at.items() if lead}
                 if at:
                     figures.line(axes, list(at), [lead.ratio for lead in at.values()], f"{dimension}D, {whom}")
         axes.axhline(1, color="black", linewidth=0.8)
@@ -419,8 +427,8 @@ def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
     figures.label(right, "others that a box overlaps", "", "\n\n")
     left.set_xticks(NUMBERS[::2])
     left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2).set_in_layout(False)
-    return Figure("comparison_curves", "How many times as fast our own choice is on uniform boxes, by their number and, for "
-                  "10,000, by their density.", drawing)
+    return Figure("comparison_curves", "How many times as fast our own choice is on uniform boxes, by their number "
+                  "and, for 10,000, by their density.", drawing)
 
 
 def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
@@ -431,8 +439,8 @@ def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
                  "peer": LIBRARIES.get(library_of(name), library_of(name))}.get(times.kinds[name])
         if words:
             best.setdefault(words, ratio)
-    return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's: our own choice, and the best "
-                        "algorithm of each library, as a geometric mean of the cases that each does.",
+    return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's: our own choice, and "
+                        "the best algorithm of each library, as a geometric mean of the cases that each does.",
                         {"": best}, list(best), "times the time of the fastest")
 
 
@@ -440,5 +448,7 @@ def disagreements(first: Path, second: Path) -> list[str]:
     """Leads of auto that are won in one set of processes and lost in the other. There should be none."""
     sets = [{rival: times.leads(COMPARISON.cases(), "auto", rival) for rival in RIVALS}
             for times in (read(first)[0], read(second)[0])]
+    def names(leads: Sequence[Lead]) -> set[str]:
+        return {lead.case.name for lead in leads}
     return [f"{case} over {rival}" for rival in RIVALS for one, other in (sets, reversed(sets))
-            for case in sorted({lead.case.name for lead in one[rival].won} & {lead.case.name for lead in other[rival].lost})]
+            for case in sorted(names(one[rival].won) & names(other[rival].lost))]

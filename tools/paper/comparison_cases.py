@@ -57,9 +57,9 @@ def uniform() -> Iterator[Compared]:
 
 
 def at_rest() -> Iterator[Compared]:
-    for scene, words in {"power_law": "sizes by a power law", "mixed": "one in a hundred huge", "clustered": "clustered",
-                         "one_line": "all on one line", "lattice": "touching on a lattice", "thin": "long and thin",
-                         "terdiman": "Terdiman's scene", "one_point": "all over one point"}.items():
+    for scene, words in {"power_law": "sizes by a power law", "mixed": "one in a hundred huge",
+                         "clustered": "clustered", "one_line": "all on one line", "lattice": "touching on a lattice",
+                         "thin": "long and thin", "terdiman": "Terdiman's scene", "one_point": "all over one point"}.items():
         boxes = 2_000 if scene == "one_point" else 10_000
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
@@ -77,7 +77,8 @@ def moving() -> Iterator[Compared]:
             yield Compared(f"uniform, {dimension}D, {boxes:,} boxes, {share:.0%} moving".replace("%", " %"),
                            "uniform", ("all",), boxes, dimension, frames=frames, moving=share, effort=EFFORT,
                            group="moving")
-    for scene, words, boxes, frames in (("churn", "coming and going", 1_000, 20), ("pile", "trembling in a pile", 2_000, 10)):
+    for scene, words, boxes, frames in (("churn", "coming and going", 1_000, 20),
+                                        ("pile", "trembling in a pile", 2_000, 10)):
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
                            frames=frames, effort=EFFORT, group="moving")

@@ -14,8 +14,8 @@ from tools.paper.comparison_cases import COMPARISON, kept
 from tools.paper.experiment import Unusable
 from tools.paper.rules import RuleBook
 
-KINDS = {"auto": "own", "grid": "own", "terdiman_box_pruning": "literature", "paper_grid": "paper", "boost_rtree": "peer",
-         "box2d_tree": "peer"}
+KINDS = {"auto": "own", "grid": "own", "terdiman_box_pruning": "literature", "paper_grid": "paper",
+         "boost_rtree": "peer", "box2d_tree": "peer"}
 PILE = "trembling in a pile, 2D, 2,000 boxes"
 LATTICE = "touching on a lattice, 2D, 10,000 boxes"
 
@@ -90,9 +90,10 @@ class TheComparison(unittest.TestCase):
         self.assertEqual(facts["uniform.auto.peer.open"], facts["uniform.auto.peer.cases"])
 
     def test_counts_an_algorithm_that_was_too_slow_in_one_process_in_no_case_of_it(self):
+        def slow(case: str, name: str) -> float:
+            return 0 if name == "boost_rtree" and "clustered" in case else model(case, name)
         for process in (1, 2, 3):
-            self.write(process, results_of(process, time=lambda case, name, process=process: 0 if name == "boost_rtree" and
-                                           "clustered" in case and process == 2 else model(case, name)))
+            self.write(process, results_of(process, time=slow if process == 2 else model))
         table = load(self.folder).tables["rest"]
         row = next(row for row in table.rows if row[0].startswith("clustered, 2D"))
         self.assertIn("box2d_tree", row[3])
@@ -106,7 +107,7 @@ class TheComparison(unittest.TestCase):
         standings = {row[0]: row for row in made.tables["standings"].rows}
         cases = len(list(COMPARISON.cases()))
         self.assertEqual(standings["`grid`"][2:4], [str(cases), str(cases - 1)])
-        self.assertEqual([row[0] for row in made.tables["numbers"].rows], ["100", "1,000", "10,000", "100,000", "1,000,000"])
+        self.assertEqual([row[0] for row in made.tables["numbers"].rows][-2:], ["100,000", "1,000,000"])
         self.assertIn("(busy)", made.tables["processes"].rows[1][3])
         for figure in made.figures:
             figures.save(figure, self.folder / "figures")
@@ -125,10 +126,11 @@ class TheComparison(unittest.TestCase):
             load(self.folder / "none")
 
     def test_says_which_leads_two_sets_of_processes_disagree_about(self):
+        def other(case: str, name: str) -> float:
+            return {LATTICE: 0.2, PILE: 3}.get(case, 8) if name == "box2d_tree" else model(case, name)
         for process in (1, 2, 3):
             self.write(process, results_of(process), "first")
-            self.write(process, results_of(process, time=lambda case, name: 0.2 if name == "box2d_tree" and case == LATTICE
-                                           else 3 if name == "box2d_tree" and case == PILE else model(case, name)), "second")
+            self.write(process, results_of(process, time=other), "second")
         first, second = self.folder / "first", self.folder / "second"
         self.assertEqual(comparison.disagreements(first, first), [])
         self.assertEqual(comparison.disagreements(first, second), [f"{PILE} over peer"])
