@@ -179,6 +179,9 @@ def statements_table(content: Content, is_ours: bool = False, is_whole: bool = T
     """All statements of the draft, or our own claims, with what became of each; or only those that can be decided."""
     claims = {claim.number: claim for experiment in content.experiments for claim in experiment.claims}
     unmeasured = {claim.number for experiment in content.unmeasured for claim in experiment.claims}
+    section = {claim.number: re.sub(r"[^\w -]", "", experiment.experiment.title.lower()).replace(" ", "-")
+               for experiment in content.experiments for claim in experiment.claims}
+
     def verdict(statement: draft.DraftStatement) -> str:
         if statement.number in claims:
             text = claims[statement.number].verdict
@@ -189,7 +192,8 @@ def statements_table(content: Content, is_ours: bool = False, is_whole: bool = T
         shown = sorted((one for one in shown if one.number in unmeasured or one.number in claims),
                        key=lambda one: order_of(one.number))
     return Table(["statement", "what it says", "verdict"],
-                 [[one.number, one.says, verdict(one)] for one in shown]).markdown()
+                 [[f"[{one.number}](#{section[one.number]})" if is_whole and one.number in section else one.number,
+                   one.says, verdict(one)] for one in shown]).markdown()
 
 
 def evidence_table(claim: JudgedClaim) -> str:

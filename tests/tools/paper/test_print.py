@@ -106,7 +106,7 @@ class Pages(unittest.TestCase):
     def test_have_every_statement_with_its_rule_and_runs(self):
         self.write("")
         text = (self.pages / "statements.md").read_text()
-        self.assertRegex(text, r"\| 1a \| Half \\\| are left. \| confirmed \|")
+        self.assertRegex(text, r"\| \[1a\]\(#small\) \| Half \\\| are left. \| confirmed \|")
         self.assertIn("*Confirmed if:* More than 1.25.", text)
         self.assertIn("| Small | 1 | 30.0 | 2026-11-26 | 1 (50% of a processor) | unknown, 0.2 | 1 of 5 |", text)
         self.write("", is_measured=False)
