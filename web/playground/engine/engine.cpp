@@ -85,7 +85,7 @@ void answer_statistics(const std::optional<Statistics>& counted) {
     answers.numbers.push_back(static_cast<double>(number));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string json = "\"";
   for (const char character : text) {
     if (character == '"' || character == '\\') json += '\\';
@@ -98,7 +98,7 @@ std::string quoted(std::string_view text) {
 std::string object(std::initializer_list<std::pair<const char*, std::string>> fields) {
   std::string json;
   for (const auto& [name, value] : fields) {
-    if (!value.empty()) json += (json.empty() ? "{" : ",") + quoted(name) + ":" + value;
+    if (!value.empty()) json += (json.empty() ? "{" : ",") + in_quotes(name) + ":" + value;
   }
   return json + "}";
 }
@@ -113,13 +113,13 @@ std::string array_of(const Items& items, ToJson to_json) {
 std::string to_json(const Tunable& tunable) {
   const bool is_choice = tunable.type == Tunable::Type::choice;
   constexpr std::array<const char*, 3> types = {"number", "integer", "choice"};
-  return object({{"name", quoted(tunable.name)},
-                 {"summary", quoted(tunable.summary)},
-                 {"default", quoted(tunable.default_value)},
-                 {"type", quoted(types[static_cast<std::size_t>(tunable.type)])},
+  return object({{"name", in_quotes(tunable.name)},
+                 {"summary", in_quotes(tunable.summary)},
+                 {"default", in_quotes(tunable.default_value)},
+                 {"type", in_quotes(types[static_cast<std::size_t>(tunable.type)])},
                  {"min", is_choice ? "" : core::text_of(tunable.min)},
                  {"max", is_choice ? "" : core::text_of(tunable.max)},
-                 {"choices", is_choice ? array_of(tunable.choices, quoted) : ""}});
+                 {"choices", is_choice ? array_of(tunable.choices, in_quotes) : ""}});
 }
 
 template <typename Described>
@@ -133,10 +133,10 @@ std::string dimensions_of(const Described& described) {
 
 std::string to_json(const Algorithm& algorithm) {
   return object(
-      {{"name", quoted(algorithm.name)},
-       {"summary", quoted(algorithm.summary)},
-       {"source", quoted(algorithm.source)},
-       {"kind", quoted(name(algorithm.kind))},
+      {{"name", in_quotes(algorithm.name)},
+       {"summary", in_quotes(algorithm.summary)},
+       {"source", in_quotes(algorithm.source)},
+       {"kind", in_quotes(name(algorithm.kind))},
        {"dimensions", dimensions_of(algorithm)},
        {"tracks", algorithm.in_2d.followers.empty() && algorithm.in_3d.followers.empty() ? "false" : "true"},
        {"tunables", array_of(algorithm.tunables, [](const Tunable& each) { return to_json(each); })}});
@@ -405,8 +405,8 @@ BROADSIDE_EXPORT(free_tracker)(std::uint32_t tracker)->void { trackers.erase(tra
 BROADSIDE_EXPORT(list_scenes)()->int {
   return answer([] {
     answers.text = array_of(scenes(), [](const broadside::lab::Scene& scene) {
-      return object({{"name", quoted(scene.name)},
-                     {"summary", quoted(scene.summary)},
+      return object({{"name", in_quotes(scene.name)},
+                     {"summary", in_quotes(scene.summary)},
                      {"dimensions", dimensions_of(scene)}});
     });
   });
