@@ -52,9 +52,15 @@ constexpr auto projected_order(Before& before, Projection& projection) {
   };
 }
 
-template <typename Range, typename Predicate>
-constexpr bool any_of(Range&& range, Predicate predicate) {
-  return std::any_of(begin(range), end(range), ref(predicate));
+template <typename Range, typename Predicate, typename Projection = identity>
+constexpr auto find_if(Range&& range, Predicate predicate, Projection projection = {}) {
+  return std::find_if(begin(range), end(range),
+                      [&](const auto& element) { return invoke(predicate, invoke(projection, element)); });
+}
+
+template <typename Range, typename Predicate, typename Projection = identity>
+constexpr bool any_of(Range&& range, Predicate predicate, Projection projection = {}) {
+  return find_if(range, ref(predicate), projection) != end(range);
 }
 
 template <typename Range, typename Predicate>
@@ -198,8 +204,8 @@ constexpr auto min_element(Range&& range) {
   return std::min_element(begin(range), end(range));
 }
 
-template <typename Range, typename Predicate>
-constexpr auto adjacent_find(Range&& range, Predicate predicate) {
+template <typename Range, typename Predicate = equal_to>
+constexpr auto adjacent_find(Range&& range, Predicate predicate = {}) {
   return std::adjacent_find(begin(range), end(range), ref(predicate));
 }
 
@@ -233,9 +239,19 @@ constexpr void replace(Range&& range, const Value& from, const Value& to) {
   std::replace(begin(range), end(range), from, to);
 }
 
+template <typename Range, typename Predicate, typename Value>
+constexpr void replace_if(Range&& range, Predicate predicate, const Value& to) {
+  std::replace_if(begin(range), end(range), ref(predicate), to);
+}
+
 template <typename Range>
 constexpr void reverse(Range&& range) {
   std::reverse(begin(range), end(range));
+}
+
+template <typename Left, typename Right>
+constexpr bool includes(Left&& left, Right&& right) {
+  return std::includes(begin(left), end(left), begin(right), end(right));
 }
 
 template <typename Left, typename Right, typename To>

@@ -73,7 +73,7 @@ class Input::Buffer final : public std::streambuf {
       if (got == 0) break;
       setg(eback(), gptr(), egptr() + got);
     }
-    return {gptr(), egptr()};
+    return {gptr(), static_cast<std::size_t>(egptr() - gptr())};
   }
 
   std::function<void(std::size_t)> on_read;
@@ -156,7 +156,7 @@ std::string_view Input::bytes() {
   if (is_regular_ && size_ > 0) {
     mapped_ = platform::map(source_->descriptor(), size_);
     if (mapped_ == nullptr) refuse();
-    return all_ = {static_cast<const char*>(mapped_), size_};
+    return all_ = {static_cast<const char*>(mapped_), static_cast<std::size_t>(size_)};
   }
   copy();
   size_ = kept_.size();

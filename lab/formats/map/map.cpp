@@ -30,7 +30,7 @@ constexpr std::string_view features = "features";
 constexpr std::string_view geometries = "geometries";
 constexpr std::string_view annotations = "annotations";  // COCO's
 constexpr std::string_view shapes = "shapes";            // LabelMe's
-constexpr std::array lists = {features, geometries, annotations, shapes};
+constexpr std::array element_lists = {features, geometries, annotations, shapes};
 
 /// A kind of geometry: an array of points or of lines, `depth` arrays deep.
 struct GeometryKind {
@@ -67,7 +67,7 @@ class MapReader {
         quarantine_(options),
         wanted_{.members = {"type", "geometry", "geometries", "coordinates", "image_id", "bbox", "points",
                             "shape_type"},
-                .lists = {lists.begin(), lists.end()},
+                .lists = {element_lists.begin(), element_lists.end()},
                 .take = [this](const JsonValue& root, std::string_view list,
                                const JsonValue& element) { take(root, list, element); },
                 .progress = [this](std::size_t bytes) { input_.passed(begin_ + bytes); }} {
@@ -137,7 +137,7 @@ class MapReader {
       return;
     if (!list_.empty() && list != list_)
       refuse(fmt::format("'{}' beside '{}'", list, list_), "one list of boxes");
-    list_ = *std::ranges::find(lists, list);
+    list_ = *std::ranges::find(element_lists, list);
     if (list == annotations)
       read_annotation(element);
     else if (list == shapes)
@@ -226,9 +226,9 @@ class MapReader {
     if (geometry.kind != Kind::object) refuse(geometry.shown(), "a geometry, or null in a feature");
     const std::string& type = text_of(member_of(geometry, "type"), geometry_types);
     if (type == "GeometryCollection") {
-      constexpr int most_nested = 32;
-      if (nested == most_nested)
-        refuse(fmt::format("collections nested more than {} deep", most_nested), "fewer");
+      constexpr int most_collections = 32;
+      if (nested == most_collections)
+        refuse(fmt::format("collections nested more than {} deep", most_collections), "fewer");
       for (const JsonValue& one : elements_of(member_of(geometry, geometries), "an array of geometries"))
         read_geometry(one, nested + 1);
       return;
