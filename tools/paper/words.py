@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from . import draft, figures
@@ -76,15 +77,17 @@ class Words:
         found = sorted((at for at in every.values() if math.isfinite(at.value)), key=lambda at: at.value)
         if not found:
             return NONE
-        texts = list(dict.fromkeys([found[0].text(), found[-1].text()]))
+        least, greatest = found[0], found[-1]
+        if least.unit == greatest.unit:
+            least = replace(least, unit="")
+        text = greatest.text() if found[0].text() == greatest.text() else f"between {least.text()} and {greatest.text()}"
         missing = len(every) - len(found)
-        return (texts[0] if len(texts) == 1 else f"between {texts[0]} and {texts[1]}") + (
-            f" (and nowhere in {missing} of {len(every)} series)" if missing else "")
+        return text + (f" (and nowhere in {missing} of {len(every)} series)" if missing else "")
 
     def verdict(self, number: str) -> str:
-        """ "within bounds"; their condition is in the table of verdicts."""
+        """ "confirmed within bounds"; the condition is in the table of verdicts."""
         claim = self.claim(number)
-        return claim.finding.verdict.value.removeprefix("holds ") if claim else "not measured"
+        return claim.finding.verdict.value.replace("holds", "confirmed") if claim else "not measured"
 
     def by(self, number: str, *, confirmed: str, bounds: str, refuted: str, otherwise: str) -> str:
         """The text of the outcome; of one that is open, `otherwise`."""
