@@ -25,8 +25,9 @@ GROUPS = {
 }
 
 EFFORT = {"budget_seconds": 0.25, "history_seconds": 1, "share_seconds": 0.1, "min_rounds": 5, "max_rounds": 100,
-          "slow_seconds": 0.05, "slow_history_seconds": 0.4, "slow_rounds": 3, "definition_boxes": 20_000}
-EFFORT_OF_A_MILLION = {**EFFORT, "budget_seconds": 2, "slow_rounds": 2}
+          "slow_seconds": 0.05, "slow_history_seconds": 0.4, "slow_rounds": 3}
+QUICK_EFFORT = {**EFFORT, "share_seconds": 0.01, "min_rounds": 2, "slow_seconds": 0.01, "slow_rounds": 1}
+EFFORT_OF_A_MILLION = {"budget_seconds": 2, "slow_rounds": 2}
 
 
 @dataclass(frozen=True)
@@ -47,45 +48,45 @@ def uniform() -> Iterator[Compared]:
         for number in NUMBERS:
             yield Compared(f"uniform, {dimension}D, {number:,} boxes", "uniform:neighbours=4",
                            FAST if number == NUMBERS[-1] else ("all",), number, dimension, group="uniform",
-                           effort=EFFORT_OF_A_MILLION if number == NUMBERS[-1] else EFFORT, number=number,
+                           effort=EFFORT_OF_A_MILLION if number == NUMBERS[-1] else {}, number=number,
                            density=4 if number == 10_000 else None)
         for density in DENSITIES:
             if density != 4:
                 yield Compared(f"uniform with {density:g} neighbours, {dimension}D, 10,000 boxes",
-                               f"uniform:neighbours={density:g}", ("all",), 10_000, dimension, effort=EFFORT,
-                               group="uniform", density=density)
+                               f"uniform:neighbours={density:g}", ("all",), 10_000, dimension, group="uniform",
+                               density=density)
 
 
 def at_rest() -> Iterator[Compared]:
     for scene, words in {"power_law": "sizes by a power law", "mixed": "one in a hundred huge",
                          "clustered": "clustered", "one_line": "all on one line", "lattice": "touching on a lattice",
-                         "thin": "long and thin", "terdiman": "Terdiman's scene", "one_point": "all over one point"}.items():
+                         "thin": "long and thin", "terdiman": "Terdiman's scene",
+                         "one_point": "all over one point"}.items():
         boxes = 2_000 if scene == "one_point" else 10_000
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
-                           effort=EFFORT, group=f"rest_{dimension}d")
+                           group=f"rest_{dimension}d")
     for scene, words, dimension in (
             ("bunny", "triangles of a mesh, seen from one side", 2), ("bunny", "triangles of a mesh", 3),
             ("counties", "counties", 2), ("counties:boxes=segments", "segments of counties", 2),
             ("coastlines", "coastlines", 2), ("coastlines:boxes=segments", "segments of coastlines", 2)):
-        yield Compared(f"{words}, {dimension}D", scene, ("all",), None, dimension, effort=EFFORT, group="real")
+        yield Compared(f"{words}, {dimension}D", scene, ("all",), None, dimension, group="real")
 
 
 def moving() -> Iterator[Compared]:
     for boxes, share, frames in ((10_000, 0.01, 10), (10_000, 1, 10), (100_000, 0.1, 5)):
         for dimension in (2, 3):
             yield Compared(f"uniform, {dimension}D, {boxes:,} boxes, {share:.0%} moving".replace("%", " %"),
-                           "uniform", ("all",), boxes, dimension, frames=frames, moving=share, effort=EFFORT,
-                           group="moving")
+                           "uniform", ("all",), boxes, dimension, frames=frames, moving=share, group="moving")
     for scene, words, boxes, frames in (("churn", "coming and going", 1_000, 20),
                                         ("pile", "trembling in a pile", 2_000, 10)):
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
-                           frames=frames, effort=EFFORT, group="moving")
+                           frames=frames, group="moving")
     for scene, words, dimension in (("box2d_rain", "rain in Box2D", 2), ("box2d_pyramid", "a pyramid in Box2D", 2),
                                     ("bullet_free_fall", "free fall in Bullet", 3)):
         yield Compared(f"{words}, {dimension}D, 1,000 boxes", scene, ("all",), 1_000, dimension, frames=30,
-                       effort=EFFORT, group="recorded")
+                       group="recorded")
 
 
 COMPARISON = Experiment(title="The comparison with other libraries", measured="Times of all algorithms.", claims=(),
@@ -114,6 +115,9 @@ def kept(results: dict) -> dict:
 
 class MeasuringComparison(Measuring):
     """Measures processes of the comparison."""
+
+    effort = EFFORT
+    quick_effort = QUICK_EFFORT
 
     def results_of(self, run: int, experiment: Experiment) -> dict:
         return kept(super().results_of(run, experiment))

@@ -39,6 +39,8 @@ class Measuring:
     book: RuleBook
     is_quick: bool = False
     seconds: dict[str, float] = field(default_factory=dict)  # that an experiment's last run took
+    effort = EFFORT
+    quick_effort = QUICK_EFFORT
 
     def __post_init__(self) -> None:
         if not self.program.is_file():
@@ -84,7 +86,7 @@ class Measuring:
             listed.append(case.listed(seed_of(run), files))
         cases_file = self.work / f"{experiment.name}.cases.json"
         results_file = self.work / f"{experiment.name}.results.json"
-        effort = QUICK_EFFORT if self.is_quick else EFFORT
+        effort = self.quick_effort if self.is_quick else self.effort
         if self.is_quick:  # what a case asks for beyond the usual is for the paper
             listed = [{name: value for name, value in case.items() if name != "effort"} for case in listed]
         cases_file.write_text(json.dumps({"schema": "broadside.cases/1", "effort": effort, "cases": listed}),

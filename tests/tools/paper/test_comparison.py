@@ -1,5 +1,8 @@
 """What the comparison's processes come to, on results that are made by a model."""
 
+import json
+import os
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,10 +13,11 @@ from matplotlib import pyplot
 from tools.paper import comparison, figures
 from tools.paper.archive import Archive
 from tools.paper.comparison import load
-from tools.paper.comparison_cases import COMPARISON, kept
+from tools.paper.comparison_cases import COMPARISON, EFFORT, kept
 from tools.paper.experiment import Unusable
 from tools.paper.rules import RuleBook
 
+PROGRAM = os.environ.get("BROADSIDE_PROGRAM")
 KINDS = {"auto": "own", "grid": "own", "terdiman_box_pruning": "literature", "paper_grid": "paper",
          "boost_rtree": "peer", "box2d_tree": "peer"}
 PILE = "trembling in a pile, 2D, 2,000 boxes"
@@ -134,6 +138,14 @@ class TheComparison(unittest.TestCase):
         first, second = self.folder / "first", self.folder / "second"
         self.assertEqual(comparison.disagreements(first, first), [])
         self.assertEqual(comparison.disagreements(first, second), [f"{PILE} over peer"])
+
+    @unittest.skipUnless(PROGRAM, "BROADSIDE_PROGRAM is not set; expected the program")
+    def test_lists_cases_that_the_program_takes(self):
+        cases = [case.listed(1) for case in COMPARISON.cases() if case.group != "real"]  # those are of files
+        listed = self.folder / "cases.json"
+        listed.write_text(json.dumps({"schema": "broadside.cases/1", "effort": EFFORT, "cases": cases}))
+        ended = subprocess.run([PROGRAM, "measure", listed, "--check"], capture_output=True, text=True, check=False)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
 
 
 if __name__ == "__main__":
