@@ -16,7 +16,7 @@ from ..statistics import Estimate, crossing
 COUNTS = (1_000, 2_000, 4_000, 8_000, 16_000, 32_000)
 BOXES = 10_000
 FRAMES = 6
-FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2}  # where counts decide
+FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2, "history_seconds": 60}  # where counts decide
 MENDED = ("insertion", "heap", "binary", "rebuild")
 
 # How far all boxes go in a frame, in their own sizes; None: they jump anywhere.

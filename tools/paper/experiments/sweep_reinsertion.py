@@ -22,7 +22,7 @@ FAR = "anywhere"
 GOING = {FAR: 1.0, "a fifth of their size": 0.0}  # the fraction that jumps; the others drift
 
 # Sweeps of many boxes take long, and counts decide.
-FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2}
+FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2, "history_seconds": 60}
 
 UPDATES = {"binary": "binary search", "insertion": "insertion sort", "heap": "heap", "rebuild": "sorted anew"}
 
