@@ -342,9 +342,16 @@ def leads_table(leads: Sequence[Lead]) -> Table:
 
 
 def standings_table(times: Times, cases: Sequence[Compared]) -> Table:
-    return Table(["algorithm", "whose", "cases:", "fastest in:", "time over the fastest's:"],
-                 [[f"`{name}`", KINDS.get(times.kinds[name], times.kinds[name]), str(count), str(wins), ratio.text()]
-                  for name, ratio, count, wins in times.standings(cases)])
+    """Every algorithm over all cases, and in how many of them it is faster than auto, and so on."""
+    rows = []
+    for name, ratio, count, wins in times.standings(cases):
+        of_auto = times.those(times.lead_over(case, "auto", name) for case in cases
+                              if {"auto", name} <= set(times.timed(case.name)))
+        against = f"{len(of_auto.lost)} / {len(of_auto.level)} / {len(of_auto.open)} / {len(of_auto.won)}"
+        rows.append([f"`{name}`", KINDS.get(times.kinds[name], times.kinds[name]), str(count), str(wins), ratio.text(),
+                     "-" if name == "auto" else against])
+    return Table(["algorithm", "whose", "cases:", "fastest in:", "time over the fastest's:",
+                  "faster than `auto` / level / open / slower:"], rows)
 
 
 def scenes_table(times: Times, cases: Sequence[Compared]) -> Table:

@@ -111,6 +111,7 @@ class TheComparison(unittest.TestCase):
         standings = {row[0]: row for row in made.tables["standings"].rows}
         cases = len(list(COMPARISON.cases()))
         self.assertEqual(standings["`grid`"][2:4], [str(cases), str(cases - 1)])
+        self.assertEqual(standings["`boost_rtree`"][5], f"0 / 1 / 0 / {cases - 1}")
         self.assertEqual([row[0] for row in made.tables["numbers"].rows][-2:], ["100,000", "1,000,000"])
         self.assertIn("(busy)", made.tables["processes"].rows[1][3])
         for figure in made.figures:
