@@ -145,9 +145,11 @@ clean: ## Remove everything that was built or fetched
 
 # The other libraries of a comparison are installed for it, unless PEERS=no.
 PEERS := yes
-compare bench published: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper experiments: setup_options := --paper
+
+published: setup_options := --peers --paper
 
 deb: setup_options := --deb
 
