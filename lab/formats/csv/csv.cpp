@@ -135,37 +135,15 @@ class CsvOpener {
     return false;
   }
 
-  /// Takes the columns that the user names, from left to right. Or, as "bbox=xywh", the order of the numbers
-  /// in the file's column of that name; or, as "xywh", the meaning of its columns of bounds. Whether the
-  /// first line is of names.
+  /// Takes the columns that the user names, from left to right, or as a convention such as "xywh" says.
+  /// Whether the first line is of names.
   bool take_columns(std::string_view list) {
     const auto* const convention = std::ranges::find(conventions, list, &Convention::name);
-    const bool is_row = is_table_row(fields_);
-    if (convention != conventions.end() && !is_row) return take_convention(*convention);
-    const std::string_view wanted = convention != conventions.end() ? convention->columns : list;
-    Fields names = fields_of(wanted, Separator::comma);
+    const bool is_convention = convention != conventions.end();
+    if (is_convention && !is_table_row(fields_)) return take_convention(*convention);
+    Fields names = fields_of(is_convention ? convention->columns : list, Separator::comma);
     std::ranges::replace(names, std::string_view("-"), std::string_view());
-    BoundsForm form = BoundsForm::min_max;
-    for (std::string_view& name : names) {
-      const std::size_t equals = name.find('=');
-      if (equals == std::string_view::npos) continue;
-      const auto* const told = std::ranges::find(conventions, name.substr(equals + 1), &Convention::name);
-      name = name.substr(0, equals);
-      if (told == conventions.end() || !is_geometry_name(name))
-        lines_.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
-      form = told->form;
-      // In a file with names, the column is found by its name, and other columns of bounds are ignored.
-      if (names.size() != 1 || std::ranges::find(fields_, name) == fields_.end()) continue;
-      const std::string_view only = name;
-      names = fields_;
-      std::ranges::replace_if(
-          names,
-          [only](std::string_view other) {
-            return other != only && (meaning_of(other) || is_geometry_name(other));
-          },
-          std::string_view());
-      break;
-    }
+    const BoundsForm form = take_form(list, names);
     if (names.size() > fields_.size())
       lines_.refuse(fmt::format("{} column{}", fields_.size(), fields_.size() == 1 ? "" : "s"),
                     fmt::format("the {} that --columns names", names.size()));
@@ -180,6 +158,32 @@ class CsvOpener {
       if (columns_.places[i] != BoxColumns::ignored) read.push_back(fields_[i]);
     }
     return !is_table_row(read);
+  }
+
+  /// Takes the order of the numbers in a column of bounds off names such as "bbox=xywh".
+  BoundsForm take_form(std::string_view list, Fields& names) const {
+    BoundsForm form = BoundsForm::min_max;
+    for (std::string_view& name : names) {
+      const std::size_t equals = name.find('=');
+      if (equals == std::string_view::npos) continue;
+      const auto* const told = std::ranges::find(conventions, name.substr(equals + 1), &Convention::name);
+      name = name.substr(0, equals);
+      if (told == conventions.end() || !is_geometry_name(name))
+        lines_.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
+      form = told->form;
+    }
+    // In a file with names, one column is found by its name, and other columns of bounds are ignored.
+    const std::string_view only = names.front();
+    const bool has_form = list.find('=') != std::string_view::npos;
+    if (!has_form || names.size() != 1 || std::ranges::find(fields_, only) == fields_.end()) return form;
+    names = fields_;
+    std::ranges::replace_if(
+        names,
+        [only](std::string_view other) {
+          return other != only && (meaning_of(other) || is_geometry_name(other));
+        },
+        std::string_view());
+    return form;
   }
 
   /// Takes the columns of bounds in a file with names as a convention says.
