@@ -165,7 +165,8 @@ def machine_words(content: Content) -> dict[str, str]:
     caches = [f"{name} {size // 1024:,} KiB" for name, size in (machine.get("caches") or {}).items()]
     return {
         "processor": f"{machine.get('cpu') or 'a processor'} with {machine.get('cores') or 'some'} cores",
-        "clock": f"at {min(clocks):.2f} to {max(clocks):.2f} GHz" if clocks else "at a clock that it does not tell",
+        "clock": f"at {' to '.join(dict.fromkeys([f'{min(clocks):.2f}', f'{max(clocks):.2f}']))} GHz" if clocks else
+                 "at a clock that it does not tell",
         "caches": listing(caches) if caches else "that it does not tell",
         "memory": f"{machine['memory_bytes'] / 2**30:.0f} GiB" if machine.get("memory_bytes") else "some",
         "system": machine.get("os") or "an unknown system",
@@ -228,6 +229,7 @@ def totals(content: Content) -> dict[str, int | float]:
         "judged": len(verdicts),
         **{verdict.name.lower(): verdicts.count(verdict) for verdict in Verdict},
         "runs": len(numbers),
+        "processes": len(content.runs),
         "minutes": round(sum(run["seconds"] for run in content.runs) / max(len(numbers), 1) / 60, 1),
         "busy": sum(run["busy"] for run in content.runs),
         "unsteady": sum(run["unsteady"] for run in content.runs),

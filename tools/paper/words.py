@@ -85,9 +85,10 @@ class Words:
         return text + (f" (and nowhere in {missing} of {len(every)} series)" if missing else "")
 
     def verdict(self, number: str) -> str:
-        """ "confirmed within bounds"; the condition is in the table of verdicts."""
+        """ "is confirmed", "holds within bounds": the condition is in the table of verdicts."""
         claim = self.claim(number)
-        return claim.finding.verdict.value.replace("holds", "confirmed") if claim else "not measured"
+        value = claim.finding.verdict.value if claim else NOT_MEASURED
+        return value if value.startswith("holds") else f"is {value}"
 
     def by(self, number: str, *, confirmed: str, bounds: str, refuted: str, otherwise: str) -> str:
         """The text of the outcome; of one that is open, `otherwise`."""

@@ -72,7 +72,7 @@ class Pages(unittest.TestCase):
     def test_have_figures_verdicts_and_facts_by_name(self):
         self.assertRegex(self.write('{{ figure("1a", "it") }}'), r"^1\.\d\d \(1\.\d\d to 1\.\d\d\)$")
         self.assertRegex(self.write('{{ span("1a", "i") }}'), r"^1\.\d\d \(")
-        self.assertEqual(self.write('{{ verdict("1a") }}, {{ fact("lead") }}'), "confirmed, 7.1")
+        self.assertEqual(self.write('{{ verdict("1a") }}, {{ fact("lead") }}'), "is confirmed, 7.1")
         self.assertEqual(self.write('{{ table("leads") }}'), "| case | lead |\n| ------ | -----: |\n| one | 7.1 |")
         by = '{{ by("1a", confirmed="yes", bounds="some", refuted="no", otherwise="open") }}'
         self.assertEqual([self.write(by), self.write(by, ratio=1.0), self.write(by, is_measured=False)],
