@@ -86,7 +86,10 @@ class Run:
 
     def memory(self, case: str, spec: str, what: str = "own") -> float:
         """Bytes held between calls (own), or the most at one moment (peak)."""
-        return float(self.measurement(case, spec)[f"{what}_bytes"])
+        held = self.measurement(case, spec)[f"{what}_bytes"]
+        if held is None:
+            raise self.lacks(case, spec, "memory")
+        return float(held)
 
     def boxes(self, case: str) -> int:
         return self._first_of_case[case]["boxes"]
