@@ -224,7 +224,7 @@ class CsvOpener {
     while (((columns_.has_geometry && geometry_.empty()) || columns_.forms[1] == BoundsForm::bottom_top) &&
            lines.next()) {
       const Fields fields = fields_of(lines.line(), separator_);
-      if (geometry < fields.size()) geometry_ = fields[geometry];
+      if (columns_.has_geometry && geometry < fields.size()) geometry_ = fields[geometry];
       double bottom_y = 0;
       double top_y = 0;
       if (std::max(bottom, top) < fields.size() && parse_number(fields[bottom], bottom_y) &&

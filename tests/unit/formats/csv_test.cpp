@@ -219,6 +219,7 @@ TEST_F(CsvTable, LetsTheRowsTellWhetherYGrowsUpOrDown) {
   EXPECT_EQ(boxes_of("bb_left,bb_top,bb_right,bb_bottom\n,,,\n1,2,5,8\n").back(), boxes[1]);
   EXPECT_THAT(refusal_of("left,top,right,bottom\n1,2,5,8\n1,8,5,2\n"), HasSubstr("bad.csv:3: min (1, 8)"))
       << "not both";
+  EXPECT_THAT(refusal_of("left,top,right,bottom\n1,2,5,8,5\n"), HasSubstr("bad.csv:2: 5 columns; expected"));
   EXPECT_THAT(refusal_of("left,top,right,bottom\n1,8,5,2\n1,2,5,8\n"), Not(HasSubstr("--columns")))
       << "a top that is the maximum is no height";
 }
