@@ -27,7 +27,7 @@ GROUPS = {
 EFFORT = {"budget_seconds": 0.25, "history_seconds": 1, "share_seconds": 0.1, "min_rounds": 5, "max_rounds": 100,
           "slow_seconds": 0.05, "slow_history_seconds": 0.4, "slow_rounds": 3}
 QUICK_EFFORT = {**EFFORT, "share_seconds": 0.01, "min_rounds": 2, "slow_seconds": 0.01, "slow_rounds": 1}
-EFFORT_OF_A_MILLION = {"budget_seconds": 2, "slow_rounds": 2}
+EFFORT_OF_A_MILLION = {"budget_seconds": 4, "slow_rounds": 2}
 
 
 @dataclass(frozen=True)
