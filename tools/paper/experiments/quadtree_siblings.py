@@ -11,7 +11,7 @@ from ..results import Results, Run
 from ..rules import Rules
 from ..statistics import Estimate, crossing
 
-BOXES = 8_000
+BOXES, MORE = 8_000, 64_000
 CAPACITIES = (8, 2)
 NEIGHBOURS = (0.05, 0.5, 2, 8, 32, 128)  # others that a box overlaps: boxes are ever larger against leaves
 STEP = 0.2                 # of a mover, in its sizes; where boxes are in the fewest leaves, far enough to take
@@ -20,8 +20,9 @@ DRIFTS = (0.02, 2, 10)
 WAYS = {"root": "from the root", "relative": "from the node that holds it", "siblings": "by siblings",
         "cousins": "by siblings and cousins"}
 ACROSS = ("siblings", "cousins")
-At = tuple[int, float]
-EVERYWHERE: list[At] = [(capacity, neighbours) for capacity in CAPACITIES for neighbours in NEIGHBOURS]
+At = tuple[int, float, int]
+EVERYWHERE: list[At] = [(capacity, neighbours, BOXES) for capacity in CAPACITIES for neighbours in NEIGHBOURS]
+DEEPER: list[At] = [(capacity, neighbours, MORE) for capacity in CAPACITIES for neighbours in (0.05, 2)]
 
 
 def spec(update: str, capacity: int = CAPACITIES[0]) -> str:
@@ -29,7 +30,7 @@ def spec(update: str, capacity: int = CAPACITIES[0]) -> str:
 
 
 def case_of(at: At) -> str:
-    return f"leaves of {at[0]} at {at[1]:g} neighbours"
+    return f"leaves of {at[0]} at {at[1]:g} neighbours" + (f", {at[2]:,} boxes" if at[2] != BOXES else "")
 
 
 def step_case(drift: float) -> str:
@@ -37,10 +38,11 @@ def step_case(drift: float) -> str:
 
 
 def cases() -> list[Case]:
-    motion = {"boxes": BOXES, "moving": 0.1, "frames": 6, "take": ["phases"], "effort": {"min_rounds": 4}}
-    ways = [Case(case_of(at), f"uniform:neighbours={at[1]}", [spec(way, at[0]) for way in WAYS],
-                 drift=STEPS.get(at[1], STEP), **motion) for at in EVERYWHERE]
-    return ways + [Case(step_case(drift), "uniform", [*map(spec, WAYS)], drift=drift, **motion) for drift in DRIFTS]
+    motion = {"moving": 0.1, "frames": 6, "take": ["phases"], "effort": {"min_rounds": 4}}
+    ways = [Case(case_of(at), f"uniform:neighbours={at[1]}", [spec(way, at[0]) for way in WAYS], boxes=at[2],
+                 drift=STEPS.get(at[1], STEP), **motion) for at in EVERYWHERE + DEEPER]
+    return ways + [Case(step_case(drift), "uniform", [*map(spec, WAYS)], boxes=BOXES, drift=drift, **motion)
+                   for drift in DRIFTS]
 
 
 def leaves(run: Run, at: At) -> float:
@@ -58,7 +60,7 @@ def over(results: Results, at: At, way: str, other: str) -> Estimate:
 
 
 def horrible(results: Results, rules: Rules, at: At) -> dict[str, Asked]:
-    single = (at[0], NEIGHBOURS[0])
+    single = (at[0], NEIGHBOURS[0], at[2])
     return {
         f"by siblings and cousins over from the root, {case_of(at)}": Asked(
             over(results, at, "cousins", "root"), above=rules.clearly, fails_at=rules.level),
@@ -73,7 +75,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     spanning = [at for at in EVERYWHERE if spans[at].is_above(rules.spanning)]
     others = {case_of(at): span for at, span in spans.items()}
     for capacity in CAPACITIES:
-        line = [(capacity, neighbours) for neighbours in NEIGHBOURS]
+        line = [(capacity, neighbours, BOXES) for neighbours in NEIGHBOURS]
         others[f"as fast as from the root at, leaves of {capacity}"] = results.between(lambda run: crossing(
             [leaves(run, at) for at in line], [mending(run, at, "relative", "root") for at in line]),
             "leaves of a box")
@@ -84,7 +86,8 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     elsewhere = {f"from the root over {WAYS[way]}, {case_of(at)}": over(results, at, "root", way)
                  for at in EVERYWHERE if at not in in_one for way in ACROSS}
     return [
-        judged("14a", {case_of(at): over(results, at, "root", "relative") for at in EVERYWHERE}, above=rules.level,
+        judged("14a", {case_of(at): over(results, at, "root", "relative") for at in EVERYWHERE + DEEPER},
+               above=rules.level,
                where="there are {}", beside=others),
         judged("14b", {f"{case_of(at)}, {WAYS[way]}": over(results, at, "root", way) for at in in_one
                        for way in ACROSS}, above=rules.level, where="there are {}", beside=elsewhere),
@@ -97,7 +100,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
 def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     drawing, axes = figures.new(columns=2)
     for place, capacity in zip(axes, CAPACITIES):
-        line = [(capacity, neighbours) for neighbours in NEIGHBOURS]
+        line = [(capacity, neighbours, BOXES) for neighbours in NEIGHBOURS]
         spans = [results.between(lambda run: leaves(run, at)).value for at in line]
         for way in list(WAYS)[1:]:
             figures.line(place, spans, [over(results, at, way, "root") for at in line], WAYS[way])
@@ -110,11 +113,12 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 EXPERIMENT = Experiment(
     title="By siblings and cousins, or from the root",
     measured=f"The time of mending the draft's quadtree, in leaves of {CAPACITIES[0]} and of {CAPACITIES[1]}, where a "
-             f"tenth of {BOXES:,} uniform boxes move by {STEP:g} of their size, or, in the fewest leaves, "
+             f"tenth of {BOXES:,} or {MORE:,} uniform boxes move by {STEP:g} of their size, or, in the fewest leaves, "
              f"by {max(STEPS.values())} and {min(STEPS.values())} times their size.",
     claims=[
         Claim("14a",
-              f"With {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours a box, to insert from the root takes more than "
+              f"With {BOXES:,} and {MORE:,} boxes of {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours, to insert from the "
+              "root takes more than "
               "{level} times as long as from the least node above the old leaf that holds the box.",
               "Nowhere it does."),
         Claim("14b",
