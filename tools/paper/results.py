@@ -146,11 +146,11 @@ class Results:
         """Those of the specs that have a time in every run."""
         return [spec for spec in specs if all(run.was_timed(case, spec) for run in self.runs)]
 
-    def fastest(self, case: str, specs: Sequence[str]) -> str:
+    def fastest(self, case: str, specs: Sequence[str], part: Sequence[str] = WHOLE) -> str:
         """The spec with the least time, as the mean over the runs; one is chosen for all of them."""
         timed = self.timed(case, specs)
         if not timed:
             raise Unusable(f"case '{case}': none of {', '.join(specs)} has a time; expected one at least")
-        means = {spec: math.exp(numpy.mean([math.log(run.time(case, spec)) for run in self.runs]))
+        means = {spec: math.exp(numpy.mean([math.log(run.time(case, spec, part)) for run in self.runs]))
                  for spec in timed}
         return min(means, key=means.get)

@@ -30,7 +30,7 @@ class OnWhatChanged(unittest.TestCase):
         self.assertEqual([finding.verdict for finding in found.values()], [Verdict.CONFIRMED] * 4)
 
     def test_what_is_level_refutes(self):
-        self.assertEqual(self.findings(mending=1.0)["9a"].verdict, Verdict.REFUTED)
+        self.assertEqual(self.findings(mending=1.0, searching=lambda *_: 1.0)["9a"].verdict, Verdict.REFUTED)
         self.assertEqual(self.findings(frame=1.0)["9b"].verdict, Verdict.REFUTED)
 
     def test_the_time_to_detect_counts(self):
