@@ -18,6 +18,15 @@
 namespace broadside::cli {
 namespace {
 
+/// The first clause of a text, without the point at its end.
+std::string first_clause(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool ends = i + 1 == text.size() || text[i + 1] == ' ';
+    if (ends && std::string_view(".:;").find(text[i]) != std::string_view::npos) return text.substr(0, i);
+  }
+  return text;
+}
+
 /// An option as shells complete it.
 struct CompletedOption {
   std::vector<std::string> letters;  ///< without the dash

@@ -122,22 +122,10 @@ void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
   verb.footer(footer + "\n\n" + verb.get_footer());
 }
 
-std::string first_clause(const std::string& text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool ends = i + 1 == text.size() || text[i + 1] == ' ';
-    if (ends && std::string_view(".:;").find(text[i]) != std::string_view::npos) return text.substr(0, i);
-  }
-  return text;
-}
-
-bool wants_man_page(const std::vector<std::string>& arguments) {
-  return arguments.size() > 2 && arguments[1] == "help" && std::ranges::count(arguments, "--man") > 0;
-}
-
 std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments) {
   if (arguments.size() < 2 || arguments[1] != "help") return arguments;
   std::vector<std::string> asked = {arguments[0]};
-  std::remove_copy(arguments.begin() + 2, arguments.end(), std::back_inserter(asked), "--man");
+  asked.insert(asked.end(), arguments.begin() + 2, arguments.end());
   asked.emplace_back("--help");
   return asked;
 }

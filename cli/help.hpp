@@ -42,14 +42,7 @@ struct Example {
 };
 void add_examples(CLI::App& verb, const std::vector<Example>& examples);
 
-/// The first clause of a text, without the point at its end.
-std::string first_clause(const std::string& text);
-
-/// Whether `help` was asked for a page of the manual, by --man.
-bool wants_man_page(const std::vector<std::string>& arguments);
-
-/// The program's arguments, in which `help` and `help VERB` have become --help and VERB --help, without
-/// --man.
+/// The program's arguments, in which `help` and `help VERB` have become --help and VERB --help.
 std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments);
 
 }  // namespace broadside::cli

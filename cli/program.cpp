@@ -20,7 +20,6 @@
 
 #include "cli/help.hpp"
 #include "cli/interruption.hpp"
-#include "cli/man_page.hpp"
 #include "cli/message.hpp"
 #include "cli/parse.hpp"
 #include "cli/verbs.hpp"
@@ -50,10 +49,7 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
   const std::vector<std::string> arguments = broadside::cli::without_help_verb(given);
   CLI::App program("Finds overlapping boxes by every common broad-phase algorithm and compares them.",
                    broadside::cli::program_name());
-  if (broadside::cli::wants_man_page(given))
-    program.formatter(std::make_shared<broadside::cli::ManPageFormatter>());
-  else
-    program.formatter(std::make_shared<broadside::cli::HelpFormatter>());
+  program.formatter(std::make_shared<broadside::cli::HelpFormatter>());
   program.set_help_flag("-h,--help", "Print this help and end");
   program.set_version_flag("--version", "broadside " BROADSIDE_VERSION, "Print the version and end");
   program.require_subcommand(1);
@@ -74,10 +70,8 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
       {"list", broadside::cli::add_list(program, catalogue)},
       {"completion", broadside::cli::add_completion(program)},
   };
-  program.add_subcommand("help",
-                         fmt::format("Shows this help, or a verb's: {} help pairs. With --man, as a page of "
-                                     "the manual.",
-                                     broadside::cli::program_name()));
+  program.add_subcommand(
+      "help", fmt::format("Shows this help, or a verb's: {} help pairs.", broadside::cli::program_name()));
   // A verb without a group is not shown: it is for programs.
   for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; }))
     verb->group(verb->get_group().empty() ? "" : "Verbs");

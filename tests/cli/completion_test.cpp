@@ -1,4 +1,4 @@
-// What shells complete, and the pages of the manual: both are made of the options that the program has.
+// What shells complete: the verbs and options that the program has.
 #include <string>
 #include <vector>
 
@@ -10,10 +10,7 @@
 namespace broadside::cli {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 /// What bash offers for the last of these words.
 std::string completed(const std::string& words, int last) {
@@ -50,18 +47,6 @@ TEST(Completion, RefusesAnotherShell) {
   const Ended ended = run({"completion", "tcsh"});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.errors, HasSubstr("shell is 'tcsh'; expected bash, zsh or fish"));
-}
-
-TEST(ManPage, HasWhatHelpSaysUnderTheHeadingsOfManuals) {
-  const std::string page = run({"help", "--man", "pairs"}).output;
-  EXPECT_THAT(page, StartsWith(".TH BROADSIDE-PAIRS 1 "));
-  EXPECT_THAT(page, AllOf(HasSubstr(".SH NAME\nbroadside\\-pairs \\- Finds the pairs"),
-                          HasSubstr(".SH SYNOPSIS\n.B broadside pairs\n[OPTIONS] files...\n"),
-                          HasSubstr(".B \\-\\-within DISTANCE\n"), HasSubstr(".SH EXAMPLES\n"),
-                          HasSubstr(".SH EXIT STATUS\n0 fine,"), HasSubstr(".BR broadside (1)\n")));
-  const std::string program = run({"help", "--man"}).output;
-  EXPECT_THAT(program, AllOf(HasSubstr(".SH VERBS\n"), HasSubstr(".BR broadside\\-list (1)"),
-                             Not(HasSubstr("broadside\\-help"))));
 }
 
 }  // namespace
