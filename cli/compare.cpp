@@ -164,7 +164,6 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
     write(arguments.files, json, [&] {
       return lab::PageContent{.date = lab::today(),
                               .comparison = json,
-                              .experiments = {},
                               .drawings = lab::drawings_of(lab::scenes_of(comparison), options.find,
                                                            catalogue.select(arguments.entries.algorithms))};
     });

@@ -88,6 +88,10 @@ void check_verb(const std::vector<std::string>& arguments, const CLI::App& progr
   const std::string expected = fmt::format("expected one of: {}; --help tells more", fmt::join(known, ", "));
   if (arguments.size() < 2) throw Unusable("no verb; " + expected);
   const std::string& verb = arguments[1];
+  if (verb == "experiment")
+    throw Unusable(
+        "verb 'experiment' is no longer there; expected `make experiments`, which measures and judges the "
+        "paper's claims, or `python3 -m tools.paper run` for some of them (tools/paper/README.md)");
   if (!verb.starts_with('-') && std::ranges::find(known, verb) == known.end())
     throw Unusable(fmt::format("unknown verb '{}'{}; {}", verb, core::did_you_mean(verb, known), expected));
 }

@@ -59,7 +59,6 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
   const std::vector<std::pair<std::string, broadside::cli::Verb>> verbs = {
       {"compare", broadside::cli::add_compare(program, catalogue, given)},
       {"advise", broadside::cli::add_advise(program, catalogue, given)},
-      {"experiment", broadside::cli::add_experiment(program, catalogue, given)},
       {"measure", broadside::cli::add_measure(program, catalogue, given)},
       {"pairs", broadside::cli::add_pairs(program, catalogue)},
       {"info", broadside::cli::add_info(program)},

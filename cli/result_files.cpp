@@ -44,7 +44,7 @@ void add_result_files(CLI::App& verb, ResultFiles& files) {
       ->type_name("FILE");
 }
 
-void check(const ResultFiles& files, const std::string& input) {
+void check(const ResultFiles& files) {
   const std::array<std::pair<std::string, const std::string&>, 2> all = {
       {{"--json", files.json}, {"--report", files.report}}};
   if (!files.report.empty()) {
@@ -61,7 +61,6 @@ void check(const ResultFiles& files, const std::string& input) {
       if (!other_path.empty() && are_one(other_path, path))
         throw Unusable(fmt::format("{} is '{}', and so is {}; expected two files", option, path, other));
     }
-    if (!input.empty()) check_is_other_file(option, path, input);
   }
   check_extension("--json", files.json, {".json"});
   check_extension("--report", files.report, {".html", ".htm"});

@@ -24,9 +24,9 @@ struct ResultFiles {
 /// Adds --json and --report to a verb.
 void add_result_files(CLI::App& verb, ResultFiles& files);
 
-/// Throws Unusable, before hours of work, if one of the files cannot be made, if two are one, if one is the
-/// file at `input` (empty: there is none), or if this program can make no page.
-void check(const ResultFiles& files, const std::string& input = "");
+/// Throws Unusable, before hours of work, if one of the files cannot be made, if two are one, or if this
+/// program can make no page.
+void check(const ResultFiles& files);
 
 /// Writes the files that are asked for, each whole or not at all. The page is made only if it is one of them.
 /// Throws FileError.

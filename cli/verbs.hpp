@@ -22,8 +22,6 @@ using Verb = std::function<Exit()>;
 /// reports quote. Both outlive the verb.
 Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
 Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
-Verb add_experiment(CLI::App& program, const lab::Catalogue& catalogue,
-                    std::span<const std::string> arguments);
 Verb add_measure(CLI::App& program, const lab::Catalogue& catalogue, std::span<const std::string> arguments);
 Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue);
 Verb add_verify(CLI::App& program, const lab::Catalogue& catalogue);

@@ -83,11 +83,11 @@ endif()
 
 set(program_packages "")
 if(BROADSIDE_BUILD_PROGRAM)
-  foreach(part IN ITEMS listings literature lab experiments)
+  foreach(part IN ITEMS listings literature lab)
     set_target_properties(broadside_${part} PROPERTIES EXPORT_NAME ${part})
   endforeach()
   set_target_properties(broadside_cli PROPERTIES EXPORT_NAME program)
-  install(TARGETS broadside_listings broadside_literature broadside_lab broadside_plain broadside_experiments broadside_cli EXPORT BroadsideProgramTargets
+  install(TARGETS broadside_listings broadside_literature broadside_lab broadside_plain broadside_cli EXPORT BroadsideProgramTargets
           ARCHIVE COMPONENT verbs LIBRARY COMPONENT verbs RUNTIME COMPONENT verbs
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside

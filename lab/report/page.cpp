@@ -12,10 +12,6 @@
 namespace broadside::lab {
 namespace {
 
-std::string_view or_else(const std::string& json, std::string_view standard) {
-  return json.empty() ? standard : std::string_view(json);
-}
-
 /// JSON in which nothing can end the script element that holds it, or begin another: "<" stands only in
 /// texts, where it may be written as an escape.
 void append_safe(std::string& page, std::string_view json) {
@@ -39,9 +35,8 @@ std::string page_of(const PageContent& content) {
   if (const std::string missing = page_missing(); !missing.empty()) throw std::runtime_error(missing);
   std::string page;
   for (const std::string_view part : page_template().before) page += part;
-  append_safe(page, fmt::format("{{\"date\": {}, \"comparison\": {}, \"experiments\": {}, \"drawings\": {}}}",
-                                json_text(content.date), or_else(content.comparison, "null"),
-                                or_else(content.experiments, "null"), or_else(content.drawings, "[]")));
+  append_safe(page, fmt::format("{{\"date\": {}, \"comparison\": {}, \"drawings\": {}}}",
+                                json_text(content.date), content.comparison, content.drawings));
   for (const std::string_view part : page_template().after) page += part;
   return page;
 }

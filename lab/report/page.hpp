@@ -7,12 +7,11 @@
 
 namespace broadside::lab {
 
-/// What a page shows, each as JSON and empty where there is none.
+/// What a page shows.
 struct PageContent {
-  std::string date;         ///< "2026-11-21"; plain text, no JSON
-  std::string comparison;   ///< by the schema "broadside.results/1"
-  std::string experiments;  ///< by the schema "broadside.experiments/2"
-  std::string drawings;     ///< a list of scenes, as lab/report/drawing.hpp draws them
+  std::string date;        ///< "2026-11-21"; plain text, no JSON
+  std::string comparison;  ///< by the schema "broadside.results/2"
+  std::string drawings;    ///< a list of scenes, as lab/report/drawing.hpp draws them
 };
 
 /// Why no page can be made: Node or the npm packages of web/ were missing when the program was configured.

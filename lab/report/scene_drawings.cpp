@@ -39,13 +39,6 @@ std::vector<SceneToDraw> scenes_of(const Comparison& comparison) {
   return scenes;
 }
 
-std::vector<SceneToDraw> scenes_of_experiments() {
-  std::vector<SceneToDraw> scenes;
-  for (const char* const scene : {"uniform", "mixed", "power_law", "clustered"}) scenes.push_back({scene, 2});
-  scenes.push_back({"uniform", 3});
-  return scenes;
-}
-
 std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& find,
                         std::span<const Entry> entries) {
   std::vector<Entry> shown;

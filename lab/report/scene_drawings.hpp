@@ -22,9 +22,6 @@ struct SceneToDraw {
 /// The scenes of a comparison, each once in a dimension, with the most boxes that it had.
 std::vector<SceneToDraw> scenes_of(const Comparison& comparison);
 
-/// The scenes that the experiments measure most.
-std::vector<SceneToDraw> scenes_of_experiments();
-
 /// A list of scenes as JSON, as lab/report/drawing.hpp draws them, in some milliseconds each. Layers are
 /// those of the entries that are our own or the paper's and lay something over the boxes. Scenes that
 /// cannot be made are left out; so are those that come when the list has grown to some 1.2 MB, that pages

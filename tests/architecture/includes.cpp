@@ -53,7 +53,6 @@ const std::vector<Rule>& rules() {
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
       {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"paper/plain/", library + R"(|"paper/plain/plain\.hpp")"},
-      {"paper/experiments/", lab + R"(|"paper/[a-z_/0-9]+\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"distributed/out_of_core/",
        library +
@@ -72,7 +71,7 @@ const std::vector<Rule>& rules() {
       {"lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"lab/formats/", lab + R"(|<assimp/.*>)"},
       {"lab/", lab},
-      {"cli/", lab + R"(|"paper/(experiments|plain)/[a-z_]+\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"cli/", lab + R"(|"paper/plain/plain\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"bench/engines/",
        lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},

@@ -100,11 +100,6 @@ TEST_F(Applicability, AnOptionWithoutEffectIsRefused) {
         {{file_, "--count", "--to", "npy"}, {"--to npy with --count"}},
         {{file_, "--left", "edges"}, {"--left", "without --swept"}},
         {{file_, "--algorithm", "paper_grid", "--threads", "2"}, {"--threads is 2", "paper_grid"}}}},
-      {"experiment",
-       {{{"--list", "--quick"}, {"--quick with --list"}},
-        {{"--list", "3"}, {"names 3 with --list"}},
-        {{"--list", "--json", "a.json"}, {"--json a.json with --list"}},
-        {{"--from", "results.json", "--quick"}, {"--quick with --from results.json"}}}},
       {"list",
        {{{"grid"}, {"unexpected argument 'grid'"}}, {{"--boxes", "3"}, {"unknown option '--boxes'"}}}},
   };

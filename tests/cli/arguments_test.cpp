@@ -66,8 +66,9 @@ TEST(List, NamesEveryAlgorithmSceneAndFormat) {
 
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
-      {{}, {"no verb", "expected one of: compare, advise, experiment, pairs"}},
-      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, experiment, pairs"}},
+      {{}, {"no verb", "expected one of: compare, advise, pairs"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, pairs"}},
+      {{"experiment", "--quick"}, {"verb 'experiment' is no longer there", "`make experiments`"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
       {{"compare", "--algorithms", "grid:cell=5,threads=2"},
        {"a comma before 'threads=2'", "name:tunable=value:tunable=value"}},

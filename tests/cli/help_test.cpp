@@ -17,8 +17,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> verbs = {"compare", "advise", "experiment", "pairs", "info",      "verify",
-                                        "convert", "scene",  "draw",       "list",  "completion"};
+const std::vector<std::string> verbs = {"compare", "advise", "pairs", "info", "verify",
+                                        "convert", "scene",  "draw",  "list", "completion"};
 
 std::size_t longest_line(const std::string& text) {
   std::size_t longest = 0;

@@ -21,9 +21,9 @@ function colourOf(measurement: { algorithm: string }, theme: Theme): string {
 const noText = { short: "", full: "none" };
 
 /** The values of a bar for each ratio, with its interval as a whisker. */
-function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "series" | "whiskers" | "texts"> {
+function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "values" | "whiskers" | "texts"> {
   return {
-    series: [{ name: "", values: ratios.map((ratio) => ratio?.median ?? null) }],
+    values: ratios.map((ratio) => ratio?.median ?? null),
     whiskers: ratios.map((ratio) => (ratio === null ? undefined : intervalOf(ratio))),
     texts: ratios.map((ratio) => (ratio === null ? noText : { short: shortRatioText(ratio), full: intervalText(ratio) })),
   };
@@ -51,7 +51,7 @@ export function drawStandings(cases: readonly Case[], place: Place): Drawn {
     x: { name: "algorithm", unit: "" },
     y: { name: "times the fastest's time", unit: "", log: true },
     labels: shown.map((standing) => standing.algorithm),
-    series: [{ name: "", values: shown.map((standing) => standing.ratio) }],
+    values: shown.map((standing) => standing.ratio),
     colours: shown.map((standing) => colourOf(standing, place.theme)),
     from: 1,
   }, place);
@@ -151,10 +151,10 @@ export function drawFrames(of: Case, place: Place, most = 6): Drawn {
 }
 
 /** The fastest in each case: scenes with their numbers of boxes up, dimensions across. */
-export function drawWinners(cases: readonly Case[], place: Place, kinds?: readonly Measurement["kind"][]): Drawn {
+export function drawWinners(cases: readonly Case[], place: Place): Drawn {
   const rowOf = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${sizeText(of)}`;
   const fields = cases.flatMap((of) => {
-    const best = ranking(of).find((measurement) => kinds === undefined || kinds.includes(measurement.kind));
+    const best = ranking(of)[0];
     return best === undefined ? [] : [{
       x: `${of.dimension}D`, y: rowOf(of), value: best.algorithm,
       note: `${of.name}: ${timeText(best.median_ms)}`,

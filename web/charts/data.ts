@@ -1,75 +1,4 @@
-// What the program writes: experiments ("broadside.experiments/2") and comparisons ("broadside.results/2").
-// docs/schemas/ describes every field.
-
-export type Cell = number | string | null;
-
-export interface Column {
-  name: string;
-  unit: string;
-}
-
-/** How a chart shows a table, in names of its columns. */
-export interface ChartSpec {
-  title: string;
-  kind: "lines" | "bars" | "map";
-  x: string;
-  y: string;
-  series: string;
-  value: string;
-  log_x: boolean;
-  log_y: boolean;
-  where: [string, string][];
-}
-
-export interface Table {
-  name: string;
-  title: string;
-  columns: Column[];
-  charts: ChartSpec[];
-  rows: Cell[][];
-}
-
-export type Verdict = "confirmed" | "holds within bounds" | "refuted" | "not testable";
-
-/** One statement of a claim, and what became of it. */
-export interface Statement {
-  /** The claim's, with a letter behind it where the claim has several. */
-  label: string;
-  name: string;
-  text: string;
-  verdict: Verdict;
-  /** Where it holds within bounds, or why it is not testable; else empty. */
-  condition: string;
-  /** What was asked of the figures; empty if it is not testable. Not in results of before it was noted. */
-  threshold?: string;
-  /** Names of figures. */
-  evidence: string[];
-}
-
-/** What an experiment came to; without an interval if it was counted. */
-export interface Figure {
-  value: number;
-  unit: string;
-  low: number | null;
-  high: number | null;
-}
-
-export interface Experiment {
-  /** Of a claim of the draft its number; of our own with a B before it. */
-  label: string;
-  name: string;
-  title: string;
-  claim: string;
-  section: string;
-  measured: string;
-  seconds: number;
-  statements: Statement[];
-  reason: string;
-  figures: Record<string, Figure>;
-  /** Not in results of before it was noted. */
-  steadiness?: { measurements: number; unsteady: number };
-  tables: Table[];
-}
+// What the program writes of a comparison ("broadside.results/2"). docs/schemas/ describes every field.
 
 export interface Machine {
   cpu: string | null;
@@ -84,21 +13,6 @@ export interface Build {
   compiler: string;
   type: string | null;
   flags: string | null;
-}
-
-export interface Experiments {
-  schema: "broadside.experiments/2";
-  machine: Machine;
-  build: Build;
-  target: string;
-  date: string;
-  command: string[];
-  quick: boolean;
-  stopped: boolean;
-  /** Processor time over wall time of the run; not in results of before it was noted. */
-  processor_share?: number;
-  busy?: boolean;
-  experiments: Experiment[];
 }
 
 /** One entry's time over another's. */

@@ -1,18 +1,13 @@
-// Lines over a number: times against n, U-curves, frame times.
-import { above, axisName, below, categoryAxis, frame, legendHeight, mark, valueAxis } from "./frame.ts";
+// Lines over a number: times over the number of boxes, frame times.
+import { above, axisName, below, frame, legendHeight, mark, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
-import type { Interval } from "./ratios.ts";
 import { coloursOf } from "./theme.ts";
-import { pointWhiskers } from "./whiskers.ts";
 
 export interface Line {
-  /** Empty where there is only one. */
   name: string;
   /** By x. */
-  points: readonly (readonly [number | string, number])[];
-  /** Intervals, each with the x that it stands at. */
-  intervals?: readonly (readonly [number | string, Interval])[];
+  points: readonly (readonly [number, number])[];
   /** A level that is marked with a dashed line: [what it is, where]. */
   level?: readonly [string, number];
   dashed?: boolean;
@@ -25,22 +20,18 @@ export interface LinesSpec {
   lines: readonly Line[];
   /** Without marks on the points, which are many. */
   plain?: boolean;
-  /** What y is compared with, marked by a line: 1 where y is a ratio. */
-  reference?: number;
 }
 
-/** A text and the unit of it, where it has one. */
-function withUnit(value: number | string, unit: string): string {
-  const text = typeof value === "number" ? rounded(value) : value;
-  return unit === "" ? text : `${text} ${unit}`;
+/** A number and its unit, where it has one. */
+function withUnit(value: number, unit: string): string {
+  return unit === "" ? rounded(value) : `${rounded(value)} ${unit}`;
 }
 
 function describe(spec: LinesSpec, lines: readonly Line[]): string {
   const parts = lines.map((line) => {
     const [first, last] = [line.points[0], line.points[line.points.length - 1]];
     if (first === undefined || last === undefined) return "";
-    const name = line.name === "" ? spec.y.name : line.name;
-    return ` ${name}: ${withUnit(first[1], spec.y.unit)} at ${withUnit(first[0], spec.x.unit)}, ` +
+    return ` ${line.name}: ${withUnit(first[1], spec.y.unit)} at ${withUnit(first[0], spec.x.unit)}, ` +
       `${withUnit(last[1], spec.y.unit)} at ${withUnit(last[0], spec.x.unit)}.`;
   });
   return `${spec.title}. Line chart of ${axisName(spec.y)} over ${axisName(spec.x)}` +
@@ -49,8 +40,7 @@ function describe(spec: LinesSpec, lines: readonly Line[]): string {
 
 /** Lines of `spec`. Points that a logarithmic axis cannot show are left out. */
 export function drawLines(spec: LinesSpec, place: Place): Drawn {
-  const shown = (value: number | string, axis: AxisSpec): boolean =>
-    typeof value === "string" || !axis.log || value > 0;
+  const shown = (value: number, axis: AxisSpec): boolean => !axis.log || value > 0;
   const lines = spec.lines
     .map((line) => ({ ...line, points: line.points.filter(([x, y]) => shown(x, spec.x) && shown(y, spec.y)) }))
     .filter((line) => line.points.length > 0);
@@ -59,17 +49,9 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const description = describe(spec, lines);
   const all = lines.flatMap((line) => line.points);
   const levels = lines.flatMap((line) => (line.level === undefined ? [] : [line.level[1]]));
-  if (spec.reference !== undefined) levels.push(spec.reference);
-  const intervals = lines.flatMap((line) => (line.intervals ?? []).flatMap(([, interval]) => interval))
-    .filter((end) => shown(end, spec.y));
-  const numeric = all.every(([x]) => typeof x === "number");
-  const categories = [...new Set(all.map(([x]) => String(x)))];
-  const x = numeric
-    ? valueAxis(spec.x, all.map(([at]) => Number(at)), place)
-    : categoryAxis(categories, place);
   // A few things that are counted: no ticks between them.
   const xs = all.map(([at]) => at);
-  const counts = !spec.x.log && xs.every((at) => Number.isInteger(at) && Number(at) >= 0 && Number(at) <= 20);
+  const counts = !spec.x.log && xs.every((at) => Number.isInteger(at) && at >= 0 && at <= 20);
   const legend = legendHeight(names, place.width);
   const height = Math.round(Math.min(380, Math.max(280, place.width * 0.55))) + legend;
   return {
@@ -78,9 +60,9 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
     option: {
       ...frame(names, description, place),
       grid: { left: 4, right: 20, top: legend + 8, bottom: 8, outerBoundsMode: "same", outerBoundsContain: "all" },
-      xAxis: { ...x, ...(counts ? { minInterval: 1 } : {}), ...below(axisName(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
+      xAxis: { ...valueAxis(spec.x, xs, place), ...(counts ? { minInterval: 1 } : {}), ...below(axisName(spec.x), place), ...(spec.plain === true ? { min: "dataMin", max: "dataMax" } : {}) },
       yAxis: {
-        ...valueAxis(spec.y, [...all.map(([, at]) => at), ...levels, ...intervals], place),
+        ...valueAxis(spec.y, [...all.map(([, at]) => at), ...levels], place),
         scale: false,
         ...above(axisName(spec.y), place),
       },
@@ -89,39 +71,29 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
         trigger: spec.plain === true ? "item" : "axis",
         valueFormatter: (value: unknown) => (typeof value === "number" ? withUnit(value, spec.y.unit) : String(value)),
       },
-      series: [...lines.map((line, i) => {
+      series: lines.map((line, i) => {
         const { symbol, dash } = mark(i);
-        const marked = [
-          ...(line.level === undefined ? [] : [{ yAxis: line.level[1], name: line.level[0] }]),
-          ...(i > 0 || spec.reference === undefined ? [] : [{
-            yAxis: spec.reference, name: "", lineStyle: { color: place.theme.text, type: "dashed" as const, width: 1 },
-          }]),
-        ];
         return {
           type: "line" as const,
           name: line.name,
-          data: line.points.map(([at, value]) => [numeric ? at : String(at), value]),
+          data: line.points.map(([at, value]) => [at, value]),
           color: colours[i] ?? place.theme.muted,
           symbol,
           symbolSize: 7,
           showSymbol: spec.plain !== true,
           lineStyle: { width: 2, type: line.dashed === true ? "dashed" as const : dash },
           emphasis: { focus: "series" as const },
-          ...(marked.length === 0 ? {} : {
+          ...(line.level === undefined ? {} : {
             markLine: {
               silent: true,
               symbol: "none",
               lineStyle: { type: "dashed" as const, width: 1, opacity: 0.8 },
               label: { show: false },
-              data: marked,
+              data: [{ yAxis: line.level[1], name: line.level[0] }],
             },
           }),
         };
-      }), ...lines.flatMap((line, i) => {
-        const here = (line.intervals ?? []).filter(([at, [low]]) => shown(at, spec.x) && shown(low, spec.y));
-        if (here.length === 0) return [];
-        return [pointWhiskers(here.map(([at, interval]) => [numeric ? at : String(at), interval]), line.name, colours[i] ?? place.theme.muted)];
-      })],
+      }),
     },
   };
 }

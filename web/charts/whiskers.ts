@@ -1,4 +1,4 @@
-// Intervals: a line from end to end with a cap at each; on bars with the bar's text behind it.
+// Intervals of bars: a line from end to end with a cap at each, and the bar's text behind it.
 import type { CustomSeriesOption, CustomSeriesRenderItem } from "echarts";
 
 import type { Place } from "./frame.ts";
@@ -9,7 +9,7 @@ export interface WhiskersSpec {
   whiskers: readonly (Interval | undefined)[];
   texts: readonly string[];
   /** Where the text must not stand before. */
-  from: number | undefined;
+  from: number;
   /** Whether the bars lie. */
   lying: boolean;
 }
@@ -27,7 +27,7 @@ export function whiskerSeries({ whiskers, texts, from, lying }: WhiskersSpec, { 
     const ends = [[x1, y1], [x2, y2]].map(([x = 0, y = 0]) => (lying
       ? `M${point(x, y - cap)}L${point(x, y + cap)}` : `M${point(x - cap, y)}L${point(x + cap, y)}`));
     const d = `${ends.join("")}M${point(x1, y1)}L${point(x2, y2)}`;
-    const [x = 0, y = 0] = at(Math.max(interval[1], from ?? interval[1]));
+    const [x = 0, y = 0] = at(Math.max(interval[1], from));
     const line = (stroke: string, lineWidth: number) =>
       ({ type: "path" as const, silent: true, shape: { pathData: d }, style: { stroke, lineWidth, fill: "none" } });
     return {
@@ -57,29 +57,5 @@ export function whiskerSeries({ whiskers, texts, from, lying }: WhiskersSpec, { 
     z: 3,
     data: whiskers.map((interval, i) => (lying ? [interval?.[1] ?? "-", i] : [i, interval?.[1] ?? "-"])),
     encode: { x: 0, y: 1, tooltip: [] },
-  };
-}
-
-/** Upright whiskers at the points of a line, in its colour and shown and hidden with it by `name`. */
-export function pointWhiskers(
-  intervals: readonly (readonly [number | string, Interval])[], name: string, colour: string,
-): CustomSeriesOption {
-  const renderItem: CustomSeriesRenderItem = (_, api) => {
-    const point = (value: number): number[] => api.coord([api.value(0), value]);
-    const [[x = 0, low = 0], [, high = 0]] = [point(Number(api.value(1))), point(Number(api.value(2)))];
-    const at = (dx: number, y: number): string => `${(x + dx).toFixed(2)} ${y.toFixed(2)}`;
-    const d = `M${at(-cap, low)}L${at(cap, low)}M${at(-cap, high)}L${at(cap, high)}M${at(0, low)}L${at(0, high)}`;
-    return { type: "path", silent: true, shape: { pathData: d }, style: { stroke: colour, lineWidth: 1.2, fill: "none" } };
-  };
-  return {
-    type: "custom",
-    name,
-    renderItem,
-    silent: true,
-    tooltip: { show: false },
-    z: 3,
-    color: colour,
-    data: intervals.map(([at, [low, high]]) => [at, low, high]),
-    encode: { x: 0, y: [1, 2], tooltip: [] },
   };
 }

@@ -1,5 +1,5 @@
 // The data behind the page, to be saved: made here, so nothing is asked of a network.
-import type { Comparison, Measurement, RatioName, Table } from "../charts/data.ts";
+import type { Comparison, Measurement, RatioName } from "../charts/data.ts";
 import { el } from "./dom.ts";
 
 function save(name: string, type: string, text: string): void {
@@ -21,7 +21,7 @@ function field(value: unknown): string {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-export function csvOfRows(heads: readonly string[], rows: readonly (readonly unknown[])[]): string {
+function csvOfRows(heads: readonly string[], rows: readonly (readonly unknown[])[]): string {
   return [heads, ...rows].map((row) => row.map(field).join(",") + "\r\n").join("");
 }
 
@@ -34,8 +34,4 @@ export function csvOfComparison({ measurements }: Comparison): string {
   const heads = names.flatMap((name) => (isRatio(name) ? ratioParts.map((part) => `${name}_${part}`) : [name]));
   return csvOfRows(heads, measurements.map((measurement) => names.flatMap((name) =>
     (isRatio(name) ? ratioParts.map((part) => measurement[name]?.[part]) : [measurement[name]]))));
-}
-
-export function csvOfTable(table: Table): string {
-  return csvOfRows(table.columns.map(({ name, unit }) => (unit === "" ? name : `${name} (${unit})`)), table.rows);
 }

@@ -1,41 +1,33 @@
 // The report: builds the page from the document that the program put into it.
-import type { Comparison, Experiments } from "../charts/data.ts";
+import type { Comparison } from "../charts/data.ts";
 import { comparisonSections, doubtsOfComparison } from "./comparison_section.ts";
 import { add, el } from "./dom.ts";
 import { drawingSection } from "./drawing_section.ts";
 import type { Drawing } from "./drawing_section.ts";
-import { doubtsOfExperiments, experimentSections } from "./experiments_section.ts";
 import { doubtsNotice } from "./summary.ts";
 import { beginThemes } from "./themes.ts";
 
 /** What lab/report/page.cpp puts together. */
 interface ReportDocument {
   date: string;
-  comparison: Comparison | null;
-  experiments: Experiments | null;
+  comparison: Comparison;
   drawings: Drawing[];
 }
 
-function build(report: ReportDocument): void {
-  const { comparison, experiments, drawings } = report;
-  const sections: [string, string, HTMLElement][] = [];
-  if (comparison !== null) sections.push(...comparisonSections(comparison, report.date));
-  if (experiments !== null) sections.push(...experimentSections(experiments));
+function build({ date, comparison, drawings }: ReportDocument): void {
+  const sections = comparisonSections(comparison, date);
   const pictures = drawingSection(drawings);
   if (pictures !== undefined) sections.push(pictures);
 
-  const title = comparison !== null ? "Algorithms compared" : "The paper's claims, tested";
-  const intro = comparison !== null
-    ? "Ways of finding all overlapping pairs of axis-aligned boxes, timed on the same boxes. Every result that has a time was verified in the same run."
-    : "Each claim of the paper about broad-phase collision detection, what was measured to test it, and the verdict that the figures give.";
-  document.title = `Broadside: ${title.toLowerCase()}${report.date === "" ? "" : `, ${report.date}`}`;
+  const title = "Algorithms compared";
+  const intro = "Ways of finding all overlapping pairs of axis-aligned boxes, timed on the same boxes. Every result that has a time was verified in the same run.";
+  document.title = `Broadside: ${title.toLowerCase()}${date === "" ? "" : `, ${date}`}`;
   const main = document.getElementById("main");
   const nav = document.getElementById("sections");
   if (main === null || nav === null) return;
   add(nav, el("ul", {}, ...sections.map(([id, name]) => el("li", {}, el("a", { href: `#${id}` }, name)))));
   add(main, el("div", { class: "intro" }, el("h1", {}, title), el("p", {}, intro),
-    comparison !== null && doubtsNotice(doubtsOfComparison(comparison)),
-    experiments !== null && doubtsNotice(doubtsOfExperiments(experiments))));
+    doubtsNotice(doubtsOfComparison(comparison))));
   for (const [id, name, section] of sections) {
     section.id = id;
     section.setAttribute("aria-labelledby", `${id}-heading`);

@@ -33,20 +33,6 @@ const drawing = (scene: string, dimension: number): object => ({
   })),
 });
 
-const experiments = {
-  schema: "broadside.experiments/1", machine: comparison.machine, build: comparison.build, target: "AVX2", date: "2026-11-21",
-  command: ["broadside", "experiment"], quick: true, stopped: false,
-  experiments: [{
-    name: "brute_force_tests", seconds: 1, tables: [{
-      name: "tests", title: "Tests",
-      columns: [{ name: "boxes", unit: "" }, { name: "all pairs", unit: "" }, { name: "unique pairs", unit: "" },
-        { name: "tests", unit: "" }, { name: "time", unit: "ms" }],
-      charts: [{ title: "Time", kind: "lines", x: "boxes", y: "time", series: "", value: "", log_x: true, log_y: true, where: [] }],
-      rows: [[100, 10000, 4950, 4950, 0.1], [1000, 1000000, 499500, 499500, 9.5]],
-    }],
-  }],
-};
-
 /** As many measurements as the quick comparison has, with as many samples. */
 function quickComparison(): object {
   const [first] = comparison.measurements;
@@ -107,13 +93,11 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     folder = mkdtempSync(join(tmpdir(), "broadside-report-"));
     execFileSync(program, ["compare", "--scenes", "uniform,churn", "-n", "100,1000", "--frames", "5", "--dimension", "2",
       "--algorithms", "grid,bvh,brute_force,paper_grid", "--budget", "2", "--report", join(folder, "comparison.html")]);
-    writeFileSync(join(folder, "experiments.json"), JSON.stringify(experiments));
-    execFileSync(program, ["experiment", "--from", join(folder, "experiments.json"), "--report", join(folder, "experiments.html")]);
     pageWith("fixture.html", {
-      date: "2026-11-21", comparison, experiments: null, drawings: [drawing("uniform", 2), drawing("clustered", 3)],
+      date: "2026-11-21", comparison, drawings: [drawing("uniform", 2), drawing("clustered", 3)],
     });
-    pageWith("doubtful.html", { date: "2026-11-21", comparison: doubtful, experiments: null, drawings: [] });
-    pageWith("quick.html", { date: "2026-11-21", comparison: quickComparison(), experiments: null, drawings: [] });
+    pageWith("doubtful.html", { date: "2026-11-21", comparison: doubtful, drawings: [] });
+    pageWith("quick.html", { date: "2026-11-21", comparison: quickComparison(), drawings: [] });
     const playwright = createRequire(`${web}/`)("playwright-core") as typeof import("playwright-core");
     browser = await playwright.chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox"] });
   }, { timeout: 300_000 });
@@ -123,7 +107,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     rmSync(folder, { recursive: true, force: true });
   });
 
-  for (const name of ["comparison.html", "experiments.html", "fixture.html"]) {
+  for (const name of ["comparison.html", "fixture.html"]) {
     for (const dark of [false, true]) {
       for (const width of [1280, 400]) {
         test(`draws every chart, asks no network, says no error: ${name}, ${dark ? "dark" : "light"}, ${width} px`, async () => {
@@ -279,15 +263,6 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     assert.deepEqual(nameless, []);
     assert.equal(await page.locator("main").count(), 1);
     assert.equal(await page.locator("h1").count(), 1);
-    await page.close();
-  });
-
-  test("tells an experiment's claim, verdict and figures", async () => {
-    const { page } = await open("experiments.html");
-    assert.match((await texts(page, "#brute_force_tests .badge"))[0] ?? "", /not testable/);
-    assert.match(await page.locator("#brute_force_tests").innerText(), /499|0\.4995/);
-    await page.locator("summary").click();
-    assert.equal(await page.locator("#brute_force_tests tbody tr").count(), 2);
     await page.close();
   });
 
