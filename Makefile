@@ -187,7 +187,7 @@ tests-tsan: build/tsan/build.ninja
 tests-clang: build/clang/build.ninja
 	cmake --build --preset clang
 	ctest --preset clang --parallel $(jobs) \
-	  --exclude-regex '^(systems|consumer|web_|paper_)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
+	  --exclude-regex '^(systems|consumer|web_|tools_paper)|/(cgal|boost|geos|embree|bullet|ode|fcl|box2d|chipmunk)_'
 
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*

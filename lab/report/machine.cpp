@@ -15,13 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <typename Value>
-void read(const Json& json, const char* key, Value& value) {
-  if (!json.is_object()) return;
-  const auto found = json.find(key);
-  if (found != json.end() && !found->is_null()) value = found->get<Value>();
-}
-
 }  // namespace
 
 Machine this_machine() {
@@ -69,30 +62,6 @@ Json json_of(const Build& build) {
           {"compiler", build.compiler},
           {"type", or_null(build.type)},
           {"flags", or_null(build.flags)}};
-}
-
-Machine read_machine(const Json& json) {
-  Machine machine;
-  read(json, "cpu", machine.cpu);
-  read(json, "clock_mhz", machine.clock_mhz);
-  if (json.is_object() && json.contains("caches")) {
-    for (const auto& [name, bytes] : json["caches"].items())
-      machine.caches.push_back({name, bytes.get<std::uint64_t>()});
-  }
-  read(json, "cores", machine.cores);
-  read(json, "memory_bytes", machine.memory_bytes);
-  read(json, "os", machine.os);
-  return machine;
-}
-
-Build read_build(const Json& json) {
-  Build build;
-  read(json, "version", build.version);
-  read(json, "revision", build.revision);
-  read(json, "compiler", build.compiler);
-  read(json, "type", build.type);
-  read(json, "flags", build.flags);
-  return build;
 }
 
 std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
