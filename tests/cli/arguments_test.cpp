@@ -66,8 +66,8 @@ TEST(List, NamesEveryAlgorithmSceneAndFormat) {
 
 TEST(Arguments, ThatCannotBeUsedAreNamedWithWhatIsExpected) {
   const std::vector<Refusal> refusals = {
-      {{}, {"no verb", "expected one of: compare, advise, pairs"}},
-      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, pairs"}},
+      {{}, {"no verb", "expected one of: compare, advise, measure, pairs"}},
+      {{"jump"}, {"unknown verb 'jump'", "expected one of: compare, advise, measure, pairs"}},
       {{"experiment", "--quick"}, {"verb 'experiment' is no longer there", "`make experiments`"}},
       {{"compare", "--sceens", "uniform"}, {"--sceens"}},
       {{"compare", "--algorithms", "grid:cell=5,threads=2"},
