@@ -17,11 +17,11 @@
 #include "broadside/finder.hpp"
 
 #include "lab/verify/verify.hpp"
+#include "tests/support/boxes.hpp"
 
 namespace broadside {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float largest = std::numeric_limits<float>::max();
 
 /// Expects `spec` to find exactly the pairs of `boxes`, each once; returns what it counted.
