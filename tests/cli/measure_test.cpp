@@ -78,7 +78,8 @@ TEST(MeasureVerb, KnowsThePlainSearchesByNameBesideTheLibrarys) {
       run({"measure", folder.put("list.json", list_of({plain}).dump()), "--json", folder.file("out.json")});
   ASSERT_EQ(ended.status, 0) << ended.errors;
   std::vector<std::string> specs;
-  for (const Json& measurement : Json::parse(text_of(folder.file("out.json")))["measurements"]) {
+  const Json json = Json::parse(text_of(folder.file("out.json")));
+  for (const Json& measurement : json["measurements"]) {
     specs.push_back(measurement["algorithm"]);
     EXPECT_EQ(measurement["verified"], true) << specs.back();
   }
