@@ -63,9 +63,10 @@ const std::vector<Rule>& rules() {
       {"distributed/include/broadside/distributed_world", library + R"(|<mpi\.h>)"},
       {"distributed/include/broadside/mpi", library + R"(|<mpi\.h>)"},
       {"distributed/", library},
-      {"web/playground/engine/", library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
-                                     R"(|"(lab/formats|lab/scenes|paper/listings)/descriptions\.hpp")" +
-                                     R"(|"lab/formats/csv/csv_rows\.hpp")"},
+      {"web/playground/engine/",
+       library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
+           R"(|"(lab/formats|lab/scenes|paper/listings)/descriptions\.hpp")" +
+           R"(|"lab/formats/(csv/csv_rows|mesh/indexed_mesh|unread_formats)\.hpp")"},
       {"lab/recordings/", lab + engines},
       {"lab/peers/", lab + engines + peers},
       {"lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},

@@ -303,7 +303,8 @@ TEST(PairsVerb, LeavesOutWhatIsInvalidAndSaysWhich) {
       {"type": "Feature", "id": 3, "geometry": {"type": "Point", "coordinates": [1, 1]}}]})");
   const Ended mapped = run({"pairs", map, "--skip-invalid", "--ids", "id"});
   EXPECT_EQ(mapped.output, "first,second\n2,\n2,3\n,3\n");
-  EXPECT_THAT(mapped.errors, AllOf(HasSubstr("feature 0: '\"x\"'"), HasSubstr("left out 2 invalid boxes")));
+  EXPECT_THAT(mapped.errors,
+              AllOf(HasSubstr("feature 0: 'x'; expected a number"), HasSubstr("left out 2 invalid boxes")));
   EXPECT_EQ(run({"pairs", map, "--skip-invalid"}).output, "first,second\n1,2\n1,4\n2,4\n");
   const std::string array = folder.file("boxes.npy");
   ASSERT_EQ(run({"scene", "uniform", "-n", "5", "-o", array}).status, 0);

@@ -133,6 +133,11 @@ class Results:
                                        self.confidence)
         return Estimate(estimate.value, low, high, estimate.runs)
 
+    def largest(self, figure: Callable[[Run], float]) -> Estimate:
+        """The largest of the runs' figures, which is a bound and has no interval."""
+        figures = tuple(float(figure(run)) for run in self.runs)
+        return Estimate(max(figures), max(figures), max(figures), figures)
+
     def count(self, case: str, spec: str, what: str) -> Estimate:
         return self.between(lambda run: run.count(case, spec, what), f"{what} a box")
 

@@ -18,7 +18,7 @@ from .experiment import Boxes, Experiment, Unusable
 from .rules import RuleBook
 
 # Of every case that says nothing else. A slow algorithm has as many rounds as the others, up to its share.
-EFFORT = {"budget_seconds": 4, "history_seconds": 8, "share_seconds": 0.1, "min_rounds": 8, "max_rounds": 200,
+EFFORT = {"budget_seconds": 4, "history_seconds": 8, "share_seconds": 0.1, "min_rounds": 8, "max_rounds": 40,
           "slow_seconds": 2, "slow_history_seconds": 4, "slow_rounds": 3}
 QUICK_EFFORT = {**EFFORT, "share_seconds": 0.01, "min_rounds": 3, "max_rounds": 20, "slow_seconds": 0.2,
                 "slow_history_seconds": 0.4, "slow_rounds": 1}

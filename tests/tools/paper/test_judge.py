@@ -132,8 +132,8 @@ class OnTheGrid(unittest.TestCase):
         self.assertEqual((verdict, condition), (
             Verdict.WITHIN_BOUNDS, "the choice is one size, in lengths of a box, for all scenes"))
 
-    def test_what_is_neither_level_nor_clear_is_open(self):
-        self.assertEqual(self.verdicts(lambda scene: 4.0, by_rule=1.18)[1][0], Verdict.OPEN)
+    def test_what_is_at_the_threshold_is_open(self):
+        self.assertEqual(self.verdicts(lambda scene: 4.0, by_rule=1.1)[1][0], Verdict.OPEN)
 
 
 class OnInsertionSort(unittest.TestCase):

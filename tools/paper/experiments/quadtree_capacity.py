@@ -17,7 +17,7 @@ SMALL = (2, 4, 8)                 # the draft names no capacity
 CAPACITIES = tuple(2**power for power in range(1, 11))
 OWN_CAPACITIES = tuple(2**power for power in range(3, 12))
 CELLS = tuple(f"paper_grid:cell={size:g}:limit=none" for size in (0.5, 1, 2, 4))
-FILLING = (1_000, 10_000, 100_000)  # boxes in one world, in which a thousand have one neighbour each
+FILLING = (1_000, 10_000, 100_000)  # boxes in one world, in which each of a thousand has half a neighbour
 
 
 def spec(capacity: int, tree: str = "paper_quadtree") -> str:
@@ -41,7 +41,7 @@ def filled(boxes: int) -> str:
 
 
 def cases() -> list[Case]:
-    found = [Case(filled(boxes), f"uniform:neighbours={boxes // FILLING[0]}", [*map(spec, SMALL)], boxes=boxes,
+    found = [Case(filled(boxes), f"uniform:neighbours={boxes / FILLING[0] / 2:g}", [*map(spec, SMALL)], boxes=boxes,
                   seeds=2, take=["counts"]) for boxes in FILLING]
     for neighbours in NEIGHBOURS:
         scene = f"uniform:neighbours={neighbours}"

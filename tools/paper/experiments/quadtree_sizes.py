@@ -94,7 +94,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
             unit[place] = {
                 f"times as many leaves as in the level above, {place}": Asked(
                     over_level_above(results, size, side), below=rules.suits),
-                f"most leaves, {place}": Asked(results.between(lambda run: leaves(run, size, side).max()),
+                f"most leaves, {place}": Asked(results.largest(lambda run: leaves(run, size, side).max()),
                                                below=rules.corner),
             }
     largest = SINGLE[-1]

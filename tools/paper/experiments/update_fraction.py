@@ -182,9 +182,9 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 EXPERIMENT = Experiment(
     title="Updating only what changed",
     measured="Frames of the draft's grid, sweep and quadtree, uniform boxes in the plane of which each overlaps one "
-             "other on average: the structure mended in each way of section VI, by how many boxes move, or built anew; "
-             "the time to detect what moved, by a flag or by comparing each box with its previous state; and mending "
-             "by searching each mover in the whole structure.",
+             "other on average: the structure mended in each way of section VI, by how many boxes move, or built "
+             "anew; the time to detect what moved, by a flag or by comparing each box with its previous state; and "
+             "mending by searching each mover in the whole structure.",
     claims=[
         Claim("9a", "Where one box in a thousand moves, mending takes less time than building anew, by more than "
               "{level} times, in the grid, the sweep and the quadtree, each by its fastest way.",
