@@ -31,7 +31,7 @@ def main(arguments: Sequence[str]) -> int:
     options = parse(arguments)
     try:
         return options.command(options)
-    except Unusable as error:
+    except (Unusable, OSError) as error:  # the latter: a folder that cannot be written, a program that cannot be run
         print(f"tools.paper: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -130,7 +130,7 @@ def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
 def judge(options: argparse.Namespace) -> int:
     for experiment in judged(options):
         minutes = sum(one["seconds"] for one in experiment.runs) / len(experiment.runs) / 60
-        print(f"{experiment.name} ({len(experiment.runs)} runs of {minutes:.1f} min)")
+        print(f"{experiment.name} ({len(experiment.runs)} {'quick ' * experiment.runs[0]['quick']}runs of {minutes:.1f} min)")
         for claim in experiment.claims:
             print(f"  {claim.number:4} {claim.verdict}")
             for name, at in claim.finding.evidence.items():

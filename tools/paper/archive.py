@@ -6,6 +6,8 @@ import gzip
 import hashlib
 import json
 import os
+import re
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,8 +32,8 @@ class Archive:
         return self.folder / f"run-{run}" / f"{experiment}.json.gz"
 
     def run_numbers(self, experiment: str) -> list[int]:
-        return sorted(int(path.parent.name.removeprefix("run-"))
-                      for path in self.folder.glob(f"run-*/{experiment}.json.gz"))
+        folders = [path.parent.name for path in self.folder.glob(f"run-*/{experiment}.json.gz")]
+        return sorted(int(name.removeprefix("run-")) for name in folders if re.fullmatch(r"run-[1-9]\d*", name))
 
     def write(self, run: int, experiment: Experiment, book: RuleBook, program: str, is_quick: bool,
               seconds: float, results: dict) -> None:
@@ -59,11 +61,13 @@ class Archive:
         path = self.path(run, experiment.name)
         try:
             content = json.loads(gzip.decompress(path.read_bytes()))
-        except (OSError, EOFError, ValueError) as error:
+            check(path, "schema", content["schema"], SCHEMA)
+            check(path, "the results' schema", content["results"]["schema"], "broadside.results/2")
+            rules = content["rules"]
+        except (OSError, EOFError, ValueError, TypeError, KeyError, zlib.error) as error:
             raise Unusable(f"{path} cannot be read ({error}); expected a run of {experiment.name}") from None
-        check(path, "schema", content.get("schema") if isinstance(content, dict) else None, SCHEMA)
-        check(path, "the results' schema", content["results"]["schema"], "broadside.results/2")
-        rules = content["rules"]
+        check(path, "the run", f"{content['run']} of {content['experiment']}", f"{run} of {experiment.name}",
+              "as its path says: a copy is no run of its own")
         check(path, "the rules' version", f"{rules['version']} ({rules['digest']})",
               f"{book.version} ({book.digest})", "measure again: a changed rule means new data")
         check(path, "the digest of its cases", content["cases"], digest_of(experiment.listed()),
@@ -83,6 +87,8 @@ class Archive:
             for what in ("build", "machine"):
                 check(path, f"its {what}", text_of(content["results"][what]), text_of(first["results"][what]),
                       f"that of run {first['run']}")
+            check(path, "the program that measured it", content["program"], first["program"],
+                  f"that of run {first['run']}")
             check(path, "quick", content["quick"], first["quick"], f"as in run {first['run']}")
         for content in contents:
             for measured in content["results"]["measurements"]:

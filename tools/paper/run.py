@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -53,15 +55,27 @@ class Measuring:
         version is refused before anything is measured."""
         left = [(run, experiment) for run in runs for experiment in experiments
                 if not self.is_measured(run, experiment)]
-        for place, (run, experiment) in enumerate(left, 1):
-            self.say(f"[{place}/{len(left)}] run {run}, {experiment.name}{self.time_left(left[place - 1:])}")
-            started = time.monotonic()
-            results = self.results_of(run, experiment)
-            self.seconds[experiment.name] = time.monotonic() - started
-            self.archive.write(run, experiment, self.book, self.digest, self.is_quick,
-                               self.seconds[experiment.name], results)
+        with self.alone():
+            for place, (run, experiment) in enumerate(left, 1):
+                self.say(f"[{place}/{len(left)}] run {run}, {experiment.name}{self.time_left(left[place - 1:])}")
+                started = time.monotonic()
+                results = self.results_of(run, experiment)
+                self.seconds[experiment.name] = time.monotonic() - started
+                self.archive.write(run, experiment, self.book, self.digest, self.is_quick,
+                                   self.seconds[experiment.name], results)
         self.say(f"{len(left)} measured, {len(runs) * len(experiments) - len(left)} were there; "
                  f"all are in {self.archive.folder}")
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Two that measure at once would take each other's files, and each other's time."""
+        self.work.mkdir(parents=True, exist_ok=True)
+        with open(self.work / "lock", "w", encoding="utf-8") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise Unusable(f"another process measures into {self.archive.folder}; expected one at a time") from None
+            yield
 
     def is_measured(self, run: int, experiment: Experiment) -> bool:
         path = self.archive.path(run, experiment.name)
@@ -77,7 +91,6 @@ class Measuring:
     def results_of(self, run: int, experiment: Experiment) -> dict:
         """What the program says of one run. Throws Unusable where it refuses, KeyboardInterrupt where it was
         interrupted."""
-        self.work.mkdir(parents=True, exist_ok=True)
         cases = list(experiment.cases())
         numpy.random.default_rng(run).shuffle(cases)  # no case always comes after the same other one
         listed = []

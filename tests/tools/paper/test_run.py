@@ -150,6 +150,24 @@ class Runs(unittest.TestCase):
         self.refused(lambda content: content["results"]["build"].update(revision="b"),
                      "its build is revision b; expected revision a, that of run 1")
 
+    def test_of_another_program_do_not_go_together(self):
+        self.refused(lambda content: content.update(program="0"), "the program that measured it is 0; expected .* run 1")
+
+    def test_that_are_copies_of_another_run_are_refused(self):
+        self.refused(lambda content: content.update(run=1), "the run is 1 of small; expected 2 of small, as its path")
+
+    def test_that_lack_a_part_are_refused(self):
+        self.refused(lambda content: content.pop("rules"), "run-2/small.json.gz cannot be read .'rules'.; expected")
+
+    def test_that_two_processes_measure_at_once_are_refused(self):
+        with self.measuring().alone(), self.assertRaisesRegex(Unusable, "another process measures into"):
+            self.measure()
+
+    def test_in_folders_of_other_names_are_let_be(self):
+        self.measure(runs=[1])
+        self.archive.path(1, "small").parent.rename(self.archive.folder / "run-copy")
+        self.assertEqual(self.archive.run_numbers("small"), [])
+
     def test_of_another_clock_do(self):
         with self.assertRaises(AssertionError):
             self.refused(lambda content: content["results"]["machine"].update(clock_mhz=2), "clock")
