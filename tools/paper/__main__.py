@@ -130,7 +130,8 @@ def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
 def judge(options: argparse.Namespace) -> int:
     for experiment in judged(options):
         minutes = sum(one["seconds"] for one in experiment.runs) / len(experiment.runs) / 60
-        print(f"{experiment.name} ({len(experiment.runs)} {'quick ' * experiment.runs[0]['quick']}runs of {minutes:.1f} min)")
+        quick = "quick " if experiment.runs[0]["quick"] else ""
+        print(f"{experiment.name} ({len(experiment.runs)} {quick}runs of {minutes:.1f} min)")
         for claim in experiment.claims:
             print(f"  {claim.number:4} {claim.verdict}")
             for name, at in claim.finding.evidence.items():

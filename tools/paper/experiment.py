@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from .judge import Finding
     from .results import Results
     from .rules import Rules
+
+
+NAME_FROM_THE_CODE = re.compile("[a-z]_[a-z]|[a-z]:[a-z]")  # what no reader sees
 
 
 class Unusable(Exception):

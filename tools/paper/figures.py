@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.text import Text
 
-from .experiment import Unusable
+from .experiment import NAME_FROM_THE_CODE, Unusable
 from .statistics import Estimate
 
 WIDTH = 5.6          # inches: the width of the printed text
@@ -100,7 +99,7 @@ def check(figure: Figure) -> None:
         if text.get_fontsize() < LEAST_POINTS:
             raise Unusable(f"figure {figure.name}: '{words}' has {text.get_fontsize():g} points; expected "
                            f"{LEAST_POINTS} or more")
-        if re.search(r"[a-z]_[a-z]|[a-z]:[a-z]", words):
+        if NAME_FROM_THE_CODE.search(words):
             raise Unusable(f"figure {figure.name}: '{words}' is a name from the code; expected words")
 
 

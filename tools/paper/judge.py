@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from .experiment import Experiment, Unusable
+from .experiment import NAME_FROM_THE_CODE, Experiment, Unusable
 from .results import Results
 from .rules import RuleBook
 from .statistics import Estimate
@@ -54,6 +54,10 @@ class Asked:
             least, most = (self.fails_at, most) if least is not None else (least, self.fails_at)
         return (least is not None and self.at.is_below(least)) or (most is not None and self.at.is_above(most))
 
+    def misses(self) -> bool:
+        """The whole interval is on the other side of the first threshold: it does not hold, if it fails or not."""
+        return replace(self, fails_at=None).fails()
+
 
 def judged(number: str, places: Mapping[str, Estimate], *, above: float | None = None,
            below: float | None = None, fails_at: float | None = None, where: str = "{}",
@@ -70,21 +74,24 @@ def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where:
     """The verdict on a statement that asks several things, by names, of each place.
 
     It holds where all hold, and fails where one fails. Confirmed where it holds at all places, refuted where it
-    fails at all; within bounds where it holds at some: `where` then makes a condition of their names.
+    fails at all; within bounds where it holds at some and is missed at others: `where` then makes a condition of
+    the names of the former. Where intervals cannot tell whether there are others, it is open.
     """
     if not places:
         return Finding(number, Verdict.OPEN, {}, "nothing that was measured is what it is about", beside or {})
     held = [name for name, asked in places.items() if all(one.holds() for one in asked.values())]
+    missed = [name for name, asked in places.items() if any(one.misses() for one in asked.values())]
     failed = [name for name, asked in places.items() if any(one.fails() for one in asked.values())]
-    undecided = [name for name in places if name not in held and name not in failed]
+    undecided = [name for name in places if name not in held and name not in missed]
     condition = ""
     if len(held) == len(places):
         verdict = Verdict.CONFIRMED
     elif held:
-        verdict = Verdict.WITHIN_BOUNDS
-        condition = where.format(listing(held)) + (f"; open: {listing(undecided)}" if undecided else "")
+        verdict = Verdict.WITHIN_BOUNDS if missed else Verdict.OPEN
+        condition = ("" if missed else "it holds where ") + where.format(listing(held))
+        condition += f"; open: {listing(undecided)}" if undecided else ""
     else:
-        verdict = Verdict.OPEN if undecided else Verdict.REFUTED
+        verdict = Verdict.REFUTED if len(failed) == len(places) else Verdict.OPEN
     evidence = {name: one.at for asked in places.values() for name, one in asked.items()}
     return Finding(number, verdict, evidence, condition, dict(beside or {}))
 
@@ -106,6 +113,9 @@ def judge(experiment: Experiment, results: Results, book: RuleBook) -> list[Find
         raise Unusable(f"experiment {experiment.name} judges {listing(sorted(found))}; expected its claims, "
                        f"{listing(expected)}")
     findings = [found[number] for number in expected]
+    for name in (name for finding in findings for name in (*finding.evidence, *finding.beside)):
+        if NAME_FROM_THE_CODE.search(name):
+            raise Unusable(f"experiment {experiment.name}: '{name}' is a name from the code; expected words")
     if len(results.runs) >= rules.min_runs:
         return findings
     return [finding if finding.verdict is Verdict.NOT_TESTABLE else

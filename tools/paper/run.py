@@ -74,7 +74,8 @@ class Measuring:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                raise Unusable(f"another process measures into {self.archive.folder}; expected one at a time") from None
+                raise Unusable(f"another process measures into {self.archive.folder}; expected one at a time") \
+                    from None
             yield
 
     def is_measured(self, run: int, experiment: Experiment) -> bool:

@@ -80,7 +80,8 @@ class Words:
         least, greatest = found[0], found[-1]
         if least.unit == greatest.unit:
             least = replace(least, unit="")
-        text = greatest.text() if found[0].text() == greatest.text() else f"between {least.text()} and {greatest.text()}"
+        is_one = found[0].text() == greatest.text()
+        text = greatest.text() if is_one else f"between {least.text()} and {greatest.text()}"
         missing = len(every) - len(found)
         return text + (f" (and nowhere in {missing} of {len(every)} series)" if missing else "")
 

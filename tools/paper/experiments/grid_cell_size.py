@@ -76,12 +76,13 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
         sizes = specs("paper_grid", 2, scene)
         smallest, *_, largest = results.timed(case, sizes)
         best = results.fastest(case, sizes)
-        balance[f"{scene} boxes"] = asked = {}
+        boxes = f"{scene.replace('_', ' ')} boxes"
+        balance[boxes] = asked = {}
         for end, one, what in (("smallest", smallest, "references"), ("largest", largest, "tests")):
             count = results.between(lambda run: run.count(case, one, what) / run.count(case, best, what))
-            asked[f"time with the {end} cells on {scene} boxes"] = Asked(
+            asked[f"time with the {end} cells on {boxes}"] = Asked(
                 results.ratio(case, one, best), above=rules.clearly)
-            asked[f"{what} with the {end} cells on {scene} boxes"] = Asked(count, above=rules.clearly)
+            asked[f"{what} with the {end} cells on {boxes}"] = Asked(count, above=rules.clearly)
     tuned = {
         "one size, in lengths of a box, for all scenes": untuned(results, "paper_grid", 2),
         "a size by rule, twice a mean box": mean_over_best(results, "paper_grid", 2, None),
@@ -119,7 +120,7 @@ EXPERIMENT = Experiment(
         Claim("5a",
               "In each scene, both the smallest cells and the largest take more than {clearly} times as long as the "
               "best size; the smallest have more than {clearly} times its references, and the largest more than "
-              "{clearly} times its tests.", "In every scene one of this does not hold."),
+              "{clearly} times its tests.", "In every scene one of these does not hold."),
         Claim("5b",
               "On the draft's grid, both the one size, in lengths of a box, that does best on all scenes and the size "
               "by the rule of the mended listing take more than {level} times as long as each scene's best, as a "

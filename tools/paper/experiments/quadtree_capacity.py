@@ -25,7 +25,7 @@ def spec(capacity: int, tree: str = "paper_quadtree") -> str:
 
 
 def world(neighbours: int) -> str:
-    return f"{neighbours} neighbours"
+    return f"{neighbours} neighbour{'s' if neighbours != 1 else ''}"
 
 
 def the_draft(neighbours: int) -> str:

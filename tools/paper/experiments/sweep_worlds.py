@@ -51,7 +51,7 @@ WORLDS = {
     "a world a thousand times as wide": (spread, COMPACT),
     "a box a thousand worlds away": (with_others([BOXES - 1], 1e3 * SIDE, 1e3 * SIDE), COMPACT),
     "a box a million worlds away": (with_others([BOXES - 1], 1e6 * SIDE, 1e6 * SIDE), COMPACT),
-    "a box as far away as floats go": (with_others([BOXES - 1], 1e30 * SIDE, 1e30 * SIDE), COMPACT),
+    "a box 10^30 worlds away": (with_others([BOXES - 1], 1e30 * SIDE, 1e30 * SIDE), COMPACT),
     COVERED: (with_others(SOME, -2 * SIDE, 2 * SIDE), None),
     "four infinite boxes": (with_others(SOME, -numpy.inf, numpy.inf), COVERED),
 }

@@ -40,7 +40,7 @@ class Field:
 
     @property
     def case(self) -> str:
-        return f"{self.map} {self.value:g}, {self.boxes} boxes in {self.dimension}D"
+        return f"{self.map}: {self.value:g}, {self.boxes:,} boxes in {self.dimension}D"
 
     @property
     def single(self) -> list[str]:
@@ -88,7 +88,7 @@ def judge(results: Results, rules: Rules) -> Sequence[Finding]:
     for name in SINGLE:
         ratios = {field: results.ratio(field.case, name, first[field]) for field in first if name in field.single}
         field = max(ratios, key=lambda field: ratios[field].low if isfinite(ratios[field].low) else 0)
-        worst[f"{figures.NAMES[name]} at its worst, where {field.case}"] = ratios[field]
+        worst[f"{figures.NAMES[name]} at its worst ({field.case})"] = ratios[field]
         wins[f"fields of {len(first)} in which the fastest is {figures.NAMES[name]}"] = results.between(
             lambda run: sum(is_fastest(run, field, name) for field in first))
     for moves, where in ((False, "boxes rest"), (True, "boxes move")):
