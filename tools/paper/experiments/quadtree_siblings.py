@@ -124,9 +124,9 @@ EXPERIMENT = Experiment(
              f"or, in the fewest leaves, by {max(STEPS.values())} and {min(STEPS.values())} times their size.",
     claims=[
         Claim("14a",
-              f"With {BOXES:,} boxes of {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours and {MORE:,} of a few, to insert "
-              "from the root visits more than {level} times as many nodes for a mover as from the least node above the old "
-              "leaf that holds the box.", "Nowhere it does."),
+              f"With {BOXES:,} boxes of {NEIGHBOURS[0]} to {NEIGHBOURS[-1]} neighbours and {MORE:,} of a few, "
+              "inserting from the root visits more than {level} times as many nodes for a mover as from the least "
+              "node above the old leaf that holds the box.", "Nowhere it does."),
         Claim("14b",
               "Wherever a box is in fewer than {one_leaf} leaves on average (statement 14c is about the others), to "
               "insert from the root takes more than {level} times as long as by siblings, and as by siblings and "
