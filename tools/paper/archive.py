@@ -79,8 +79,9 @@ class Archive:
         they do not go together."""
         contents = [self.read(run, experiment, book) for run in self.run_numbers(experiment.name)]
         if not contents:
+            verb = "run" if experiment.claims else "compare"
             raise Unusable(f"{self.folder} has no run of {experiment.name}; expected one at least, as "
-                           f"`make experiments` measures")
+                           f"`python3 -m tools.paper {verb}` measures")
         first = contents[0]
         for content in contents[1:]:
             path = self.path(content["run"], experiment.name)

@@ -17,7 +17,6 @@ class Verdict(str, Enum):
     WITHIN_BOUNDS = "holds within bounds"
     REFUTED = "refuted"
     OPEN = "open"  # intervals hold the threshold
-    NOT_TESTABLE = "not testable"
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,7 @@ class Finding:
     number: str
     verdict: Verdict
     evidence: Mapping[str, Estimate]
-    condition: str = ""  # of a statement within bounds: where it holds; of one that is not testable: why
+    condition: str = ""  # where it holds; of one that is open: why
     beside: Mapping[str, Estimate] = field(default_factory=dict)  # figures that decide nothing
 
 
@@ -118,7 +117,6 @@ def judge(experiment: Experiment, results: Results, book: RuleBook) -> list[Find
             raise Unusable(f"experiment {experiment.name}: '{name}' is a name from the code; expected words")
     if len(results.runs) >= rules.min_runs:
         return findings
-    return [finding if finding.verdict is Verdict.NOT_TESTABLE else
-            replace(finding, verdict=Verdict.OPEN,
+    return [replace(finding, verdict=Verdict.OPEN,
                     condition=f"{len(results.runs)} of {rules.min_runs} runs; so far {finding.verdict.value}")
             for finding in findings]

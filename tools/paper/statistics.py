@@ -31,9 +31,6 @@ class Estimate:
     def is_below(self, level: float) -> bool:
         return self.high < level
 
-    def reciprocal(self) -> Estimate:
-        return Estimate(1 / self.value, 1 / self.high, 1 / self.low, tuple(1 / run for run in self.runs))
-
     def text(self) -> str:
         """Three digits, and the interval in brackets: "1.42 (1.38 to 1.46) ms"."""
         interval = "" if self.low == self.high else f" ({digits(self.low)} to {digits(self.high)})"

@@ -121,9 +121,6 @@ class Words:
         return name not in self._drawings and (
             self._comparison is None if name.startswith("comparison") else bool(self._unmeasured))
 
-    def pictures(self) -> Sequence[str]:
-        return [name for name in self._pictures if name in self._drawings]
-
     def fact(self, name: str) -> str | bool:
         return named(self._comparison.facts, name, "fact of the comparison") if self._comparison else NOT_MEASURED
 
