@@ -203,7 +203,7 @@ def publish_set(experiments: Sequence[Experiment], archive: Archive, to: Path) -
                 raise Unusable(f"run {one['run']} of {experiment.name} was a quick one; expected a whole one")
             if not one["rules"]["commit"]:
                 raise Unusable(f"run {one['run']} of {experiment.name} was measured before its rules were "
-                               f"committed; expected rules.toml committed first")
+                               f"committed; expected rules.toml and experiments/ committed first")
     for old in to.glob("run-*"):
         shutil.rmtree(old)
     for folder in sorted(archive.folder.glob("run-*")):

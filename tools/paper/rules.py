@@ -46,9 +46,10 @@ class RuleBook:
         return [name for name in self._tables if name != "all"]
 
     def commit(self) -> str:
-        """The commit that the rules are from; empty where they, or the repository, are not committed."""
+        """The commit that the rules are from, thresholds and the sentences of experiments/; empty where they, or the
+        repository, are not committed."""
         def git(*arguments: str) -> subprocess.CompletedProcess:
-            return subprocess.run(("git", *arguments, "--", self._path.name), cwd=self._path.parent,
+            return subprocess.run(("git", *arguments, "--", self._path.name, "experiments"), cwd=self._path.parent,
                                   capture_output=True, text=True, check=False)
         try:
             if git("diff", "--quiet", "HEAD").returncode != 0:

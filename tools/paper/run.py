@@ -55,6 +55,8 @@ class Measuring:
         version is refused before anything is measured."""
         left = [(run, experiment) for run in runs for experiment in experiments
                 if not self.is_measured(run, experiment)]
+        if left and not self.is_quick and not self.book.commit():
+            self.say("tools/paper/rules.toml or experiments/ is not committed: `publish` will refuse these runs")
         with self.alone():
             for place, (run, experiment) in enumerate(left, 1):
                 self.say(f"[{place}/{len(left)}] run {run}, {experiment.name}{self.time_left(left[place - 1:])}")

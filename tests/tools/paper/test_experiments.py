@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -25,6 +26,7 @@ class Experiments(unittest.TestCase):
         for number in numbers:
             self.assertIn(number, statements)
             self.assertIn(statements[number].kind, ("claim", "definition", "our claim"))
+        self.assertLessEqual({one.number for one in statements.values() if "claim" in one.kind}, set(numbers))
 
     def test_say_what_would_decide_in_values_that_the_rules_have(self):
         book = RuleBook()
@@ -35,6 +37,21 @@ class Experiments(unittest.TestCase):
                     self.assertNotIn("{", filled)
                     self.assertTrue(filled.endswith("."), filled)
         self.assertLessEqual(set(book.experiments()), {*all_experiments(), "comparison"})
+
+    @unittest.skipUnless(shutil.which("git"), "git is missing")
+    def test_are_committed_where_thresholds_and_sentences_are(self):
+        with tempfile.TemporaryDirectory() as folder:
+            rules, sentences = Path(folder) / "rules.toml", Path(folder) / "experiments" / "one.py"
+            sentences.parent.mkdir()
+            sentences.write_text("more\n")
+            rules.write_text("version = 1\n[all]\nlevel = 1.1\n")
+            self.assertEqual(RuleBook(rules).commit(), "", "no repository")
+            for arguments in (["init", "-q"], ["add", "."], ["-c", "user.name=a", "-c", "user.email=a@b.example",
+                                                            "commit", "-q", "-m", "Rules"]):
+                subprocess.run(["git", *arguments], cwd=folder, check=True)
+            self.assertRegex(RuleBook(rules).commit(), "^[0-9a-f]{40}$")
+            sentences.write_text("less\n")
+            self.assertEqual(RuleBook(rules).commit(), "")
 
     def test_stand_in_the_order_of_the_draft_and_are_found_by_name(self):
         self.assertEqual(sorted(["10a", "2b", "B1", "2a"], key=order_of), ["2a", "2b", "10a", "B1"])
