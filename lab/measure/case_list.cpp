@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -277,6 +278,9 @@ Comparison measure_cases(const Catalogue& catalogue, const std::vector<ListedCas
     const HeldToInstructionSet held(listed.instruction_set);
     try {
       one = compare(catalogue, options);
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error(
+          fmt::format("case '{}': out of memory; expected fewer boxes, frames or pairs", listed.name));
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("case '{}': {}", listed.name, error.what()));
     }
