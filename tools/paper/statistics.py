@@ -32,7 +32,9 @@ class Estimate:
         return self.high < level
 
     def text(self) -> str:
-        """Three digits, and the interval in brackets: "1.42 (1.38 to 1.46) ms"."""
+        """Three digits, and the interval in brackets: "1.42 (1.38 to 1.46) ms". A crossing may be "not reached"."""
+        if math.isnan(self.value) and not any(map(math.isnan, self.runs)):
+            return "not reached" if not any(map(math.isfinite, self.runs)) else "not reached in each run"
         interval = "" if self.low == self.high else f" ({digits(self.low)} to {digits(self.high)})"
         return f"{digits(self.value)}{interval}{' ' if self.unit else ''}{self.unit}"
 

@@ -33,6 +33,11 @@ class BetweenRuns(unittest.TestCase):
         self.assertAlmostEqual(at.low, 5)
         self.assertEqual(at.low, at.high)
 
+    def test_of_crossings_says_where_there_was_none(self):
+        self.assertEqual(between_runs([math.inf, math.inf], 0.95).text(), "not reached")
+        self.assertEqual(between_runs([math.inf, 2], 0.95).text(), "not reached in each run")
+        self.assertIn("unknown", between_runs([math.nan, 2], 0.95).text())
+
     def test_decides_nothing_with_one_run_or_an_unknown_figure(self):
         for values in ([3.0], [1.0, math.inf, 2.0]):
             at = between_runs(values, 0.95)
