@@ -88,7 +88,7 @@ def _values_and_bars(numbers: Sequence) -> tuple[Sequence[float], numpy.ndarray 
 
 
 def check(figure: Figure) -> None:
-    """Throws Unusable if a label would be too small to read, or is a name from the code."""
+    """Throws Unusable if a label would be too small to read or cut off, or is a name from the code."""
     if figure.drawing.get_figwidth() > WIDTH + 1e-6:
         raise Unusable(f"figure {figure.name} is {figure.drawing.get_figwidth():g} inches wide; expected at "
                        f"most {WIDTH:g}, as wide as it is printed")
@@ -101,6 +101,12 @@ def check(figure: Figure) -> None:
                            f"{LEAST_POINTS} or more")
         if NAME_FROM_THE_CODE.search(words):
             raise Unusable(f"figure {figure.name}: '{words}' is a name from the code; expected words")
+    figure.drawing.draw_without_rendering()
+    page = figure.drawing.bbox.padded(1)
+    for text in (text for axes in figure.drawing.axes for text in (axes.xaxis.label, axes.yaxis.label, axes.title)):
+        place = text.get_window_extent()
+        if text.get_text() and not (page.contains(*place.min) and page.contains(*place.max)):
+            raise Unusable(f"figure {figure.name}: '{text.get_text()}' is cut off; expected a label that fits")
 
 
 def save(figure: Figure, folder: Path) -> None:

@@ -34,6 +34,10 @@ class Figures(unittest.TestCase):
             with self.assertRaisesRegex(Unusable, "is a name from the code"):
                 figures.check(figure)
 
+    def test_with_labels_that_are_cut_off_are_refused(self):
+        with self.assertRaisesRegex(Unusable, "is cut off; expected a label that fits"):
+            figures.check(drawn(x="a label that says more than a column holds " * 3)[0])
+
     def test_wider_than_the_text_are_refused(self):
         figure, _ = drawn()
         figure.drawing.set_figwidth(8)

@@ -105,7 +105,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
                      if results.timed(case_of(grid, 2, scene), [spec(grid, 2, scene, size)])]
             figures.line(place, timed, [over_best(results, grid, 2, scene, spec(grid, 2, scene, size))
                                         for size in timed], scene.replace("_", " "))
-        figures.label(place, "length of a cell, in mean lengths of a box", "time over the best", title)
+        figures.label(place, "length of a cell, in mean boxes", "time over the best", title)
     axes[0].legend()
     yield figures.Figure("grid_cell_size", "Two grids by the size of their cells, on five scenes in the plane. "
                          "Bars: intervals between runs.", drawing)
