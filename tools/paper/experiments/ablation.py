@@ -99,9 +99,9 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
             figures.label(axes, "time over the library's", "", f"in {dimension}D", log="x")
             axes.invert_yaxis()
         columns[1].legend()
-        yield figures.Figure(f"ablation_{search}", f"Our {name} without SIMD: held to its scalar target, and written "
-                             f"plainly, with one thing after the other left out; {BOXES:,} boxes. Bars: intervals "
-                             "between runs.", drawing)
+        yield figures.Figure(f"ablation_{search}", f"Our {name} without SIMD, on {BOXES:,} boxes: held to its scalar "
+                             "target; in plain code; and in plain code with each of the named things changed, which "
+                             "are explained in the text. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

@@ -57,7 +57,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.line(tests, COUNTS, [share_of_all(results, boxes) for boxes in COUNTS])
     figures.label(tests, "boxes", "tests over the square of n", log="x")
     yield figures.Figure("brute_force_tests", "Brute force by the number of boxes: time, and the tests of the "
-                         "draft's over all pairs. Bars: intervals between runs.", drawing)
+                         "draft's over all pairs. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

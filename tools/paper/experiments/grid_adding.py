@@ -93,7 +93,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.label(times, "cells across a box", "time over the best")
     times.legend(title="neighbours of a box", ncols=2)
     yield figures.Figure("grid_adding", f"The draft's grid, built anew for each call, on {COUNTS[-1]:,} boxes, by the "
-                         "cells across a box. Bars: intervals between runs.", drawing)
+                         "cells across a box. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

@@ -69,7 +69,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
                       f"Steps of {drift:g} of a box's size")
     places[0].legend()
     yield figures.Figure("grid_rebuilding", "The time to mend the draft's grid by reinserting what moved, over that "
-                         "of adding all boxes to empty cells. Bars: intervals between runs.", drawing)
+                         "of adding all boxes to empty cells. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

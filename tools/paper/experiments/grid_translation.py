@@ -133,7 +133,9 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     for axes in (large, small):
         axes.axhline(1, color="black", linewidth=0.6)
     yield figures.Figure("grid_translation", "The time to mend the draft's grid by reinserting what moved, over that "
-                         "by translating its references. Bars: intervals between runs.", drawing)
+                         "by translating its references; above 1 translating is faster. Left: a fifth of "
+                         f"{SPANNING:,} boxes moves, by the cells that a box touches. Right: boxes of a 256th of a "
+                         "cell leave theirs. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

@@ -89,11 +89,12 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(tests, COUNTS, [results.count(case_of(boxes, "uniform"), spec, "tests") for boxes in COUNTS],
                      figures.NAMES[spec])
         figures.line(times, COUNTS, [results.ratio(case_of(boxes, "uniform"), spec, LISTING) for boxes in COUNTS])
-    figures.label(tests, "boxes", "tests of a box")
+    figures.label(tests, "boxes", "tests for each box")
     figures.label(times, "boxes", "time over brute force")
     tests.legend()
-    yield figures.Figure("overtaking", "The draft's methods by the number of uniform boxes in the plane: tests, and "
-                         "time over that of its brute force. Bars: intervals between runs.", drawing)
+    yield figures.Figure("overtaking", "The draft's methods on uniform boxes in the plane, by the number of boxes. "
+                         "Left: tests, for each box. Right: time over that of the draft's brute force. Bars: 95% "
+                         "intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

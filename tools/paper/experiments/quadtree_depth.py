@@ -85,7 +85,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.label(shares, "boxes", "share of nodes in what is done", log="x")
     visits.legend()
     yield figures.Figure("quadtree_depth", "A tenth of uniform boxes inserted from the root of the draft's quadtree. "
-                         "Bars: intervals between runs.", drawing)
+                         "Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

@@ -114,7 +114,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.label(place, "leaves of a box", "time over that from the root", f"Leaves of {capacity} boxes")
     axes[0].legend()
     yield figures.Figure("quadtree_siblings", "Mending the draft's quadtree without beginning at the root: its time, "
-                         "by the leaves that a box is in. Bars: intervals between runs.", drawing)
+                         "by the leaves that a box is in. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

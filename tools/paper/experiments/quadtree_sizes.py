@@ -137,7 +137,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.label(large, "length of a large box, in units", "references of a box")
     large.legend()
     yield figures.Figure("quadtree_sizes", "Left: the leaves that one box is in, by its length and theirs. Right: "
-                         "references where one box in a hundred is large. Bars: intervals between runs.", drawing)
+                         "references where one box in a hundred is large. Bars: 95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

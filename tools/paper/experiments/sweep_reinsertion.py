@@ -103,8 +103,8 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     frames.legend()
     yield figures.Figure("sweep_reinsertion", f"Left: comparisons and places moved for each of {MOVERS} boxes that "
                          "are put into the order by binary search, and the comparisons of one search. Right: a frame "
-                         "of the draft's sweep where boxes jump, by how its order is kept. Bars: intervals between "
-                         "runs.",
+                         "of the draft's sweep where boxes jump, by how its order is kept. Bars: 95% intervals "
+                         "between runs.",
                          drawing)
 
 

@@ -142,7 +142,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     axes.invert_yaxis()
     figures.label(axes, "time along the worst axis over that along the best", "", log="x")
     yield figures.Figure("sweep_axis", f"What the choice of its axis costs our sweep, on {BOXES:,} boxes. Bars: "
-                         "intervals between runs.", drawing)
+                         "95% intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(

@@ -168,15 +168,16 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
             results, case_of(movers), best(results, structure, movers, WHOLE), WHOLE) for movers in moving], name)
         figures.line(mending, SEARCHED, [over_rebuilding(results, case_of(movers), spec(structure, SEARCH))
                                          for movers in SEARCHED], name)
-    figures.label(frames, "% of the boxes that move", "a frame over one that builds anew", "whole frames")
-    figures.label(mending, f"boxes that move, of {BOXES:,}", "mending over building anew", "each mover searched")
+    figures.label(frames, "% of the boxes that move", "frame over one built anew", "whole frames")
+    figures.label(mending, f"boxes that move, of {BOXES:,}", "mending over building", "each mover searched")
     for axes in (frames, mending):
         axes.axhline(1, color="black", linewidth=0.8)
         axes.legend()
-    yield figures.Figure("update_fraction", "Left: frames of the draft's listings, mended by their fastest way, over "
-                         "frames that build them anew. Right: mending where each mover is searched in the whole "
-                         "structure, deleted and inserted again, over building. Bars: intervals between "
-                         "runs.", drawing)
+    yield figures.Figure("update_fraction", f"The draft's listings on {BOXES:,} uniform boxes in the plane, each of "
+                         "which overlaps one other on average. Left: the time of a whole frame, mended by the fastest "
+                         "way, over one that builds anew. Right: the time of mending alone, where each mover is "
+                         "searched in the whole structure, deleted and inserted again, over building. Bars: 95% "
+                         "intervals between runs.", drawing)
 
 
 EXPERIMENT = Experiment(
