@@ -24,15 +24,22 @@ try:
     from .rules import RuleBook
     from .run import Measuring
 except ModuleNotFoundError as missing:
-    sys.exit(f"tools.paper: {missing.name} is missing; expected Debian's {PACKAGES} (packages-paper.txt)")
+    sys.exit(f"tools.paper: {missing.name} is missing; expected Debian's {PACKAGES} (packages-paper.txt) and "
+             f"to be run by /usr/bin/python3")
+except KeyboardInterrupt:  # importing takes seconds on a busy machine
+    sys.exit(130)
 
 
 def main(arguments: Sequence[str]) -> int:
     options = parse(arguments)
     try:
         return options.command(options)
-    except (Unusable, OSError) as error:  # the latter: a folder that cannot be written, a program that cannot be run
+    except Unusable as error:
         print(f"tools.paper: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"tools.paper: {error.filename}: {error.strerror}; expected folders that can be written and "
+              f"programs that can be run", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("tools.paper: interrupted; what had ended is kept, and the same command goes on from there",
@@ -41,7 +48,9 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python3 -m tools.paper", description="The paper's experiments.")
+    parser = argparse.ArgumentParser(
+        prog="python3 -m tools.paper", description="Measures and judges the statements of the draft, and prints the "
+        "paper. tools/paper/README.md is the guide.")
     verbs = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def verb(command, name: str, text: str) -> argparse.ArgumentParser:
@@ -52,39 +61,44 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     def takes_experiments(added: argparse.ArgumentParser, folder: Path) -> None:
         added.add_argument("names", nargs="*", metavar="NAME", help="experiments (default: all)")
         added.add_argument("--results", type=Path, default=folder, metavar="FOLDER",
-                           help=f"the runs (default: {folder.relative_to(ROOT)})")
+                           help=f"folder of the runs (default: {folder.relative_to(ROOT)})")
 
-    verb(list_experiments, "list", "List the experiments and their statements")
     def takes_runs(added: argparse.ArgumentParser, runs: int) -> None:
         added.add_argument("--runs", type=int, default=runs, metavar="N", help=f"how many runs (default: {runs})")
         added.add_argument("--first", type=int, default=1, metavar="N",
-                           help="the first one's number, by which its boxes are made (default: 1)")
-        added.add_argument("--quick", action="store_true", help="fewer rounds, for a first impression")
+                           help="number of the first run; the number seeds its boxes (default: 1)")
+        added.add_argument("--quick", action="store_true",
+                           help="fewer rounds, for a first impression; quick runs cannot be published")
         added.add_argument("--program", type=Path, default=ROOT / "build/release/broadside", metavar="FILE",
                            help="the program (default: build/release/broadside)")
 
-    measuring = verb(run, "run", "Measure; what is there already is kept")
+    verb(list_experiments, "list", "List the experiments and their statements")
+    measuring = verb(run, "run", "Measure experiments; runs that are already in the folder are kept")
     takes_experiments(measuring, MEASURED)
     takes_runs(measuring, 3)
-    comparing = verb(compare, "compare", "Measure processes of the comparison; what is there already is kept")
+    comparing = verb(compare, "compare", "Measure the comparison with other libraries; "
+                     "processes that are already in the folder are kept")
     comparing.add_argument("--results", type=Path, default=COMPARED, metavar="FOLDER",
-                           help="the runs (default: build/comparison)")
+                           help="folder of the runs (default: build/comparison)")
     takes_runs(comparing, 10)
-    takes_experiments(verb(judge, "judge", "Judge what was measured"), MEASURED)
-    printed = verb(print_paper, "print", "Print what was measured")
+    takes_experiments(verb(judge, "judge", "Judge experiments by their runs"), MEASURED)
+    printed = verb(print_paper, "print", "Print the paper and its pages from the runs")
     takes_experiments(printed, PUBLISHED)
     printed.add_argument("--to", type=Path, default=ROOT / "build/paper", metavar="FOLDER",
-                         help="where pages, figures and PDF go (default: build/paper); into docs/paper goes only what "
-                              "is whole, and README.md and docs/results.md are made to quote it")
+                         help="folder for pages, figures and PDF (default: build/paper); docs/paper takes complete "
+                              "results only, and README.md and docs/results.md then quote them")
     printed.add_argument("--comparison", type=Path, metavar="FOLDER",
-                         help="the comparison's runs (default: the folder comparison in that of the runs)")
-    published = verb(publish, "publish", "Make complete sets of runs the published ones")
+                         help="folder of the comparison's runs (default: the folder comparison within --results)")
+    published = verb(publish, "publish",
+                     "Copy complete sets of runs to tools/paper/results, which `make paper` prints")
     published.add_argument("--results", type=Path, default=MEASURED, metavar="FOLDER",
-                           help="those of the experiments (default: build/experiments)")
+                           help="runs of the experiments (default: build/experiments)")
     published.add_argument("--comparison", type=Path, default=COMPARED, metavar="FOLDER",
-                           help="those of the comparison (default: build/comparison)")
-    agreeing = verb(agree, "agree", "Say which verdicts, or leads of the comparison, two sets of runs disagree about")
-    agreeing.add_argument("sets", nargs=2, type=Path, metavar="FOLDER")
+                           help="runs of the comparison (default: build/comparison)")
+    agreeing = verb(agree, "agree",
+                    "List the verdicts, or the leads of the comparison, on which two sets of runs disagree")
+    agreeing.add_argument("sets", nargs=2, type=Path, metavar="FOLDER",
+                          help="folders of runs, both of experiments or both of the comparison")
     return parser.parse_args(arguments)
 
 
@@ -111,14 +125,6 @@ def measure(how: type[Measuring], experiments: Sequence[Experiment], options: ar
     return 0
 
 
-def judged(options: argparse.Namespace) -> list[printing.JudgedExperiment]:
-    """The experiments of which there are runs, or those that are named."""
-    archive = Archive(options.results)
-    statements = draft.statements()
-    return [printing.judged_experiment(experiment, archive, RuleBook(), statements)
-            for experiment in measured_ones(archive, options.names)]
-
-
 def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
     found = [experiment for experiment in experiments_named(names)
              if names or archive.run_numbers(experiment.name)]
@@ -128,15 +134,26 @@ def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
 
 
 def judge(options: argparse.Namespace) -> int:
-    for experiment in judged(options):
-        minutes = sum(one["seconds"] for one in experiment.runs) / len(experiment.runs) / 60
+    """Prints verdicts. What cannot be used is said in a line, and the other experiments are judged."""
+    archive, statements, status = Archive(options.results), draft.statements(), 0
+    for one in measured_ones(archive, options.names):
+        try:
+            experiment = printing.judged_experiment(one, archive, RuleBook(), statements)
+        except Unusable as error:
+            printing.say(f"tools.paper: {error}; {one.name} is not judged")
+            status = 2
+            continue
+        count = len(experiment.runs)
+        seconds = sum(one["seconds"] for one in experiment.runs) / count
         quick = "quick " if experiment.runs[0]["quick"] else ""
-        print(f"{experiment.name} ({len(experiment.runs)} {quick}runs of {minutes:.1f} min)")
+        print(f"{experiment.name} ({count} {quick}run{'s' if count > 1 else ''} of {seconds:.0f} s)")
         for claim in experiment.claims:
             print(f"  {claim.number:4} {claim.verdict}")
+            print(f"         confirmed if: {claim.confirmed_if}")
+            print(f"         refuted if: {claim.refuted_if}")
             for name, at in claim.finding.evidence.items():
                 print(f"         {name}: {at.text()}")
-    return 0
+    return status
 
 
 def print_paper(options: argparse.Namespace) -> int:
@@ -215,13 +232,18 @@ def agree(options: argparse.Namespace) -> int:
     if all(Archive(folder).run_numbers(COMPARISON.name) for folder in options.sets):
         found = disagreements(*options.sets)
     else:
-        first, second = ({f"{experiment.name}, {claim.number}": claim.finding.verdict.value for experiment in
-                          judged(argparse.Namespace(results=folder, names=[])) for claim in experiment.claims}
-                         for folder in options.sets)
+        first, second = (verdicts(Archive(folder)) for folder in options.sets)
         found = [f"{name}: {first.get(name, 'none')}, then {second.get(name, 'none')}" for name in {**first, **second}
                  if first.get(name) != second.get(name)]
     print("\n".join(found) or "the two sets agree")
     return 1 if found else 0
+
+
+def verdicts(archive: Archive) -> dict[str, str]:
+    statements = draft.statements()
+    found = [printing.judged_experiment(one, archive, RuleBook(), statements) for one in measured_ones(archive, [])]
+    return {f"{experiment.name}, {claim.number}": claim.finding.verdict.value
+            for experiment in found for claim in experiment.claims}
 
 
 if __name__ == "__main__":

@@ -65,13 +65,15 @@ class Archive:
             check(path, "the results' schema", content["results"]["schema"], "broadside.results/2")
             rules = content["rules"]
         except (OSError, EOFError, ValueError, TypeError, KeyError, zlib.error) as error:
-            raise Unusable(f"{path} cannot be read ({error}); expected a run of {experiment.name}") from None
+            why = f"it has no {error}" if isinstance(error, KeyError) else error
+            raise Unusable(f"{path} cannot be read ({why}); expected a run of {experiment.name}; "
+                           f"remove it to measure it again") from None
         check(path, "the run", f"{content['run']} of {content['experiment']}", f"{run} of {experiment.name}",
               "as its path says: a copy is no run of its own")
         check(path, "the rules' version", f"{rules['version']} ({rules['digest']})",
-              f"{book.version} ({book.digest})", "measure again: a changed rule means new data")
+              f"{book.version} ({book.digest})", "as changed rules take new data: remove it to measure it again")
         check(path, "the digest of its cases", content["cases"], digest_of(experiment.listed()),
-              f"measure again: the cases of {experiment.name} have changed")
+              f"as the cases of {experiment.name} have changed: remove it to measure it again")
         return content
 
     def results(self, experiment: Experiment, book: RuleBook) -> tuple[Results, list[dict]]:
@@ -90,7 +92,7 @@ class Archive:
                       f"that of run {first['run']}")
             check(path, "the program that measured it", content["program"], first["program"],
                   f"that of run {first['run']}")
-            check(path, "quick", content["quick"], first["quick"], f"as in run {first['run']}")
+            check(path, "it", kind_of_run(content["quick"]), kind_of_run(first["quick"]), f"as run {first['run']}")
         for content in contents:
             for measured in content["results"]["measurements"]:
                 if measured["verified"] is False:
@@ -104,6 +106,10 @@ class Archive:
 def check(path: Path, what: str, found: object, expected: object, why: str = "") -> None:
     if found != expected:
         raise Unusable(f"{path}: {what} is {found}; expected {expected}{', ' if why else ''}{why}")
+
+
+def kind_of_run(is_quick: bool) -> str:
+    return "a quick run" if is_quick else "a whole run"
 
 
 def text_of(machine_or_build: dict) -> str:

@@ -97,7 +97,7 @@ def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where:
 
 def listing(names: Sequence[str]) -> str:
     """ "a", "a and b", "a, b and c"."""
-    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 def judge(experiment: Experiment, results: Results, book: RuleBook) -> list[Finding]:
@@ -109,8 +109,8 @@ def judge(experiment: Experiment, results: Results, book: RuleBook) -> list[Find
     found = {finding.number: finding for finding in experiment.judge(results, rules)}
     expected = [claim.number for claim in experiment.claims]
     if sorted(found) != sorted(expected):
-        raise Unusable(f"experiment {experiment.name} judges {listing(sorted(found))}; expected its claims, "
-                       f"{listing(expected)}")
+        raise Unusable(f"experiment {experiment.name} judges {listing(sorted(found)) or 'nothing'}; expected its "
+                       f"claims, {listing(expected)}")
     findings = [found[number] for number in expected]
     for name in (name for finding in findings for name in (*finding.evidence, *finding.beside)):
         if NAME_FROM_THE_CODE.search(name):

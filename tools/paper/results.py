@@ -32,7 +32,10 @@ class Run:
 
     def measurement(self, case: str, spec: str) -> dict:
         if (case, spec) not in self._measurements:
-            raise KeyError(f"'{spec}' was not measured in case '{case}'")
+            if case not in self._first_of_case:
+                raise Unusable(f"no case '{case}' was measured; expected one of: {', '.join(self._first_of_case)}")
+            known = [of_spec for of_case, of_spec in self._measurements if of_case == case]
+            raise Unusable(f"case '{case}': '{spec}' was not measured; expected one of: {', '.join(known)}")
         return self._measurements[case, spec]
 
     def samples(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> numpy.ndarray:

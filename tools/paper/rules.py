@@ -8,6 +8,8 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
+from .experiment import Unusable
+
 PATH = Path(__file__).parent / "rules.toml"
 
 
@@ -21,21 +23,34 @@ class Rules:
         try:
             return self._values[name]
         except KeyError:
-            raise AttributeError(f"no rule '{name}'; expected one of: {', '.join(self._values)}") from None
+            if name.startswith("__"):  # what Python looks for by itself
+                raise AttributeError(name) from None
+            raise self._lacks(name) from None
 
     def fill(self, sentence: str) -> str:
         """The sentence with each `{rule}` replaced by its value."""
-        return sentence.format_map({name: f"{value:g}" for name, value in self._values.items()})
+        try:
+            return sentence.format_map({name: f"{value:g}" for name, value in self._values.items()})
+        except KeyError as error:
+            raise self._lacks(error.args[0]) from None
+
+    def _lacks(self, name: str) -> Unusable:
+        return Unusable(f"rules.toml has no rule '{name}' for this experiment; expected one of: "
+                        f"{', '.join(self._values)}")
 
 
 class RuleBook:
     """All rules, their version, and a digest of what they say."""
 
     def __init__(self, path: Path = PATH):
-        text = path.read_text(encoding="utf-8")
-        self._tables = tomllib.loads(text)
+        try:
+            self._tables = tomllib.loads(path.read_text(encoding="utf-8"))
+            self.version: int = self._tables.pop("version")
+            self._tables["all"]
+        except (tomllib.TOMLDecodeError, KeyError) as error:
+            raise Unusable(f"{path} cannot be read ({error}); expected TOML with a version and a table "
+                           f"[all]") from None
         self._path = path
-        self.version: int = self._tables.pop("version")
         self.digest = hashlib.sha256(repr(sorted(self._tables.items())).encode()).hexdigest()[:16]
 
     def of(self, experiment: str) -> Rules:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy
 
-from .archive import Archive, check
+from .archive import Archive, check, kind_of_run
 from .experiment import Boxes, Experiment, Unusable
 from .rules import RuleBook
 
@@ -46,7 +46,7 @@ class Measuring:
 
     def __post_init__(self) -> None:
         if not self.program.is_file():
-            raise Unusable(f"{self.program} is not there; expected the program, as `make program` builds it")
+            raise Unusable(f"{self.program} is no file; expected the program, as `make program` builds it")
         self.program = self.program.resolve()
         self.digest = hashlib.sha256(self.program.read_bytes()).hexdigest()[:16]
 
@@ -87,7 +87,8 @@ class Measuring:
         content = self.archive.read(run, experiment, self.book)
         check(path, "the program that measured it", content["program"], self.digest,
               f"this one; remove {self.archive.folder} to measure by {self.program}")
-        check(path, "quick", content["quick"], self.is_quick, f"or remove {self.archive.folder}")
+        check(path, "it", kind_of_run(content["quick"]), kind_of_run(self.is_quick),
+              f"as asked for; use another folder (--results), or remove {self.archive.folder}")
         self.seconds[experiment.name] = content["seconds"]
         return True
 

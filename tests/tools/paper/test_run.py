@@ -141,7 +141,7 @@ class Runs(unittest.TestCase):
 
     def test_by_other_rules_are_refused(self):
         self.refused(lambda content: content["rules"].update(digest="0"),
-                     r"the rules' version is 1 \(0\); expected .* a changed rule means new data")
+                     r"the rules' version is 1 \(0\); expected .* as changed rules take new data: remove it")
 
     def test_of_other_cases_are_refused(self):
         self.refused(lambda content: content.update(cases="0"), "the cases of small have changed")
@@ -157,7 +157,8 @@ class Runs(unittest.TestCase):
         self.refused(lambda content: content.update(run=1), "the run is 1 of small; expected 2 of small, as its path")
 
     def test_that_lack_a_part_are_refused(self):
-        self.refused(lambda content: content.pop("rules"), "run-2/small.json.gz cannot be read .'rules'.; expected")
+        self.refused(lambda content: content.pop("rules"),
+                     "run-2/small.json.gz cannot be read .it has no 'rules'.; expected")
 
     def test_that_two_processes_measure_at_once_are_refused(self):
         with self.measuring().alone(), self.assertRaisesRegex(Unusable, "another process measures into"):
@@ -194,13 +195,21 @@ class Runs(unittest.TestCase):
             with self.assertRaisesRegex(Unusable, r"case 'small': grid has no \w+ \(estimated 9 s\)"):
                 figure()
 
+    def test_that_lack_what_an_experiment_asks_for_say_what_they_have(self):
+        self.measure()
+        results, _ = self.archive.results(SMALL, RuleBook())
+        with self.assertRaisesRegex(Unusable, "no case 'large' was measured; expected one of: small"):
+            results.time("large", "grid")
+        with self.assertRaisesRegex(Unusable, "case 'small': 'bvh' was not measured; expected one of: .*grid"):
+            results.time("small", "bvh")
+
     def test_that_are_not_there_are_asked_for(self):
         with self.assertRaisesRegex(Unusable, "has no run of small; expected one at least"):
             self.archive.results(SMALL, RuleBook())
 
     def test_quick_ones_do_not_go_with_whole_ones(self):
         self.measure(runs=[1], is_quick=True)
-        with self.assertRaisesRegex(Unusable, "quick is True; expected False"):
+        with self.assertRaisesRegex(Unusable, "it is a quick run; expected a whole run"):
             self.measure()
 
     def test_about_a_statement_that_is_not_there_are_refused(self):
