@@ -198,7 +198,7 @@ class Runs(unittest.TestCase):
     def test_that_lack_what_an_experiment_asks_for_say_what_they_have(self):
         self.measure()
         results, _ = self.archive.results(SMALL, RuleBook())
-        with self.assertRaisesRegex(Unusable, "no case 'large' was measured; expected one of: small"):
+        with self.assertRaisesRegex(Unusable, "no case 'large' was measured; expected one of: .*small"):
             results.time("large", "grid")
         with self.assertRaisesRegex(Unusable, "case 'small': 'bvh' was not measured; expected one of: .*grid"):
             results.time("small", "bvh")
