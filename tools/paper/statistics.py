@@ -35,10 +35,12 @@ class Estimate:
         """Three digits, and the interval in brackets: "1.42 (1.38 to 1.46) ms". A crossing may be "not reached"."""
         if math.isnan(self.value) and not any(map(math.isnan, self.runs)):
             return "not reached" if not any(map(math.isfinite, self.runs)) else "not reached in each run"
+        low, high = digits(self.low), digits(self.high)
         if math.isnan(self.low) or math.isnan(self.high):
             interval = " (no interval)"
         else:
-            interval = "" if self.low == self.high else f" ({digits(self.low)} to {digits(self.high)})"
+            is_a_point = low == high and self.high - self.low <= 1e-3 * abs(self.value)
+            interval = "" if is_a_point else f" ({low} to {high})"
         return f"{digits(self.value)}{interval}{' ' if self.unit else ''}{self.unit}"
 
 

@@ -33,6 +33,10 @@ class BetweenRuns(unittest.TestCase):
         self.assertAlmostEqual(at.low, 5)
         self.assertEqual(at.low, at.high)
 
+    def test_is_not_printed_where_no_digit_of_it_differs(self):
+        self.assertEqual(between_runs([24.001, 24.002], 0.95, "bytes").text(), "24.0 bytes")
+        self.assertEqual(between_runs([24, 25], 0.95).text(), "24.5 (18.9 to 31.7)")
+
     def test_of_crossings_says_where_there_was_none(self):
         self.assertEqual(between_runs([math.inf, math.inf], 0.95).text(), "not reached")
         self.assertEqual(between_runs([math.inf, 2], 0.95).text(), "not reached in each run")

@@ -49,7 +49,7 @@ class Field:
 
 MOTION = "the share that moves"
 MAPS = {
-    "overlaps a box": ("uniform:neighbours={:g}", (2, 3), (0.5, 4, 16, 64)),
+    "overlaps of a box": ("uniform:neighbours={:g}", (2, 3), (0.5, 4, 16, 64)),
     "the largest size over the smallest": ("power_law:ratio={:g}", (2,), (10, 316, 10_000)),
     "the width of clusters": ("clustered:spread={:g}", (2,), (0.1, 0.017, 0.003)),
     MOTION: ("uniform", (2, 3), (0.01, 0.1, 1)),
@@ -132,7 +132,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 def winners_map(first: dict[Field, str]) -> figures.Figure:
     """Which algorithm is the fastest, over the number of boxes and one other thing."""
     drawing, (*maps, key) = figures.new(columns=4, height=2.2)
-    for axes, (name, dimension) in zip(maps, [("overlaps a box", 2), ("overlaps a box", 3), (MOTION, 2)]):
+    for axes, (name, dimension) in zip(maps, [("overlaps of a box", 2), ("overlaps of a box", 3), (MOTION, 2)]):
         for number, winner in enumerate(SINGLE):
             there = [field for field in first if (field.map, field.dimension) == (name, dimension)
                      and first[field] == winner]
@@ -152,8 +152,8 @@ def winners_map(first: dict[Field, str]) -> figures.Figure:
 EXPERIMENT = Experiment(
     title="Which algorithm is the fastest where",
     measured="Our own algorithms, and our own choice among them by a sample of the boxes, in fields from 100 to "
-             "100,000 boxes: by overlaps a box, by sizes, by clusters, and by how many move in a frame, in the plane "
-             "and in space.",
+             "100,000 boxes: by overlaps of a box, by sizes, by clusters, and by how many move in a frame, in the "
+             "plane and in space.",
     claims=[
         Claim("B1a", "Each single algorithm takes more than {clearly} times as long as the fastest one in some field.",
               "One does so in no field."),
