@@ -17,11 +17,11 @@ class Rules:
     """The values that one experiment is judged by, as attributes: its own and those of [all]."""
 
     def __init__(self, values: Mapping[str, float]):
-        self._values = dict(values)
+        self.values = dict(values)
 
     def __getattr__(self, name: str):
         try:
-            return self._values[name]
+            return self.values[name]
         except KeyError:
             if name.startswith("__"):  # what Python looks for by itself
                 raise AttributeError(name) from None
@@ -30,17 +30,17 @@ class Rules:
     def fill(self, sentence: str) -> str:
         """The sentence with each `{rule}` replaced by its value."""
         try:
-            return sentence.format_map({name: f"{value:g}" for name, value in self._values.items()})
+            return sentence.format_map({name: f"{value:g}" for name, value in self.values.items()})
         except KeyError as error:
             raise self._lacks(error.args[0]) from None
 
     def _lacks(self, name: str) -> Unusable:
         return Unusable(f"rules.toml has no rule '{name}' for this experiment; expected one of: "
-                        f"{', '.join(self._values)}")
+                        f"{', '.join(self.values)}")
 
 
 class RuleBook:
-    """All rules, their version, and a digest of what they say."""
+    """All rules, and their version."""
 
     def __init__(self, path: Path = PATH):
         try:
@@ -51,7 +51,10 @@ class RuleBook:
             raise Unusable(f"{path} cannot be read ({error}); expected TOML with a version and a table "
                            f"[all]") from None
         self._path = path
-        self.digest = hashlib.sha256(repr(sorted(self._tables.items())).encode()).hexdigest()[:16]
+
+    def digest(self, experiment: str) -> str:
+        """Of the rules that an experiment is judged by, so that those of another may change."""
+        return hashlib.sha256(repr(sorted(self.of(experiment).values.items())).encode()).hexdigest()[:16]
 
     def of(self, experiment: str) -> Rules:
         return Rules({**self._tables["all"], **self._tables.get(experiment, {})})
