@@ -17,6 +17,13 @@ function Table(element)
   return pandoc.RawBlock("latex", text)
 end
 
+-- A long listing may be cut in two (preamble.tex).
+function CodeBlock(element)
+  local _, lines = element.text:gsub("\n", "")
+  if FORMAT ~= "latex" or lines < 20 then return nil end
+  return pandoc.RawBlock("latex", "\\begin{longlisting}\n" .. element.text .. "\n\\end{longlisting}")
+end
+
 -- The sources, without the boxes that HTML has around them.
 function Div(element)
   if FORMAT == "gfm" then return element.content end
