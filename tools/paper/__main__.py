@@ -202,13 +202,15 @@ def publish(options: argparse.Namespace) -> int:
     sets = [one for one in sets if any(one[1].folder.glob("run-*"))]
     if not sets:
         raise Unusable(f"{options.results} and {options.comparison} have no runs; expected some in one of them")
-    for experiments, archive, to in sets:
-        publish_set(experiments, archive, to)
+    for experiments, archive, _ in sets:
+        check_set(experiments, archive)
+    for _, archive, to in sets:
+        publish_set(archive, to)
     return 0
 
 
-def publish_set(experiments: Sequence[Experiment], archive: Archive, to: Path) -> None:
-    """Copies a set in which every experiment has all of its runs, by rules that were committed before them."""
+def check_set(experiments: Sequence[Experiment], archive: Archive) -> None:
+    """Refuses a set unless every experiment has all of its runs, by rules that were committed before them."""
     book = RuleBook()
     for experiment in experiments:
         _, runs = archive.results(experiment, book)
@@ -221,6 +223,9 @@ def publish_set(experiments: Sequence[Experiment], archive: Archive, to: Path) -
             if not one["rules"]["commit"]:
                 raise Unusable(f"run {one['run']} of {experiment.name} was measured before its rules were "
                                f"committed; expected rules.toml and experiments/ committed first")
+
+
+def publish_set(archive: Archive, to: Path) -> None:
     for old in to.glob("run-*"):
         shutil.rmtree(old)
     for folder in sorted(archive.folder.glob("run-*")):

@@ -71,7 +71,8 @@ class Archive:
         check(path, "the run", f"{content['run']} of {content['experiment']}", f"{run} of {experiment.name}",
               "as its path says: a copy is no run of its own")
         check(path, "the rules' version", f"{rules['version']} ({rules['digest']})",
-              f"{book.version} ({book.digest(experiment.name)})", "as changed rules take new data: remove it to measure it again")
+              f"{book.version} ({book.digest(experiment.name)})",
+              "as changed rules take new data: remove it to measure it again")
         check(path, "the digest of its cases", content["cases"], digest_of(experiment.listed()),
               f"as the cases of {experiment.name} have changed: remove it to measure it again")
         return content

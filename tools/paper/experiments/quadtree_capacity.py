@@ -42,7 +42,7 @@ def filled(boxes: int) -> str:
 
 def cases() -> list[Case]:
     found = [Case(filled(boxes), f"uniform:neighbours={boxes / FILLING[0] / 2:g}", [*map(spec, SMALL)], boxes=boxes,
-                  seeds=2, take=["counts"]) for boxes in FILLING]
+                  seeds=max(100_000 // boxes, 2), take=["counts"]) for boxes in FILLING]
     for neighbours in NEIGHBOURS:
         scene = f"uniform:neighbours={neighbours}"
         found.append(Case(the_draft(neighbours), scene, [*map(spec, CAPACITIES), *CELLS, "auto"],
