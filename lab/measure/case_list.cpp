@@ -193,7 +193,7 @@ void read_algorithms(const JsonPlace& place, const Catalogue& catalogue, ListedC
 }
 
 std::string read_instruction_set(const JsonPlace& place) {
-  const std::string name = place.text();
+  std::string name = place.text();
   const std::vector<std::string> known = instruction_sets();
   if (std::ranges::find(known, name) == known.end())
     place.refuse(fmt::format("one of this machine's instruction sets: {}", fmt::join(known, ", ")));

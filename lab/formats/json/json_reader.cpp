@@ -19,11 +19,13 @@ using Kind = JsonValue::Kind;
 
 /// The bytes of a text; all copies tell one variable where the one is that goes on.
 struct Cursor {
+  // NOLINTBEGIN(readability-identifier-naming): names of the standard library
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
   using difference_type = std::ptrdiff_t;
   using pointer = const char*;
   using reference = const char&;
+  // NOLINTEND(readability-identifier-naming)
 
   const char* at;
   const char** told;
