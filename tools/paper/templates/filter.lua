@@ -17,11 +17,12 @@ function Table(element)
   return pandoc.RawBlock("latex", text)
 end
 
--- A long listing may be cut in two (preamble.tex).
+-- Between the functions of a listing a page may end, or a long one would leave half a page empty before it.
 function CodeBlock(element)
-  local _, lines = element.text:gsub("\n", "")
-  if FORMAT ~= "latex" or lines < 20 then return nil end
-  return pandoc.RawBlock("latex", "\\begin{longlisting}\n" .. element.text .. "\n\\end{longlisting}")
+  if FORMAT ~= "latex" then return nil end
+  local functions = {}
+  for text in (element.text .. "\n\n"):gmatch("(.-)\n\n") do table.insert(functions, pandoc.CodeBlock(text, element.attr)) end
+  return functions
 end
 
 -- The sources, without the boxes that HTML has around them.
