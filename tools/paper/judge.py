@@ -27,6 +27,7 @@ class Finding:
     verdict: Verdict
     evidence: Mapping[str, Estimate]
     condition: str = ""  # where it holds; of one that is open: why
+    share: str = ""      # of the places, at which it holds
     beside: Mapping[str, Estimate] = field(default_factory=dict)  # figures that decide nothing
 
 
@@ -77,7 +78,8 @@ def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where:
     the names of the former. Where intervals cannot tell whether there are others, it is open.
     """
     if not places:
-        return Finding(number, Verdict.OPEN, {}, "nothing that was measured is what it is about", beside or {})
+        return Finding(number, Verdict.OPEN, {}, "nothing that was measured is what it is about",
+                       beside=dict(beside or {}))
     held = [name for name, asked in places.items() if all(one.holds() for one in asked.values())]
     missed = [name for name, asked in places.items() if any(one.misses() for one in asked.values())]
     failed = [name for name, asked in places.items() if any(one.fails() for one in asked.values())]
@@ -92,7 +94,7 @@ def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where:
     else:
         verdict = Verdict.REFUTED if len(failed) == len(places) else Verdict.OPEN
     evidence = {name: one.at for asked in places.values() for name, one in asked.items()}
-    return Finding(number, verdict, evidence, condition, dict(beside or {}))
+    return Finding(number, verdict, evidence, condition, f"{len(held)} of {len(places)} places", dict(beside or {}))
 
 
 def listing(names: Sequence[str]) -> str:

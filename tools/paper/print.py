@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-import textwrap
 import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -34,6 +33,7 @@ TEMPLATES = Path(__file__).parent / "templates"
 DIAGRAMS = Path(__file__).parents[2] / "docs" / "paper" / "diagrams"
 NOTICE = "<!-- Made by `make paper` from tools/paper/; edit the templates there. -->\n\n"
 PAPER = "paper.md"  # printed by pandoc; the other pages are Markdown as it is filled
+MOST_OF_A_CONDITION = 100  # characters that a verdict in a short table may have
 QUOTING = ("README.md", "docs/results.md")  # pages of the repository that quote results
 
 
@@ -185,8 +185,10 @@ def statements_table(content: Content, is_ours: bool = False, is_whole: bool = T
 
     def verdict(statement: draft.DraftStatement) -> str:
         if statement.number in claims:
-            text = claims[statement.number].verdict
-            return text if is_whole else textwrap.shorten(text, 150, placeholder=" ...")
+            claim = claims[statement.number]
+            if is_whole or len(claim.verdict) <= MOST_OF_A_CONDITION:
+                return claim.verdict
+            return f"{claim.finding.verdict.value}, at {claim.finding.share}"
         return "not measured" if statement.number in unmeasured else f"({statement.kind})"
     shown = [one for one in content.statements.values() if (one.kind == "our claim") == is_ours]
     if not is_whole:
