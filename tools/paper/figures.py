@@ -65,7 +65,8 @@ def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
             set_scale("log")
             low, high = sorted(axis.get_view_interval())
             decades = numpy.log10(high / low) if low > 0 else numpy.inf
-            axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5) if decades < 2.5 else (1,)))
+            axis.set_major_locator(matplotlib.ticker.MaxNLocator(4) if decades < 0.5 else
+                                   matplotlib.ticker.LogLocator(subs=(1, 2, 5) if decades < 2.5 else (1,)))
             axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:,.10g}"))
             axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
