@@ -99,7 +99,7 @@ class Archive:
                 if measured["verified"] is False:
                     raise Unusable(f"{self.path(content['run'], experiment.name)}: {measured['algorithm']} is "
                                    f"wrong in case '{measured['case']}' ({measured['skipped']}); expected "
-                                   f"results that were verified")
+                                   f"results that were verified: remove the file to measure it again")
         runs = [Run(content["results"]["measurements"]) for content in contents]
         return Results(runs, book.of(experiment.name).confidence), [about(content) for content in contents]
 

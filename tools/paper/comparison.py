@@ -393,7 +393,7 @@ def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Esti
     axes.set_ylim(len(rows) - 0.4, -0.6)
     figures.label(axes, x, "", log="x")
     if len(series) > 1:
-        axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncol=2)
+        figures.legend(axes, is_shared=True)
     return Figure(name, caption, drawing)
 
 
@@ -404,7 +404,8 @@ def mean_leads_figure(leads: Mapping[tuple, Leads]) -> Figure:
               {row: those.mean for row in rows if (those := leads[names[row], which, rival]).all}
               for rival, whom in (("peer", "libraries"), ("literature", "the literature")) for which in OURS}
     return lines_figure("comparison_groups", "How many times as fast ours are, by group of cases: geometric means, "
-                        "with intervals between processes. At 1 a rival is as fast.", series, rows, "times as fast")
+                        "with 95% intervals between processes. At 1 a rival is as fast.", series, rows,
+                        "times as fast")
 
 
 def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
@@ -417,7 +418,7 @@ def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
         rows = list(dict.fromkeys(row for those in series.values() for row in those))
         if rows:
             yield lines_figure(f"comparison_{name}", f"{words}: how many times as fast our own choice is, case by "
-                               "case, with intervals between processes.", series, rows, "times as fast")
+                               "case, with 95% intervals between processes.", series, rows, "times as fast")
 
 
 def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
@@ -430,12 +431,12 @@ def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
                 if at:
                     figures.line(axes, list(at), [lead.ratio for lead in at.values()], f"{dimension}D, {whom}")
         axes.axhline(1, color="black", linewidth=0.8)
-    figures.label(left, "boxes", "times as fast", "\n\n")  # the legend's place
-    figures.label(right, "others that a box overlaps", "", "\n\n")
+    figures.label(left, "boxes", "times as fast")
+    figures.label(right, "others that a box overlaps", "")
     left.set_xticks(NUMBERS[::2])
-    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2).set_in_layout(False)
+    figures.legend(left, is_shared=True)
     return Figure("comparison_curves", "How many times as fast our own choice is on uniform boxes, by their number "
-                  "and, for 10,000, by their density.", drawing)
+                  "and, for 10,000, by their density. Bars: 95% intervals between processes.", drawing)
 
 
 def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
@@ -447,7 +448,8 @@ def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
         if words:
             best.setdefault(words, ratio)
     return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's: our own choice, and "
-                        "the best algorithm of each library, as a geometric mean of the cases that each does.",
+                        "the best algorithm of each library, as a geometric mean of the cases that each does. Bars: "
+                        "95% intervals between processes.",
                         {"": best}, list(best), "times the time of the fastest")
 
 

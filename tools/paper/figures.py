@@ -14,6 +14,7 @@ import numpy
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.text import Text
+from matplotlib.transforms import blended_transform_factory
 
 from .experiment import NAME_FROM_THE_CODE, Unusable
 from .statistics import Estimate
@@ -65,8 +66,9 @@ def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
             set_scale("log")
             low, high = sorted(axis.get_view_interval())
             decades = numpy.log10(high / low) if low > 0 else numpy.inf
+            subs = (1, 2, 5) if decades < 1.2 else (1, 3) if decades < 2.5 else (1,)
             axis.set_major_locator(matplotlib.ticker.MaxNLocator(4) if decades < 0.5 else
-                                   matplotlib.ticker.LogLocator(subs=(1, 2, 5) if decades < 2.5 else (1,)))
+                                   matplotlib.ticker.LogLocator(subs=subs))
             axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:,.10g}"))
             axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
@@ -78,6 +80,27 @@ def line(axes: Axes, x: Sequence, y: Sequence, name: str = "", joined: bool = Tr
     (x, x_bars), (y, y_bars) = _values_and_bars(x), _values_and_bars(y)
     axes.errorbar(x, y, y_bars, x_bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
                   elinewidth=0.8, linestyle="-" if joined else "none")
+
+
+def legend(axes: Axes, title: str = "", is_shared: bool = False) -> None:
+    """What the lines are, at the bottom, where no data are: below the axes, or below all if they share it. The drawing
+    grows by its height."""
+    drawing = axes.figure
+    width = drawing.bbox.width if is_shared else drawing.bbox.width / len(drawing.axes)
+    place = drawing.transFigure if is_shared else blended_transform_factory(axes.transAxes, drawing.transFigure)
+    for columns in range(len(axes.get_legend_handles_labels()[0]), 0, -1):
+        made = axes.legend(title=title, ncols=columns, loc="lower center", borderaxespad=0.2, bbox_to_anchor=(0.5, 0),
+                           bbox_transform=place)
+        extent = made.get_window_extent(drawing.canvas.get_renderer())
+        if extent.width <= width:
+            break
+    made.set_in_layout(False)
+    layout = drawing.get_layout_engine()
+    kept = (layout.get()["rect"] or (0, 0, 1, 1))[1] * drawing.get_figheight()
+    needed = max(kept, extent.height / drawing.dpi + 0.05)
+    height = drawing.get_figheight() + needed - kept
+    drawing.set_figheight(height)
+    layout.set(rect=(0, needed / height, 1, 1 - needed / height))
 
 
 def _values_and_bars(numbers: Sequence) -> tuple[Sequence[float], numpy.ndarray | None]:

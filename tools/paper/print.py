@@ -123,6 +123,8 @@ def write_pages(content: Content, folder: Path) -> list[Path]:
     if not (folder / "diagrams").exists():
         shutil.copytree(DIAGRAMS, folder / "diagrams")
     for name, text in pages.items():
+        text = re.sub(r"(?<=\]\()\.\./[^)#]*",  # links are written as they are in docs/paper
+                      lambda link: os.path.relpath(DIAGRAMS.parent / link[0], folder), text)
         (folder / name).write_text(NOTICE + text, encoding="utf-8")
     for drawing in drawings:
         figures.save(drawing, folder / "figures")

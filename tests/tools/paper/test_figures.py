@@ -15,7 +15,7 @@ def drawn(x="boxes", name="the draft's grid"):
     drawing, (axes,) = figures.new()
     figures.line(axes, [10, 100], AT, name)
     figures.label(axes, x, "milliseconds")
-    axes.legend()
+    figures.legend(axes)
     return figures.Figure("one", "One.", drawing), axes
 
 
@@ -37,6 +37,22 @@ class Figures(unittest.TestCase):
     def test_with_labels_that_are_cut_off_are_refused(self):
         with self.assertRaisesRegex(Unusable, "is cut off; expected a label that fits"):
             figures.check(drawn(x="a label that says more than a column holds " * 3)[0])
+
+    def test_have_legends_below_where_no_data_are(self):
+        drawing, (left, right) = figures.new(columns=2)
+        height = drawing.get_figheight()
+        for axes, names in ((left, ("one", "two")), (right, ("a line of a long name", "another of such a name"))):
+            for name in names:
+                figures.line(axes, [10, 100], AT, name)
+            figures.label(axes, "boxes", "milliseconds")
+            figures.legend(axes, "lines")
+        drawing.draw_without_rendering()
+        for axes in (left, right):
+            legend, labels = axes.get_legend().get_window_extent(), axes.xaxis.label.get_window_extent()
+            self.assertLess(legend.y1, labels.y0)
+            self.assertGreaterEqual(legend.y0, 0)
+        self.assertLess(left.get_legend().get_window_extent().x1, right.get_legend().get_window_extent().x0)
+        self.assertGreater(drawing.get_figheight(), height)
 
     def test_wider_than_the_text_are_refused(self):
         figure, _ = drawn()

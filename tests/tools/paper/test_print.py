@@ -103,6 +103,12 @@ class Pages(unittest.TestCase):
                                                   "![Figure 2. A small one.](figures/small)"])
         self.assertTrue((self.pages / "figures" / "small.svg").exists())
 
+    def test_have_links_that_lead_from_where_they_are_written(self):
+        links = re.findall(r"\]\(([^)#]*)", self.write("[a](../draft.md) [b](../../README.md#use) [c](paper.md)"))
+        self.assertTrue((self.pages / links[0]).samefile(ROOT / "docs" / "draft.md"))
+        self.assertTrue((self.pages / links[1]).samefile(ROOT / "README.md"))
+        self.assertEqual(links[2], "paper.md")
+
     def test_have_every_statement_with_its_rule_and_runs(self):
         self.write("")
         text = (self.pages / "statements.md").read_text()

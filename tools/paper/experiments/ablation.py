@@ -98,7 +98,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
             axes.set_yticks(range(len(forms)), forms.values() if axes is columns[0] else [])
             figures.label(axes, "time over the library's", "", f"in {dimension}D", log="x")
             axes.invert_yaxis()
-        columns[1].legend()
+        figures.legend(columns[1], is_shared=True)
         yield figures.Figure(f"ablation_{search}", f"Our {name} without SIMD, on {BOXES:,} boxes: held to its scalar "
                              "target; in plain code; and in plain code with each of the named things changed, which "
                              "are explained in the text. Bars: 95% intervals between runs.", drawing)

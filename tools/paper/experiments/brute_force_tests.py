@@ -53,7 +53,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     for spec in (LISTING, OURS):
         figures.line(times, COUNTS, [results.time(case_of(boxes), spec) for boxes in COUNTS], figures.NAMES[spec])
     figures.label(times, "boxes", "milliseconds")
-    times.legend()
+    figures.legend(times)
     figures.line(tests, COUNTS, [share_of_all(results, boxes) for boxes in COUNTS])
     figures.label(tests, "boxes", "tests over the square of n", log="x")
     yield figures.Figure("brute_force_tests", "Brute force by the number of boxes: time, and the tests of the "

@@ -91,7 +91,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(times, timed, [results.ratio(case, spec(across), best) for across in timed], f"{neighbours:g}")
     figures.label(shares, "cells across a box", "share of the time for adding", log="x")
     figures.label(times, "cells across a box", "time over the best")
-    times.legend(title="neighbours of a box", ncols=2)
+    figures.legend(times, "neighbours of a box", is_shared=True)
     yield figures.Figure("grid_adding", f"The draft's grid, built anew for each call, on {COUNTS[-1]:,} boxes, by the "
                          "cells across a box. Bars: 95% intervals between runs.", drawing)
 

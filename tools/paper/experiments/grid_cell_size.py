@@ -106,7 +106,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
             figures.line(place, timed, [over_best(results, grid, 2, scene, spec(grid, 2, scene, size))
                                         for size in timed], scene.replace("_", " "))
         figures.label(place, "cell length, in mean box lengths", "time over the best", title)
-    axes[0].legend()
+    figures.legend(axes[0], is_shared=True)
     yield figures.Figure("grid_cell_size", "Time by the size of cells, over that with the best size, on five scenes "
                          "in the plane: the draft's grid on 10,000 boxes, ours on 40,000. Bars: 95% intervals between "
                          "runs.", drawing)

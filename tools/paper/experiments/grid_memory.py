@@ -121,12 +121,11 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(memory, [world / CELL for world in WORLDS], [results.between(
             lambda run: run.memory(memory_case(world, CELL), one(world)) / 1e6) for world in WORLDS], name)
     figures.label(memory, "length of the world, in cells", "megabytes")
-    memory.legend()
+    figures.legend(memory, is_shared=True)
     figures.line(tests, WORLDS, [results.count(large_case(world), spec(world, world / ACROSS), "tests")
                                  for world in WORLDS], "the draft's grid")
     figures.line(tests, WORLDS, [results.count(large_case(world), "grid", "tests") for world in WORLDS], "our grid")
     figures.label(tests, "length of the world, in those of a box", "tests a box")
-    tests.legend()
     yield figures.Figure("grid_memory", f"{BOXES:,} boxes in {CLUSTERS} clusters that lie ever further apart. Left: "
                          "memory with cells of two lengths of a box. Right: tests where cells grow with the world.",
                          drawing)

@@ -67,7 +67,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         axes.axhline(1, color="black", linewidth=0.6)
         figures.label(axes, "boxes that move, in percent", "reinserting over rebuilding",
                       f"Steps of {drift:g} of a box's size")
-    places[0].legend()
+    figures.legend(places[0], is_shared=True)
     yield figures.Figure("grid_rebuilding", "The time to mend the draft's grid by reinserting what moved, over that "
                          "of adding all boxes to empty cells. Bars: 95% intervals between runs.", drawing)
 

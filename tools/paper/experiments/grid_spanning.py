@@ -57,7 +57,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     axes.plot(widths, [(1 + 1 / width)**2 for width in widths], "k:", zorder=5,
               label="(1 + 1 / width) (1 + 1 / height)")
     figures.label(axes, "width and height of a box, in cells", "references over its area")
-    axes.legend()
+    figures.legend(axes)
     yield figures.Figure("grid_spanning", "References of a box at a random place in the draft's grid, over its width "
                          "times its height in cells.", drawing)
 

@@ -123,13 +123,13 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
                      [over_translating(results, spanning(step, cell), cell) for cell in cells],
                      STEP_NAMES[step])
     figures.label(large, "cells of a box", "reinserting over translating", "Boxes that span cells")
-    large.legend()
+    figures.legend(large)
     for in_a_cell in IN_A_CELL:
         figures.line(small, [100 * moving for moving in MOVING],
                      [over_translating(results, single(moving, in_a_cell), SINGLE_CELL) for moving in MOVING],
                      f"{in_a_cell}")
     figures.label(small, "boxes that move, in percent", "", "Boxes in a single cell")
-    small.legend(title="boxes in a cell")
+    figures.legend(small, "boxes in a cell")
     for axes in (large, small):
         axes.axhline(1, color="black", linewidth=0.6)
     yield figures.Figure("grid_translation", "The time to mend the draft's grid by reinserting what moved, over that "

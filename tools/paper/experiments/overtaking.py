@@ -91,7 +91,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(times, COUNTS, [results.ratio(case_of(boxes, "uniform"), spec, LISTING) for boxes in COUNTS])
     figures.label(tests, "boxes", "tests for each box")
     figures.label(times, "boxes", "time over brute force")
-    tests.legend()
+    figures.legend(tests, is_shared=True)
     yield figures.Figure("overtaking", "The draft's methods on uniform boxes in the plane, by the number of boxes. "
                          "Left: tests, for each box. Right: time over that of the draft's brute force. Bars: 95% "
                          "intervals between runs.", drawing)

@@ -139,7 +139,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(references, timed, [results.count(case, spec(one), "references") for one in timed])
     figures.label(times, "boxes that a leaf holds", "time over the best")
     figures.label(references, "boxes that a leaf holds", "references of a box")
-    times.legend(title="neighbours of a box", ncols=2)
+    figures.legend(times, "neighbours of a box", is_shared=True)
     yield figures.Figure("quadtree_capacity", f"The draft's quadtree on {BOXES:,} uniform boxes in the plane, by the "
                          "capacity of a leaf. Left: time over that with the best capacity. Right: references. A line "
                          "for each number of others that a box overlaps on average. Bars: 95% intervals between "

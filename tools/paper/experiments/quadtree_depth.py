@@ -83,7 +83,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(shares, COUNTS, [share(results, case_of(boxes, neighbours)) for boxes in COUNTS])
     figures.label(visits, "boxes", "nodes that a mover visits", log="x")
     figures.label(shares, "boxes", "share of nodes in what is done", log="x")
-    visits.legend()
+    figures.legend(visits, is_shared=True)
     yield figures.Figure("quadtree_depth", "A tenth of uniform boxes inserted from the root of the draft's quadtree. "
                          "Bars: 95% intervals between runs.", drawing)
 

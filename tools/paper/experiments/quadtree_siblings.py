@@ -108,7 +108,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         for way in list(WAYS)[1:]:
             figures.line(place, spans, [over(results, at, way, "root") for at in line], WAYS[way])
         figures.label(place, "leaves of a box", "time over that from the root", f"Leaves of {capacity} boxes")
-    axes[0].legend()
+    figures.legend(axes[0], is_shared=True)
     yield figures.Figure("quadtree_siblings", "Mending the draft's quadtree without beginning at the root: its time, "
                          "by the leaves that a box is in. Bars: 95% intervals between runs.", drawing)
 

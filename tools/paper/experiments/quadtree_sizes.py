@@ -130,12 +130,12 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(single, LEAVES, [results.between(lambda run: leaves(run, size, side).mean()) for side in LEAVES],
                      f"{size:g}")
     figures.label(single, "side of a leaf, in units", "leaves of a box")
-    single.legend(title="length of the box")
+    figures.legend(single, "length of the box")
     for spec in (TREE, *OTHERS):
         figures.line(large, LARGE, [results.count(large_case(size), spec, "references") for size in LARGE],
                      figures.NAMES[spec])
     figures.label(large, "length of a large box, in units", "references of a box")
-    large.legend()
+    figures.legend(large)
     yield figures.Figure("quadtree_sizes", "Left: the leaves that one box is in, by its length and theirs. Right: "
                          "references where one box in a hundred is large. Bars: 95% intervals between runs.", drawing)
 

@@ -115,13 +115,13 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
         figures.line(places, COUNTS, [results.per_mover(growth_case(world, boxes), spec("insertion"), "moved")
                                       for boxes in COUNTS], world)
     figures.label(places, "boxes", "others that a box passes in a frame")
-    places.legend()
+    figures.legend(places)
     others = [passed(results, drift).value for drift in DRIFTS]
     names = {"insertion": "insertion sort", "heap": "heap", "binary": "binary search", "rebuild": "sorted anew"}
     for update, name in names.items():
         figures.line(times, others, [results.time(motion_case(drift), spec(update)) for drift in DRIFTS], name)
     figures.label(times, "others that a box passes in a frame", "milliseconds of a frame")
-    times.legend()
+    figures.legend(times)
     yield figures.Figure("sweep_insertion", "Left: how far the order is disturbed where all boxes go a tenth of "
                          f"their size. Right: a frame of the draft's sweep on {BOXES:,} boxes in the plane, by how "
                          "far they go and how the order is kept. Bars: 95% intervals between runs.", drawing)

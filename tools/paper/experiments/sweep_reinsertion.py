@@ -96,11 +96,11 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.line(growing, COUNTS, [results.between(lambda run: comparisons(run, FAR, boxes)) for boxes in COUNTS],
                  "comparisons of a search")
     figures.label(growing, "boxes", "steps")
-    growing.legend()
+    figures.legend(growing)
     for update, name in UPDATES.items():
         figures.line(frames, JUMPING, [results.time(heap_case(jumping), spec(update)) for jumping in JUMPING], name)
     figures.label(frames, f"boxes that jump, of {BOXES:,}", "milliseconds of a frame")
-    frames.legend()
+    figures.legend(frames)
     yield figures.Figure("sweep_reinsertion", f"Left: comparisons and places moved for each of {MOVERS} boxes that "
                          "are put into the order by binary search, and the comparisons of one search. Right: a frame "
                          "of the draft's sweep where boxes jump, by how its order is kept. Bars: 95% intervals "

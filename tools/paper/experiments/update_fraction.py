@@ -172,7 +172,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
     figures.label(mending, f"boxes that move, of {BOXES:,}", "mending over building", "each mover searched")
     for axes in (frames, mending):
         axes.axhline(1, color="black", linewidth=0.8)
-        axes.legend()
+    figures.legend(frames, is_shared=True)
     yield figures.Figure("update_fraction", f"The draft's listings on {BOXES:,} uniform boxes in the plane, each of "
                          "which overlaps one other on average. Left: the time of a whole frame, mended by the fastest "
                          "way, over one that builds anew. Right: the time of mending alone, where each mover is "

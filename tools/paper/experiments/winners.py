@@ -123,7 +123,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
                       **({"color": "black", "linewidth": 2} if name == CHOICE else {}))
         axes.set_xlim(0.9, 10)
         figures.label(axes, "time over that of the fastest", "% of the fields", title, log="x")
-    profiles[1].legend()
+    figures.legend(profiles[1], is_shared=True)
     yield figures.Figure("winners", "In how many fields an algorithm takes at most so many times as long as the "
                          "fastest one in each. Brute force was measured up to 2,000 boxes.", drawing)
     yield winners_map(first)
