@@ -5,9 +5,9 @@
 .PHONY: help setup setup-ci program compare pictures experiments paper published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
-soak := $(basename $(notdir $(wildcard bench/soak.cpp)))
+soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
 PROCESSES := 10
-sources := find $(wildcard include src bindings distributed integrations paper lab cli tests bench examples) -name '*.[ch]pp'
+sources := find $(wildcard include src bindings distributed integrations tools tests examples) -name '*.[ch]pp'
 # The sources that a build compiles, of which some include several others.
 compiled := sed -n 's/^ *"file": "\(.*\)".*/\1/p'
 
@@ -41,7 +41,7 @@ bench: program ## The long comparison (also in build/bench.json), the claims abo
 	$(addprefix build/release/bench/,$(soak))
 
 pictures: program ## Draw the pictures of docs/algorithms.md anew
-	scripts/pictures build/release/broadside docs/pictures
+	tools/docs/pictures build/release/broadside docs/pictures
 
 deb: build/deb/build.ninja ## Make Debian packages of library, headers and program: build/deb/packages
 	@test -f $< || cmake --preset deb
@@ -85,7 +85,7 @@ wasm: $(wasm_flavours:%=$(wasm_folder)/%/build.ninja) ## Build the npm package f
 
 test-wasm: wasm ## Run the tests of the npm package
 	node bindings/wasm/build.mjs --tests $(wasm_folder)/tests $(wasm_folder)/package
-	BROADSIDE_PACKAGE=$(CURDIR)/$(wasm_folder)/package BROADSIDE_WEB=$(CURDIR)/web \
+	BROADSIDE_PACKAGE=$(CURDIR)/$(wasm_folder)/package BROADSIDE_WEB=$(CURDIR)/tools/web \
 	  node --test $(wasm_folder)/tests/
 
 test-installed: test-wasm ## Install the npm package in an empty project, build it by Vite, test it in Node 18; takes the network
@@ -95,15 +95,15 @@ $(wasm_flavours:%=$(wasm_folder)/%/build.ninja): $(wasm_folder)/%/build.ninja: C
 	emcmake cmake --preset wasm-$*
 
 compare-web: wasm ## Compare the npm package with other libraries of JavaScript, in Node and in Chromium
-	cd bench/web && npm ci --silent --ignore-scripts --no-audit --no-fund
-	node bench/web/compare.mjs $(wasm_folder)/package
-	node bench/web/compare.mjs --chromium $(wasm_folder)/package
+	cd tools/bench/web && npm ci --silent --ignore-scripts --no-audit --no-fund
+	node tools/bench/web/compare.mjs $(wasm_folder)/package
+	node tools/bench/web/compare.mjs --chromium $(wasm_folder)/package
 
 # Its engine is the whole library, built by itself.
 playground: $(wasm_folder)/playground/build.ninja ## Build the playground, a page to see and compare algorithms: build/playground/index.html
 	@test -f $< || emcmake cmake --preset playground
 	cmake --build --preset playground
-	node web/build.mjs --playground build/playground
+	node tools/web/build.mjs --playground build/playground
 
 $(wasm_folder)/playground/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset playground
@@ -131,7 +131,7 @@ format: setup-ci ## Put every source file in the project's format
 	$(sources) | xargs clang-format -i
 
 lint: check-format build/lint/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
-	web/node_modules/.bin/tsc --noEmit --project web
+	tools/web/node_modules/.bin/tsc --noEmit --project tools/web
 	@test -f build/lint/build.ninja || cmake --preset lint
 	$(compiled) build/lint/compile_commands.json | sort -u | grep --extended-regexp --invert-match \
 	  '/(tests|bench)/|/lab/page_template\.cpp$$|/linked_algorithms\.cpp$$|\.c$$' | \
@@ -158,10 +158,10 @@ python test-python: setup_options := --python
 wasm test-wasm test-installed compare-web playground: setup_options := --web
 
 setup:
-	@scripts/setup $(setup_options)
+	@tools/setup/setup $(setup_options)
 
 setup-ci:
-	@scripts/setup --ci
+	@tools/setup/setup --ci
 
 # What setup has installed, a configured build has to look for: setup then takes build.ninja away, and make, which has
 # seen it, does not miss it.

@@ -90,9 +90,9 @@ if(BROADSIDE_BUILD_PROGRAM)
   install(TARGETS broadside_listings broadside_literature broadside_lab broadside_plain broadside_cli EXPORT BroadsideProgramTargets
           ARCHIVE COMPONENT verbs LIBRARY COMPONENT verbs RUNTIME COMPONENT verbs
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cli/include/broadside
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/cli/include/broadside
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT verbs)
-  install(FILES ${PROJECT_SOURCE_DIR}/paper/listings/descriptions.hpp
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/paper/listings/descriptions.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings COMPONENT verbs)
   install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT verbs)
 

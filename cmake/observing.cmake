@@ -4,8 +4,8 @@ set(broadside_observing_sources
   ${PROJECT_SOURCE_DIR}/src/find/search.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bvh_join.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/sweep.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/brute_force.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/grid_listing.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/quadtree_listing.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/sweep_and_prune.cpp
-  ${PROJECT_SOURCE_DIR}/paper/listings/sweep_listing_follower.cpp)
+  ${PROJECT_SOURCE_DIR}/tools/paper/listings/brute_force.cpp
+  ${PROJECT_SOURCE_DIR}/tools/paper/listings/grid_listing.cpp
+  ${PROJECT_SOURCE_DIR}/tools/paper/listings/quadtree_listing.cpp
+  ${PROJECT_SOURCE_DIR}/tools/paper/listings/sweep_and_prune.cpp
+  ${PROJECT_SOURCE_DIR}/tools/paper/listings/sweep_listing_follower.cpp)

@@ -13,7 +13,7 @@ import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "../..");
-const { build } = createRequire(join(root, "web/package.json"))("esbuild");
+const { build } = createRequire(join(root, "tools/web/package.json"))("esbuild");
 
 /** The library's version, which stands in one place. */
 function version() {

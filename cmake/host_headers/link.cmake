@@ -6,7 +6,7 @@ function(broadside_host_headers target name)
   if(NOT BROADSIDE_HOST_HEADERS_${name})
     set(${CMAKE_FIND_PACKAGE_NAME}_FOUND FALSE PARENT_SCOPE)
     set(${CMAKE_FIND_PACKAGE_NAME}_NOT_FOUND_MESSAGE "${name}/ not found in /usr/include; expected it as "
-        "scripts/setup --systems installs it, or -DBROADSIDE_HOST_HEADERS_${name}=FOLDER" PARENT_SCOPE)
+        "tools/setup/setup --systems installs it, or -DBROADSIDE_HOST_HEADERS_${name}=FOLDER" PARENT_SCOPE)
     return()
   endif()
   set(folder ${CMAKE_BINARY_DIR}/host_headers/${name})

@@ -43,8 +43,7 @@ std::vector<std::string> registered_names(AlgorithmKind kind) {
 
 TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
   std::size_t files = 0;
-  for (const char* const floor : {"include", "src", "integrations", "distributed", "paper", "lab", "cli",
-                                  "bench", "tests", "examples", "web/playground"}) {
+  for (const char* const floor : {"include", "src", "integrations", "distributed", "tools", "tests", "examples"}) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
       const fs::path& path = entry.path();
       if (!is_source(path)) continue;
@@ -86,8 +85,8 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
   EXPECT_THAT(
       breaches("src/world/world.cpp", "#include \"find/search.hpp\"\n#include \"track/updater.hpp\"\n"),
       IsEmpty());
-  EXPECT_THAT(breaches("lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
-  EXPECT_THAT(breaches("lab/peers/embree_collide.cpp",
+  EXPECT_THAT(breaches("tools/lab/recordings/box2d.cpp", "#include <box2d/box2d.h>"), IsEmpty());
+  EXPECT_THAT(breaches("tools/lab/peers/embree_collide.cpp",
                        "#include <embree3/rtcore.h>\n#include \"lab/peers/peers.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(
@@ -95,7 +94,7 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
                "#include <box2d/box2d.h>\n#include <broadside/recorder.hpp>\n#include \"game.hpp\"\n"),
       IsEmpty());
   EXPECT_THAT(
-      breaches("cli/main.cpp", "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
+      breaches("tools/cli/main.cpp", "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
       IsEmpty());
 }
 
@@ -114,9 +113,9 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/algorithms/grid/grid.cpp", "\"paper/listings/world.hpp\""},
       {"src/algorithms/grid/grid.cpp", "\"layout.hpp\""},
       {"src/algorithms/registry.cpp", "\"paper/listings/descriptions.hpp\""},
-      {"paper/listings/grid.cpp", "\"algorithms/grid/layout.hpp\""},
-      {"paper/listings/grid.cpp", "\"algorithms/outline_text.hpp\""},
-      {"paper/listings/grid.cpp", "\"lab/verify/verify.hpp\""},
+      {"tools/paper/listings/grid.cpp", "\"algorithms/grid/layout.hpp\""},
+      {"tools/paper/listings/grid.cpp", "\"algorithms/outline_text.hpp\""},
+      {"tools/paper/listings/grid.cpp", "\"lab/verify/verify.hpp\""},
       {"src/algorithms/registry.cpp", "\"algorithms/quadtree/nodes.hpp\""},
       {"distributed/plan/partition.cpp", "\"core/sort_pairs.hpp\""},
       {"distributed/out_of_core/out_of_core.cpp", "\"communicator.hpp\""},
@@ -133,17 +132,17 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/algorithms/auto/auto.cpp", "\"track/update_policy.hpp\""},
       {"src/algorithms/registry.cpp", "\"find/search.hpp\""},
       {"src/core/input_check.cpp", "\"find/search.hpp\""},
-      {"lab/verify/verify.cpp", "\"core/input_check.hpp\""},
-      {"lab/verify/verify.cpp", "\"../src/core/input_check.hpp\""},
-      {"lab/verify/verify.cpp", "\"cli/compare.hpp\""},
-      {"lab/verify/verify.cpp", "<box2d/box2d.h>"},
-      {"lab/scenes/scene.cpp", "<bullet/btBulletDynamicsCommon.h>"},
-      {"lab/recordings/box2d.cpp", "<chipmunk/chipmunk.h>"},
-      {"lab/catalogue.cpp", "<boost/geometry.hpp>"},
-      {"lab/peers/geos_strtree.cpp", "<assimp/scene.h>"},
-      {"lab/recordings/box2d.cpp", "<assimp/scene.h>"},
-      {"lab/formats/mesh/mesh.cpp", "<box2d/box2d.h>"},
-      {"cli/main.cpp", "\"core/input_check.hpp\""},
+      {"tools/lab/verify/verify.cpp", "\"core/input_check.hpp\""},
+      {"tools/lab/verify/verify.cpp", "\"../src/core/input_check.hpp\""},
+      {"tools/lab/verify/verify.cpp", "\"cli/compare.hpp\""},
+      {"tools/lab/verify/verify.cpp", "<box2d/box2d.h>"},
+      {"tools/lab/scenes/scene.cpp", "<bullet/btBulletDynamicsCommon.h>"},
+      {"tools/lab/recordings/box2d.cpp", "<chipmunk/chipmunk.h>"},
+      {"tools/lab/catalogue.cpp", "<boost/geometry.hpp>"},
+      {"tools/lab/peers/geos_strtree.cpp", "<assimp/scene.h>"},
+      {"tools/lab/recordings/box2d.cpp", "<assimp/scene.h>"},
+      {"tools/lab/formats/mesh/mesh.cpp", "<box2d/box2d.h>"},
+      {"tools/cli/main.cpp", "\"core/input_check.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"core/radix_sort.hpp\""},
       {"examples/own_algorithm/main.cpp", "\"lab/catalogue.hpp\""},
       {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},

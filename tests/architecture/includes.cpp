@@ -51,8 +51,8 @@ const std::vector<Rule>& rules() {
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
-      {"paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
-      {"paper/plain/", library + R"(|"paper/plain/plain\.hpp")"},
+      {"tools/paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
+      {"tools/paper/plain/", library + R"(|"paper/plain/plain\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"distributed/out_of_core/",
        library +
@@ -63,23 +63,23 @@ const std::vector<Rule>& rules() {
       {"distributed/include/broadside/distributed_world", library + R"(|<mpi\.h>)"},
       {"distributed/include/broadside/mpi", library + R"(|<mpi\.h>)"},
       {"distributed/", library},
-      {"web/playground/engine/",
+      {"tools/web/playground/engine/",
        library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
            R"(|"(lab/formats|lab/scenes|paper/listings)/descriptions\.hpp")" +
            R"(|"lab/formats/(csv/csv_rows|mesh/indexed_mesh|unread_formats)\.hpp")"},
-      {"lab/recordings/", lab + engines},
-      {"lab/peers/", lab + engines + peers},
-      {"lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
-      {"lab/formats/", lab + R"(|<assimp/.*>)"},
-      {"lab/", lab},
-      {"cli/", lab + R"(|"paper/plain/plain\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/engines/",
+      {"tools/lab/recordings/", lab + engines},
+      {"tools/lab/peers/", lab + engines + peers},
+      {"tools/lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
+      {"tools/lab/formats/", lab + R"(|<assimp/.*>)"},
+      {"tools/lab/", lab},
+      {"tools/cli/", lab + R"(|"paper/plain/plain\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"tools/bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"tools/bench/engines/",
        lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},
-      {"bench/",
+      {"tools/bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"tools/bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"tools/bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},
+      {"tools/bench/",
        lab +
            R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
@@ -98,12 +98,13 @@ const std::vector<Rule>& rules() {
   return list;
 }
 
-/// Whether `include` names a header in the file's own folder, by its path from `src/` or the project's root.
+/// Whether `include` names a header in the file's own folder, by its path from `src/`, `tools/` or the project's root.
 bool is_in_own_folder(const std::filesystem::path& path, std::string_view include) {
   const std::filesystem::path header(include.substr(1, include.size() - 2));
   const std::string folder = path.parent_path();
   return !header.parent_path().empty() &&
-         (folder == header.parent_path() || folder == "src" / header.parent_path());
+         (folder == header.parent_path() || folder == "src" / header.parent_path() ||
+          folder == "tools" / header.parent_path());
 }
 
 }  // namespace

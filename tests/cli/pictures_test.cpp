@@ -13,7 +13,7 @@ namespace {
 TEST(Pictures, AreWhatTheProgramDraws) {
   const std::string source = BROADSIDE_SOURCE_DIR;
   const TemporaryFolder folder;
-  const Ended ended = shell(source + "/scripts/pictures \"$BROADSIDE\" " + folder.file(""));
+  const Ended ended = shell(source + "/tools/docs/pictures \"$BROADSIDE\" " + folder.file(""));
   ASSERT_EQ(ended.status, 0) << ended.errors;
   std::size_t committed = 0;
   for (const auto& entry : std::filesystem::directory_iterator(source + "/docs/pictures")) {

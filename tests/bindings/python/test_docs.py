@@ -31,8 +31,8 @@ def test_the_notebook_runs():
 
 
 def test_the_reference_is_that_of_the_docstrings():
-    made = runpy.run_path(str(ROOT / "scripts/python_reference.py"))["reference"]()
-    assert (ROOT / "docs/python-api.md").read_text() == made, "run scripts/python_reference.py"
+    made = runpy.run_path(str(ROOT / "tools/docs/python_reference.py"))["reference"]()
+    assert (ROOT / "docs/python-api.md").read_text() == made, "run tools/docs/python_reference.py"
 
 
 def test_everything_public_has_a_docstring():

@@ -15,7 +15,7 @@ import { gzipSync } from "node:zlib";
 const vite = "8.3.8";
 const oldestNode = "18.20.8";
 
-const web = join(dirname(fileURLToPath(import.meta.url)), "../../../web");
+const web = join(dirname(fileURLToPath(import.meta.url)), "../../../tools/web");
 const [packageFolder, tests] = process.argv.slice(2);
 if (tests === undefined) {
   console.error("installed.mjs: too few arguments; expected PACKAGE TESTS");

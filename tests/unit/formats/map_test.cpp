@@ -239,7 +239,7 @@ TEST_F(MapTest, RefusesNestingThatWouldTakeTheStack) {
 TEST_F(MapTest, MakesScenesOfTheMapsThatWereFetched) {
   setenv("BROADSIDE_DATA", path("").c_str(), 1);
   EXPECT_THAT(generated::counties().missing,
-              AllOf(HasSubstr("counties.geojson"), HasSubstr("scripts/setup")));
+              AllOf(HasSubstr("counties.geojson"), HasSubstr("tools/setup/setup")));
   for (const std::string name : {"counties", "land"}) put(name + ".geojson", collection);
   EXPECT_THAT(generated::counties().missing, HasSubstr("county_borders.geojson"));
   for (const std::string name : {"county_borders", "coastlines"})

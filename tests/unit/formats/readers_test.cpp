@@ -349,7 +349,7 @@ TEST_F(FileScene, SaysOfAPathThatTheFileIsMissingAndNotTheScene) {
 
 TEST_F(Files, OfTheBunnyAreFoundWhereTheEnvironmentSays) {
   setenv("BROADSIDE_DATA", path("").c_str(), 1);
-  EXPECT_THAT(generated::bunny().missing, AllOf(HasSubstr("bunny.obj"), HasSubstr("scripts/setup")));
+  EXPECT_THAT(generated::bunny().missing, AllOf(HasSubstr("bunny.obj"), HasSubstr("tools/setup/setup")));
   put("bunny.obj", "v 0 0 0\nv 1 0 0\nv 0 2 3\nf 1 2 3\n");
   const Scene scene = generated::bunny();
   unsetenv("BROADSIDE_DATA");

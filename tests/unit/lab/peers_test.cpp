@@ -29,7 +29,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAreArray;
 
 TEST(Peers, AreEachThereOrMissing) {
-  const std::string header = project_text("lab/peers/peers.hpp");
+  const std::string header = project_text("tools/lab/peers/peers.hpp");
   static const std::regex declaration(R"(\nAlgorithm ([a-z0-9_]+)\(\);)");
   std::vector<std::string> declared;
   for (std::sregex_iterator match(header.begin(), header.end(), declaration), end; match != end; ++match)
@@ -88,7 +88,7 @@ TEST(Peers, FindTheSameWhetherTheyWereTornDownOrNot) {
 }
 
 TEST(Peers, ThatAreMissingAreNamedWithAPackageThatSetupInstalls) {
-  const std::string packages = project_text("packages-peers.txt");
+  const std::string packages = project_text("tools/setup/packages-peers.txt");
   for (const peers::MissingPeer& peer : peers::missing_peers()) {
     const std::string package = peer.reason.substr(0, peer.reason.find(' '));
     EXPECT_THAT(packages, HasSubstr("\n" + package + "\n")) << peer.name;

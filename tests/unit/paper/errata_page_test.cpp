@@ -80,7 +80,7 @@ TEST(ErrataPage, HasATestForEachErratumThatCanBeRun) {
 TEST(ErrataPage, IsWhatTheListingsAndThePaperReferTo) {
   const std::set<std::string> known = classified();
   std::size_t cited = 0;
-  for (const char* const folder : {"paper/listings", "tools/paper/templates/sections"}) {
+  for (const char* const folder : {"tools/paper/listings", "tools/paper/templates/sections"}) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file()) continue;
       // The paper also cites statements of the draft, which have numbers of their own.
