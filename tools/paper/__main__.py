@@ -25,7 +25,7 @@ try:
     from .rules import RuleBook
     from .run import Measuring
 except ModuleNotFoundError as missing:
-    sys.exit(f"tools.paper: {missing.name} is missing; expected Debian's {PACKAGES} (tools/setup/packages-paper.txt) and "
+    sys.exit(f"tools.paper: {missing.name} is missing; expected Debian's {PACKAGES} (tools/setup/setup --paper) and "
              f"to be run by /usr/bin/python3")
 except KeyboardInterrupt:  # importing takes seconds on a busy machine
     sys.exit(130)

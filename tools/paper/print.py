@@ -246,8 +246,8 @@ def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True
     """The paper as a page and as PDF in its folder, and as HTML in `work`. Where a program is missing, a line says
     which, and what is printed without it."""
     if shutil.which("pandoc") is None:
-        say(f"pandoc is missing (tools/setup/packages-paper.txt): the other pages are written; {folder / PAPER} is in pandoc's "
-            f"Markdown, without sources, and there is no HTML or PDF of it")
+        say(f"pandoc is missing (tools/setup/setup --paper): the other pages are written; {folder / PAPER} is in "
+            f"pandoc's Markdown, without sources, and there is no HTML or PDF of it")
         return
     work.mkdir(parents=True, exist_ok=True)
     source = work / PAPER
@@ -262,7 +262,8 @@ def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True
         return
     missing = [program for program in ("pdflatex", "rsvg-convert") if shutil.which(program) is None]
     if missing:
-        say(f"{listing(missing)} missing (tools/setup/packages-paper.txt): pages and HTML are written, {folder}/paper.pdf is not")
+        say(f"{listing(missing)} missing (tools/setup/setup --paper): pages and HTML are written, "
+            f"{folder}/paper.pdf is not")
         return
     # The page's checksum is in the PDF, so that a test can tell one of another text.
     sum_of_page = work / "sum.tex"
@@ -288,7 +289,7 @@ def pandoc(source: Path, folder: Path, *arguments: str, day: str = "") -> bytes:
     messages = ended.stderr.decode(errors="replace").strip().splitlines()
     if ended.returncode != 0:
         fault = " ".join([line for line in messages if re.match(r"! |l\.\d", line)] or messages[-1:])
-        raise Unusable(f"pandoc cannot print {source} ({fault}); expected the packages of tools/setup/packages-paper.txt")
+        raise Unusable(f"pandoc cannot print {source} ({fault}); expected the packages of tools/setup/setup --paper")
     for line in messages:
         if "not found" in line or "Could not" in line:
             raise Unusable(f"{source}: {line}; expected what the templates name to be there")

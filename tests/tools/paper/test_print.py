@@ -125,7 +125,7 @@ class Pages(unittest.TestCase):
             printing.print_paper(self.pages, content(), self.folder / "work")
         return errors.getvalue()
 
-    @unittest.skipUnless(HAS_PRINTERS, "pandoc, pdflatex or rsvg-convert is missing; expected tools/setup/packages-paper.txt")
+    @unittest.skipUnless(HAS_PRINTERS, "pandoc, pdflatex or rsvg-convert is missing (tools/setup/setup --paper)")
     def test_are_printed_with_sources_and_captions(self):
         (self.templates / "references.bib").write_text(
             "@book{ericson, author={Ericson, Christer}, title={Real-Time Collision Detection}, year=2005}")
@@ -141,7 +141,7 @@ class Pages(unittest.TestCase):
         self.printed((self.templates / "paper.md").read_text())
         self.assertEqual((self.pages / "paper.pdf").read_bytes(), first)
 
-    @unittest.skipUnless(HAS_PRINTERS, "pandoc, pdflatex or rsvg-convert is missing; expected tools/setup/packages-paper.txt")
+    @unittest.skipUnless(HAS_PRINTERS, "pandoc, pdflatex or rsvg-convert is missing (tools/setup/setup --paper)")
     def test_name_sources_and_pictures_that_are_not_there(self):
         with self.assertRaisesRegex(Unusable, "nobody.*not found"):
             self.printed("As in [@nobody].")
