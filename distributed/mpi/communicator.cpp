@@ -22,18 +22,18 @@ void check(int result, const char* call) {
   throw std::runtime_error(std::string(call) + " failed: " + text.data());
 }
 
-enum class Kind : std::uint64_t { invalid_input, invalid_frame, invalid_spec, other };
+enum class ErrorKind : std::uint64_t { invalid_input, invalid_frame, invalid_spec, other };
 
 /// What went wrong on a rank, as it is sent to the others. It takes no memory, which may be what is missing.
-struct Fault {
-  Kind kind = Kind::other;
+struct RankError {
+  ErrorKind kind = ErrorKind::other;
   std::uint64_t index = 0;
   std::array<char, 1000> text{};
 };
 
-Fault fault_of(const std::exception_ptr& error, int rank) {
-  Fault fault;
-  const auto set = [&](Kind kind, const char* text, std::size_t index = 0) {
+RankError fault_of(const std::exception_ptr& error, int rank) {
+  RankError fault;
+  const auto set = [&](ErrorKind kind, const char* text, std::size_t index = 0) {
     fault.kind = kind;
     fault.index = index;
     std::snprintf(fault.text.data(), fault.text.size(), "rank %d: %s", rank, text);
@@ -41,17 +41,17 @@ Fault fault_of(const std::exception_ptr& error, int rank) {
   try {
     std::rethrow_exception(error);
   } catch (const InvalidInput& invalid) {
-    set(Kind::invalid_input, invalid.what(), invalid.index());
+    set(ErrorKind::invalid_input, invalid.what(), invalid.index());
   } catch (const InvalidFrame& invalid) {
-    set(Kind::invalid_frame, invalid.what());
+    set(ErrorKind::invalid_frame, invalid.what());
   } catch (const InvalidSpec& invalid) {
-    set(Kind::invalid_spec, invalid.what());
+    set(ErrorKind::invalid_spec, invalid.what());
   } catch (const std::bad_alloc&) {
-    set(Kind::other, "out of memory");
+    set(ErrorKind::other, "out of memory");
   } catch (const std::exception& other) {
-    set(Kind::other, other.what());
+    set(ErrorKind::other, other.what());
   } catch (...) {
-    set(Kind::other, "an exception of another type");
+    set(ErrorKind::other, "an exception of another type");
   }
   return fault;
 }
@@ -88,13 +88,13 @@ void Communicator::settle(const std::exception_ptr& error) {
   int failing = error ? rank_ : size_;
   check(MPI_Allreduce(MPI_IN_PLACE, &failing, 1, MPI_INT, MPI_MIN, comm_), "MPI_Allreduce");
   if (failing == size_) return;
-  Fault fault;
+  RankError fault;
   if (failing == rank_) fault = fault_of(error, rank_);
   check(MPI_Bcast(&fault, sizeof(fault), MPI_BYTE, failing, comm_), "MPI_Bcast");
   const std::string text = fault.text.data();
-  if (fault.kind == Kind::invalid_input) throw InvalidInput(static_cast<std::size_t>(fault.index), text);
-  if (fault.kind == Kind::invalid_frame) throw InvalidFrame(text);
-  if (fault.kind == Kind::invalid_spec) throw InvalidSpec(text);
+  if (fault.kind == ErrorKind::invalid_input) throw InvalidInput(static_cast<std::size_t>(fault.index), text);
+  if (fault.kind == ErrorKind::invalid_frame) throw InvalidFrame(text);
+  if (fault.kind == ErrorKind::invalid_spec) throw InvalidSpec(text);
   if (error) std::rethrow_exception(error);
   throw RankError(failing, text);
 }

@@ -234,7 +234,7 @@ class DistributedWorld<D, Real>::State {
   }
 
   void send_changes() {
-    ByRank<MovedBox<D, Real>> moved;
+    ByRank<ChangedPartBox<D, Real>> moved;
     ByRank<EnteringBox<D, Real>> entering;
     comm_.together([&] {
       moved.resize(comm_.size());

@@ -24,8 +24,8 @@ constexpr std::uint64_t max_small_ids = std::uint64_t{1} << 32;
 
 /// One set of boxes: those handed in on this rank, and those that touch its part of space.
 template <int D, typename Real, typename Id>
-struct Side {
-  explicit Side(const BoxView<D, Real>& handed_in) : mine(handed_in) {}
+struct JoinSide {
+  explicit JoinSide(const BoxView<D, Real>& handed_in) : mine(handed_in) {}
 
   BoxView<D, Real> mine;
   std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box's
@@ -141,11 +141,11 @@ void check_boxes(const BoxView<D, Real>& boxes, const char* set) {
 
 /// The join of one call.
 template <int D, typename Real, typename Id, typename P>
-class Join {
+class RankJoin {
  public:
-  using OneSide = Side<D, Real, Id>;
+  using OneSide = JoinSide<D, Real, Id>;
 
-  Join(Communicator& comm, Finder<D, Real>& finder, std::vector<OneSide> sides)
+  RankJoin(Communicator& comm, Finder<D, Real>& finder, std::vector<OneSide> sides)
       : comm_(comm), finder_(finder), sides_(std::move(sides)) {}
 
   Statistics run(const Options& options, const PairCallback& take) {
@@ -258,14 +258,14 @@ template <typename Id, typename P, int D, typename Real>
 Statistics join(Communicator& comm, Finder<D, Real>& finder, std::span<const BoxView<D, Real>> views,
                 std::vector<std::vector<std::uint64_t>> ends, const PairCallback& take,
                 const Options& options) {
-  std::vector<Side<D, Real, Id>> sides;
+  std::vector<JoinSide<D, Real, Id>> sides;
   comm.together([&] {
     for (std::size_t set = 0; set < views.size(); ++set) {
       sides.emplace_back(views[set]);
       sides.back().ends = std::move(ends[set]);
     }
   });
-  return Join<D, Real, Id, P>(comm, finder, std::move(sides)).run(options, take);
+  return RankJoin<D, Real, Id, P>(comm, finder, std::move(sides)).run(options, take);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace broadside::mpi {
 
 /// A box that touched the part at the last update, and has changed.
 template <int D, typename Real>
-struct MovedBox {
+struct ChangedPartBox {
   Box<D, Real> now;
   std::uint64_t id;
 };
@@ -52,7 +52,7 @@ class FollowedPart {
       : region_(region), tracker_(std::move(tracker)) {}
 
   /// A box that is in the part has changed; `owner` is the rank that owns it.
-  void change(const MovedBox<D, Real>& box, std::uint32_t owner) {
+  void change(const ChangedPartBox<D, Real>& box, std::uint32_t owner) {
     change_slot(slots_.at(box.id), box.now, owner);
   }
 

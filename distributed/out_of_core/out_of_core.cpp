@@ -30,9 +30,9 @@ using out_of_core::bytes_per_box;
 using out_of_core::CorruptFile;
 using out_of_core::for_each_box;
 using out_of_core::Manifest;
-using out_of_core::Part;
+using out_of_core::PartRecord;
 using out_of_core::PartJoin;
-using out_of_core::Run;
+using out_of_core::PairRun;
 using out_of_core::WorkFolder;
 
 template <int D, typename Real>
@@ -79,7 +79,7 @@ class OutOfCoreJoin<D, Real>::Work {
     if (!manifest_.is_read) read_all();
     std::uint64_t done = 0;
     for (std::size_t place = 0; place < manifest_.parts.size();) {
-      const Part& part = manifest_.parts[place];
+      const PartRecord& part = manifest_.parts[place];
       report(OutOfCoreStage::joining, done, boxes_of_parts());
       if (part.is_joined) {
         done += part.boxes[0] + part.boxes[1];
@@ -99,7 +99,7 @@ class OutOfCoreJoin<D, Real>::Work {
   std::uint64_t pairs() const {
     check_is_finished();
     std::uint64_t pairs = 0;
-    for (const Part& part : manifest_.parts) pairs += part.pairs;
+    for (const PartRecord& part : manifest_.parts) pairs += part.pairs;
     return pairs;
   }
 
@@ -126,8 +126,8 @@ class OutOfCoreJoin<D, Real>::Work {
       }
     };
     try {
-      std::vector<Run> runs;
-      for (const Part& part : manifest_.parts) {
+      std::vector<PairRun> runs;
+      for (const PartRecord& part : manifest_.parts) {
         for (std::size_t run = 0; run < part.runs.size(); ++run)
           runs.push_back({folder_.pair_file(part, run), part.runs[run]});
         // Sorted within each part: the same order for any number of threads.
@@ -165,7 +165,7 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   void check_is_finished() const {
-    const bool is_finished = manifest_.is_read && std::ranges::all_of(manifest_.parts, [](const Part& part) {
+    const bool is_finished = manifest_.is_read && std::ranges::all_of(manifest_.parts, [](const PartRecord& part) {
                                return part.is_joined;
                              });
     if (!is_finished) throw std::logic_error("OutOfCoreJoin: asked for pairs before run() has finished");
@@ -177,11 +177,11 @@ class OutOfCoreJoin<D, Real>::Work {
 
   std::uint64_t boxes_of_parts() const {
     std::uint64_t boxes = 0;
-    for (const Part& part : manifest_.parts) boxes += part.boxes[0] + part.boxes[1];
+    for (const PartRecord& part : manifest_.parts) boxes += part.boxes[0] + part.boxes[1];
     return boxes;
   }
 
-  Region region_of(const Part& part) const {
+  Region region_of(const PartRecord& part) const {
     Region region;
     for (std::size_t axis = 0; axis < D; ++axis) {
       region.low[axis] = static_cast<Real>(part.low.at(axis));
@@ -270,7 +270,7 @@ class OutOfCoreJoin<D, Real>::Work {
 
   /// Takes the boxes of a part from the sources again.
   void make_again(std::size_t place, const CorruptFile& corrupt) {
-    Part& part = manifest_.parts[place];
+    PartRecord& part = manifest_.parts[place];
     if (options_.warn) options_.warn(std::string(corrupt.what()) + "; part " + part.name + " is made again");
     const Region region = region_of(part);
     const std::array<std::uint64_t, 2> boxes_before = part.boxes;
@@ -296,12 +296,12 @@ class OutOfCoreJoin<D, Real>::Work {
   /// Cuts a part that is too large into several, by a sample of its own boxes. If that does not help, marks
   /// it to be joined whole.
   void split(std::size_t place) {
-    const Part part = manifest_.parts[place];
+    const PartRecord part = manifest_.parts[place];
     const std::uint64_t count = part.boxes[0] + part.boxes[1];
     const Partition<D, Real> partition(sample_of(part), parts_for(count), 0, region_of(part));
-    std::vector<Part> parts;
+    std::vector<PartRecord> parts;
     if (partition.size() > 1) parts = distribute(part, partition);
-    const bool is_help = partition.size() > 1 && std::ranges::all_of(parts, [&](const Part& smaller) {
+    const bool is_help = partition.size() > 1 && std::ranges::all_of(parts, [&](const PartRecord& smaller) {
                            return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
                          });
     if (is_help) {
@@ -314,7 +314,7 @@ class OutOfCoreJoin<D, Real>::Work {
     folder_.remove_others(manifest_);
   }
 
-  std::vector<Box<D, Real>> sample_of(const Part& part) const {
+  std::vector<Box<D, Real>> sample_of(const PartRecord& part) const {
     const std::uint64_t step = std::max<std::uint64_t>(1, (part.boxes[0] + part.boxes[1]) >> 16);
     std::vector<Box<D, Real>> sample;
     std::uint64_t count = 0;
@@ -328,7 +328,7 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   /// Writes the boxes of a part to the files of the parts that it is cut into.
-  std::vector<Part> distribute(const Part& part, const Partition<D, Real>& partition) const {
+  std::vector<PartRecord> distribute(const PartRecord& part, const Partition<D, Real>& partition) const {
     std::vector<Box<D, Real>> boxes;
     std::vector<std::uint64_t> ids;
     return part_files_.write(partition, part.name + ".", [&](std::size_t source, const auto& add) {
@@ -346,7 +346,7 @@ class OutOfCoreJoin<D, Real>::Work {
 
   void join(std::size_t place) {
     if (!finder_) finder_ = finder_of(options_);
-    Part part = manifest_.parts[place];
+    PartRecord part = manifest_.parts[place];
     if (manifest_.has_large_ids)
       part_join_.template join<LargePair>(part, region_of(part), *finder_);
     else
@@ -367,7 +367,7 @@ class OutOfCoreJoin<D, Real>::Work {
       });
   }
 
-  void check_runs_of(const Part& part) const {
+  void check_runs_of(const PartRecord& part) const {
     std::vector<std::byte> bytes;
     std::uint64_t found = 0;
     for (std::size_t run = 0; run < part.runs.size(); ++run)

@@ -40,7 +40,7 @@ template <typename P>
 class RunWriter {
  public:
   /// `memory` in bytes, half of which is for sorting. With `counts_only` pairs are counted and not kept.
-  RunWriter(const WorkFolder& folder, Part& part, std::uint64_t memory, bool counts_only)
+  RunWriter(const WorkFolder& folder, PartRecord& part, std::uint64_t memory, bool counts_only)
       : folder_(folder),
         part_(part),
         max_pairs_(std::max<std::uint64_t>(memory / (2 * sizeof(P)), 4096)),
@@ -77,7 +77,7 @@ class RunWriter {
 
  private:
   const WorkFolder& folder_;
-  Part& part_;
+  PartRecord& part_;
   std::size_t max_pairs_;
   bool counts_only_;
   std::mutex mutex_;
@@ -85,7 +85,7 @@ class RunWriter {
   std::vector<P> scratch_;
 };
 
-struct Run {
+struct PairRun {
   std::filesystem::path path;
   std::uint64_t blocks;
 };
@@ -96,7 +96,7 @@ struct Run {
 /// Reads blocks into a pool, always the next block of the run whose last pooled pair is the lowest. Every
 /// pair up to that one is then in the pool: these are sorted and visited.
 template <typename P>
-void merge_at_once(std::span<const Run> runs, std::uint64_t memory,
+void merge_at_once(std::span<const PairRun> runs, std::uint64_t memory,
                    const std::function<void(std::span<const P>)>& visit) {
   struct Head {
     P last;  // the last pooled pair of the run
@@ -148,7 +148,7 @@ constexpr std::size_t max_fan_in(std::uint64_t memory) {
 /// Visits the pairs of all runs in ascending order, in about `memory` bytes. Where there are too many runs
 /// for that, first merges some of them into longer ones in the work folder.
 template <typename P>
-void merge_runs(const WorkFolder& folder, std::vector<Run> runs, std::uint64_t memory,
+void merge_runs(const WorkFolder& folder, std::vector<PairRun> runs, std::uint64_t memory,
                 const std::function<void(std::span<const P>)>& visit) {
   const std::size_t fan_in = max_fan_in(memory);
   std::vector<std::filesystem::path> merged;
@@ -157,10 +157,10 @@ void merge_runs(const WorkFolder& folder, std::vector<Run> runs, std::uint64_t m
     const std::size_t some = std::min(fan_in, runs.size() - fan_in + 1);
     merged.push_back(folder.merged_file(merged.size()));
     BlockWriter writer(merged.back());
-    const std::span<const Run> first = std::span<const Run>(runs).first(some);
+    const std::span<const PairRun> first = std::span<const PairRun>(runs).first(some);
     merge_at_once<P>(first, memory, [&](std::span<const P> pairs) { append_blocks(writer, pairs); });
     std::error_code error;
-    for (const Run& run : first)
+    for (const PairRun& run : first)
       if (std::ranges::find(merged, run.path) != merged.end()) std::filesystem::remove(run.path, error);
     runs.erase(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(some));
     runs.push_back({merged.back(), writer.blocks()});

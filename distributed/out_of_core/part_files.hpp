@@ -32,9 +32,9 @@ class PartFiles {
   /// for_each_piece(source, add), which is to call add(boxes, id) for pieces of its boxes, id(i) being that
   /// of boxes[i]. Returns the parts that can have pairs, named `prefix` and a number.
   template <typename ForEachPiece>
-  std::vector<Part> write(const Partition<D, Real>& partition, const std::string& prefix,
+  std::vector<PartRecord> write(const Partition<D, Real>& partition, const std::string& prefix,
                           const ForEachPiece& for_each_piece) const {
-    std::vector<Part> parts = parts_of(partition, prefix);
+    std::vector<PartRecord> parts = parts_of(partition, prefix);
     for (std::size_t source = 0; source < sources_; ++source) {
       std::vector<BoxFileWriter<D, Real>> writers = writers_for(parts, source);
       Distributor<D, Real> distributor(partition, writers, threads_);
@@ -42,16 +42,16 @@ class PartFiles {
           source, [&](std::span<const Box<D, Real>> boxes, const auto& id) { distributor.add(boxes, id); });
       for (std::size_t part = 0; part < parts.size(); ++part) finish(parts[part], source, writers[part]);
     }
-    for (const Part& part : parts)
+    for (const PartRecord& part : parts)
       for (std::size_t source = 0; source < sources_ && !can_have_pairs(part); ++source)
         folder_.remove_boxes(part, source);
-    std::erase_if(parts, [this](const Part& part) { return !can_have_pairs(part); });
+    std::erase_if(parts, [this](const PartRecord& part) { return !can_have_pairs(part); });
     return parts;
   }
 
   /// Writes a part's boxes of one source anew: those that visit_all(add) gives to add(box, id).
   template <typename VisitAll>
-  void rewrite(Part& part, std::size_t source, const VisitAll& visit_all) const {
+  void rewrite(PartRecord& part, std::size_t source, const VisitAll& visit_all) const {
     folder_.remove_boxes(part, source);
     BoxFileWriter<D, Real> writer(folder_.box_file(part, source), std::size_t{1} << 15);
     visit_all([&writer](const Box<D, Real>& box, std::uint64_t id) { writer.add(box, id); });
@@ -60,15 +60,15 @@ class PartFiles {
 
   /// Calls visit(block) for each block of a part's boxes of one source. Throws CorruptFile.
   template <typename Visit>
-  void for_each_block(const Part& part, std::size_t source, const Visit& visit) const {
+  void for_each_block(const PartRecord& part, std::size_t source, const Visit& visit) const {
     std::vector<std::byte> block;
     for (BlockReader reader(folder_.box_file(part, source), part.blocks[source]); reader.next(block);)
       visit(std::span<const std::byte>(block));
   }
 
  private:
-  static std::vector<Part> parts_of(const Partition<D, Real>& partition, const std::string& prefix) {
-    std::vector<Part> parts(partition.size());
+  static std::vector<PartRecord> parts_of(const Partition<D, Real>& partition, const std::string& prefix) {
+    std::vector<PartRecord> parts(partition.size());
     for (std::size_t part = 0; part < parts.size(); ++part) {
       const auto& region = partition.region(part);
       parts[part].name = prefix + std::to_string(part);
@@ -78,22 +78,22 @@ class PartFiles {
     return parts;
   }
 
-  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<Part>& parts, std::size_t source) const {
+  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<PartRecord>& parts, std::size_t source) const {
     const std::size_t bytes = std::min<std::size_t>(memory_ / 4 / parts.size(), std::size_t{1} << 20);
     std::vector<BoxFileWriter<D, Real>> writers;
     // A block is copied when it is written.
-    for (const Part& part : parts)
+    for (const PartRecord& part : parts)
       writers.emplace_back(folder_.box_file(part, source), bytes / (2 * bytes_per_box<D, Real>)+1);
     return writers;
   }
 
-  static void finish(Part& part, std::size_t source, BoxFileWriter<D, Real>& writer) {
+  static void finish(PartRecord& part, std::size_t source, BoxFileWriter<D, Real>& writer) {
     writer.flush();
     part.boxes[source] = writer.count();
     part.blocks[source] = writer.blocks();
   }
 
-  bool can_have_pairs(const Part& part) const noexcept {
+  bool can_have_pairs(const PartRecord& part) const noexcept {
     return part.boxes[0] > 0 && (sources_ == 1 || part.boxes[1] > 0);
   }
 

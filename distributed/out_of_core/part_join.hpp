@@ -109,12 +109,12 @@ class PartJoin {
     return memory_ / 2 / bytes;
   }
 
-  bool is_too_large(const Part& part) const { return part.boxes[0] + part.boxes[1] > max_boxes(); }
+  bool is_too_large(const PartRecord& part) const { return part.boxes[0] + part.boxes[1] > max_boxes(); }
 
   /// Fills in the runs of `part`, pairs of type P. A part that is too large is joined piece by piece.
   /// Throws CorruptFile and OutOfCoreError.
   template <typename P>
-  void join(Part& part, const Region& region, Finder<D, Real>& finder) {
+  void join(PartRecord& part, const Region& region, Finder<D, Real>& finder) {
     RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
     const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;

@@ -148,7 +148,7 @@ std::optional<Manifest> WorkFolder::read(std::size_t dimension) const {
                                 .is_joined = part.at("is_joined"),
                                 .pairs = part.at("pairs"),
                                 .runs = part.at("runs")});
-      const Part& read = manifest.parts.back();
+      const PartRecord& read = manifest.parts.back();
       if (read.low.size() != dimension || read.high.size() != dimension)
         refuse("part " + read.name + " has " + std::to_string(read.low.size()) + " bounds instead of " +
                std::to_string(dimension));
@@ -161,7 +161,7 @@ std::optional<Manifest> WorkFolder::read(std::size_t dimension) const {
 
 void WorkFolder::write(const Manifest& manifest) const {
   nlohmann::json parts = nlohmann::json::array();
-  for (const Part& part : manifest.parts)
+  for (const PartRecord& part : manifest.parts)
     parts.push_back({{"name", part.name},
                      {"low", json_of(part.low)},
                      {"high", json_of(part.high)},
@@ -189,11 +189,11 @@ void WorkFolder::write(const Manifest& manifest) const {
     fail(path, "cannot be written", error ? error.message() : std::string(std::strerror(errno)));
 }
 
-std::filesystem::path WorkFolder::box_file(const Part& part, std::size_t side) const {
+std::filesystem::path WorkFolder::box_file(const PartRecord& part, std::size_t side) const {
   return path_ / (part.name + (side == 0 ? ".left.boxes" : ".right.boxes"));
 }
 
-std::filesystem::path WorkFolder::pair_file(const Part& part, std::size_t run) const {
+std::filesystem::path WorkFolder::pair_file(const PartRecord& part, std::size_t run) const {
   return path_ / (part.name + "." + std::to_string(run) + ".pairs");
 }
 
@@ -201,7 +201,7 @@ std::filesystem::path WorkFolder::merged_file(std::size_t number) const {
   return path_ / ("merged." + std::to_string(number) + ".pairs");
 }
 
-void WorkFolder::remove_boxes(const Part& part, std::size_t side) const {
+void WorkFolder::remove_boxes(const PartRecord& part, std::size_t side) const {
   std::error_code error;
   std::filesystem::remove(box_file(part, side), error);
   if (error) fail(box_file(part, side), "cannot be removed", error.message());
@@ -209,7 +209,7 @@ void WorkFolder::remove_boxes(const Part& part, std::size_t side) const {
 
 void WorkFolder::remove_others(const Manifest& manifest) const {
   std::set<std::string> needed;
-  for (const Part& part : manifest.parts) {
+  for (const PartRecord& part : manifest.parts) {
     if (!part.is_joined) {
       needed.insert(box_file(part, 0).filename());
       needed.insert(box_file(part, 1).filename());

@@ -12,7 +12,7 @@
 namespace broadside::out_of_core {
 
 /// A part, as the manifest records it.
-struct Part {
+struct PartRecord {
   std::string name;                       ///< such as "12"; "12.3" came of cutting part 12
   std::vector<double> low;                ///< bounds of its region
   std::vector<double> high;               ///<
@@ -31,7 +31,7 @@ struct Manifest {
   bool is_read = false;  ///< all boxes are in the files of parts
   std::array<std::uint64_t, 2> boxes{};
   bool has_large_ids = false;
-  std::vector<Part> parts;
+  std::vector<PartRecord> parts;
 };
 
 /// For one thread at a time. Members throw OutOfCoreError.
@@ -52,8 +52,8 @@ class WorkFolder {
   /// Replaces the manifest atomically.
   void write(const Manifest& manifest) const;
 
-  std::filesystem::path box_file(const Part& part, std::size_t side) const;
-  std::filesystem::path pair_file(const Part& part, std::size_t run) const;
+  std::filesystem::path box_file(const PartRecord& part, std::size_t side) const;
+  std::filesystem::path pair_file(const PartRecord& part, std::size_t run) const;
 
   /// The file of a run that several runs were merged into.
   std::filesystem::path merged_file(std::size_t number) const;
@@ -62,7 +62,7 @@ class WorkFolder {
   void remove_others(const Manifest& manifest) const;
 
   /// Removes a part's file of boxes, if there is one.
-  void remove_boxes(const Part& part, std::size_t side) const;
+  void remove_boxes(const PartRecord& part, std::size_t side) const;
 
   /// Removes all files of the join, and the folder if it is then empty.
   void remove() noexcept;

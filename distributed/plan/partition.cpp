@@ -49,7 +49,7 @@ class Cutter {
     const std::size_t own_index = cuts_.size();
     cuts_.emplace_back();
     const std::size_t parts_below = parts / 2;
-    const std::optional<Choice> choice =
+    const std::optional<CutChoice> choice =
         parts > 1 && depth_left > 0 ? choose(items, parts_below, parts - parts_below) : std::nullopt;
     if (!choice) {
       cuts_[own_index].below = parts_++;
@@ -72,7 +72,7 @@ class Cutter {
   }
 
  private:
-  struct Choice {
+  struct CutChoice {
     std::size_t axis;
     Real at;
     double cost;  // per part, of the costlier side
@@ -80,14 +80,14 @@ class Cutter {
 
   /// The cut that makes the cost per part of the costlier side least; nothing if no cut makes both sides
   /// cheaper than the whole.
-  std::optional<Choice> choose(const BoxesAndPairs& items, std::size_t parts_below, std::size_t parts_above) {
+  std::optional<CutChoice> choose(const BoxesAndPairs& items, std::size_t parts_below, std::size_t parts_above) {
     examined_.clear();
     for (const Items& some : items) examine(some);
     double all = 0;
     for (const Weighted<D, Real>& item : examined_) all += item.cost;
-    std::optional<Choice> best;
+    std::optional<CutChoice> best;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      const std::optional<Choice> choice = choose_on(axis, all, parts_below, parts_above);
+      const std::optional<CutChoice> choice = choose_on(axis, all, parts_below, parts_above);
       if (choice && (!best || choice->cost < best->cost)) best = choice;
     }
     return best;
@@ -106,7 +106,7 @@ class Cutter {
     }
   }
 
-  std::optional<Choice> choose_on(std::size_t axis, double all, std::size_t parts_below,
+  std::optional<CutChoice> choose_on(std::size_t axis, double all, std::size_t parts_below,
                                   std::size_t parts_above) {
     minima_.clear();
     maxima_.clear();
@@ -117,7 +117,7 @@ class Cutter {
     const auto by_coordinate = [](const auto& a, const auto& b) { return a.first < b.first; };
     std::sort(minima_.begin(), minima_.end(), by_coordinate);
     std::sort(maxima_.begin(), maxima_.end(), by_coordinate);
-    std::optional<Choice> best;
+    std::optional<CutChoice> best;
     double below = 0;    // the cost of the items that begin below the cut
     double above = all;  // the cost of the items that end at the cut or above
     std::size_t end = 0;
@@ -128,7 +128,7 @@ class Cutter {
         const double cost =
             std::max(below / static_cast<double>(parts_below), above / static_cast<double>(parts_above));
         const bool is_gain = below < all && above < all;
-        if (is_gain && (!best || cost < best->cost)) best = Choice{axis, at, cost};
+        if (is_gain && (!best || cost < best->cost)) best = CutChoice{axis, at, cost};
       }
       while (begin < minima_.size() && minima_[begin].first == at) below += minima_[begin++].second;
     }

@@ -29,11 +29,11 @@ Boxes boxes_of(const Game& game) {
 /// Where the header ends, and each frame.
 std::vector<std::size_t> ends_of(const std::string& bytes) {
   std::vector<std::size_t> ends = {trace::header_bytes};
-  const std::size_t bytes_a_box = 4 + 6 * static_cast<std::size_t>(bytes[13]);
+  const std::size_t bytes_per_box = 4 + 6 * static_cast<std::size_t>(bytes[13]);
   while (ends.back() < bytes.size()) {
     const std::size_t removed = trace_word(bytes, ends.back() + 8);
     const std::size_t set = trace_word(bytes, ends.back() + 12);
-    ends.push_back(ends.back() + trace::header_bytes + 4 * removed + bytes_a_box * set +
+    ends.push_back(ends.back() + trace::header_bytes + 4 * removed + bytes_per_box * set +
                    trace::checksum_bytes);
   }
   return ends;

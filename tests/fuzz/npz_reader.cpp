@@ -19,10 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       continue;
     }
     // No more than deflate can hold.
-    constexpr std::size_t most_ratio = 1032;
+    constexpr std::size_t max_ratio = 1032;
     std::visit(
         [&](auto& frames) {
-          check_written_and_read_again(format_of_name("npy"), play(*frames, most_ratio * size));
+          check_written_and_read_again(format_of_name("npy"), play(*frames, max_ratio * size));
         },
         reader);
   }

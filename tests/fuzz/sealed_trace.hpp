@@ -38,14 +38,14 @@ inline std::string sealed_trace(std::string bytes) {
   constexpr std::size_t summed_bytes = trace::header_bytes - trace::checksum_bytes;
   const bool has_pairs = bytes.size() > summed_bytes && trace_word(bytes, 8) == trace::pairs_version;
   if (!seal(summed_bytes + (has_pairs ? trace::margin_bytes : 0))) return bytes;
-  const std::uint64_t bytes_a_box =
+  const std::uint64_t bytes_per_box =
       4 + std::uint64_t{2} * static_cast<unsigned char>(bytes[12]) * static_cast<unsigned char>(bytes[13]);
   for (;;) {
     const std::size_t frame = at;
     if (!seal(summed_bytes + (has_pairs ? trace::pair_count_bytes : 0))) return bytes;
     const std::uint64_t removed = trace_word(bytes, frame + 8);
     const std::uint64_t set = trace_word(bytes, frame + 12);
-    std::uint64_t size = 4 * removed + bytes_a_box * set;
+    std::uint64_t size = 4 * removed + bytes_per_box * set;
     if (has_pairs) {
       size += std::uint64_t{trace::filter_bytes} * trace_word(bytes, frame + 16);
       for (const std::size_t list : {20, 24, 28, 32})

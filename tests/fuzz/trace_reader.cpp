@@ -31,7 +31,7 @@ struct Played {
 };
 
 /// As many frames as are kept: enough for what can go wrong, in little memory.
-constexpr std::size_t most_frames = 50;
+constexpr std::size_t max_frames = 50;
 
 Played play(const std::string& bytes) {
   Played played;
@@ -51,7 +51,7 @@ Played play(const std::string& bytes) {
         boxes.at(index(reader.changed()[i])).assign(bounds.begin(), bounds.end());
       }
       for (std::size_t slot = before; slot < boxes.size(); ++slot) expect(!boxes[slot].empty());
-      if (played.frames.size() < most_frames) played.frames.push_back(boxes);
+      if (played.frames.size() < max_frames) played.frames.push_back(boxes);
     }
   } catch (const FileError&) {
     // Refused: the frames before were right.

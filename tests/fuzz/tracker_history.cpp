@@ -18,8 +18,8 @@
 namespace broadside::fuzz {
 namespace {
 
-constexpr std::size_t most_boxes = 48;
-constexpr std::size_t most_frames = 12;
+constexpr std::size_t max_boxes = 48;
+constexpr std::size_t max_frames = 12;
 
 /// Our own algorithms' specs, in turn: with nothing set, and with each value of each choice, and some
 /// numbers.
@@ -72,10 +72,10 @@ class History {
   explicit History(Bytes bytes) : bytes_(bytes) {}
 
   std::vector<laws::WholeFrame<D>> frames() {
-    const std::size_t count = bytes_.below(most_boxes + 1);
+    const std::size_t count = bytes_.below(max_boxes + 1);
     Spread<D> spread(bytes_.next());
     while (frame_.boxes.size() < count) frame_.boxes.push_back(spread.next());
-    while (!bytes_.empty() && frames_.size() < most_frames) act();
+    while (!bytes_.empty() && frames_.size() < max_frames) act();
     end_frame();
     return std::move(frames_);
   }
@@ -118,7 +118,7 @@ class History {
         (bytes_.below(2) == 0 ? frame_.begun_room : frame_.ended_room) = bytes_.below(4);
         break;
       case 10:
-        frame_.boxes.resize(bytes_.below(most_boxes + 1), bytes_.box<D>());
+        frame_.boxes.resize(bytes_.below(max_boxes + 1), bytes_.box<D>());
         break;
       case 11: {
         Spread<D> spread(bytes_.next());
@@ -146,16 +146,16 @@ class History {
   Box<D>& place() { return frame_.boxes[bytes_.below(frame_.boxes.size())]; }
 
   void change_filter() {
-    filters_.resize(most_boxes);
-    const std::size_t first = bytes_.below(most_boxes);
-    const std::size_t step = 1 + bytes_.below(most_boxes);
+    filters_.resize(max_boxes);
+    const std::size_t first = bytes_.below(max_boxes);
+    const std::size_t step = 1 + bytes_.below(max_boxes);
     const Filter filter = bytes_.filter();
-    for (std::size_t i = first; i < most_boxes; i += step) filters_[i] = filter;
+    for (std::size_t i = first; i < max_boxes; i += step) filters_[i] = filter;
   }
 
   void toggle_ignored() {
-    const auto a = BoxId(bytes_.below(most_boxes));
-    const auto b = BoxId(bytes_.below(most_boxes));
+    const auto a = BoxId(bytes_.below(max_boxes));
+    const auto b = BoxId(bytes_.below(max_boxes));
     if (a == b) return;
     const Pair pair{std::min(a, b), std::max(a, b)};
     const auto at = std::ranges::lower_bound(ignored_, pair);
@@ -188,7 +188,7 @@ class History {
   }
 
   void end_frame() {
-    filters_.resize(most_boxes);
+    filters_.resize(max_boxes);
     if (filters_given_) frame_.filters.assign(filters_.begin(), filters_.begin() + frame_.boxes.size());
     if (ignored_given_) frame_.ignored = ignored_;
     std::erase_if(frame_.listed, [&](BoxId id) { return index(id) >= frame_.boxes.size(); });

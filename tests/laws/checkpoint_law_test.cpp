@@ -53,7 +53,7 @@ struct Calls {
 };
 
 /// The calls that so many tests must have led to.
-std::size_t least_calls(std::uint64_t tests, std::size_t boxes) {
+std::size_t min_calls(std::uint64_t tests, std::size_t boxes) {
   // Some boxes are compared with all others between two calls.
   return tests / (Checkpoint::max_tests + 64 * boxes);
 }
@@ -91,7 +91,7 @@ TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneCellAskFor) {
     PairCounter counter;
     finder.find(boxes, counter);
     EXPECT_EQ(counter.count(), tests);
-    EXPECT_GE(calls.count, least_calls(tests, boxes.size()));
+    EXPECT_GE(calls.count, min_calls(tests, boxes.size()));
   });
 }
 
@@ -99,7 +99,7 @@ TEST_P(CheckpointLaw, EndsASearchInOneCellBeforeManyMoreTests) {
   in_dimension([&]<int D>() {
     const std::vector<Box<D>> boxes = boxes_in_one_place<D>(boxes_of_a_search);
     const std::uint64_t tests = std::uint64_t{boxes.size()} * (boxes.size() - 1) / 2;
-    if (least_calls(tests, boxes.size()) < 2) GTEST_SKIP() << "too few boxes under a sanitizer";
+    if (min_calls(tests, boxes.size()) < 2) GTEST_SKIP() << "too few boxes under a sanitizer";
     Finder<D> finder(algorithm(), spec());
     Calls calls{.count = 0, .last = 2};
     ask(finder, calls);
@@ -133,9 +133,9 @@ TEST_P(CheckpointLaw, IsPassedAsOftenAsTheTestsOfOneFrameAskFor) {
     if (is_own(GetParam())) {
       EXPECT_GE(tests, pairs);
     }
-    EXPECT_GE(calls.count, least_calls(tests, count));
+    EXPECT_GE(calls.count, min_calls(tests, count));
     calls = {.count = 0, .last = 1};
-    if (least_calls(tests, count) > 0) {
+    if (min_calls(tests, count) > 0) {
       EXPECT_THROW(
           tracker.update({.boxes = boxes_in_one_place<D>(count, 0.5F), .changed = all}, events, events),
           Enough);

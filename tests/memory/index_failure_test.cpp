@@ -25,7 +25,7 @@ std::vector<BoxId> overlapping(const BoxIndex<D, Real>& index, const Box<D, Real
 
 /// What is wrong with an index of boxes that change; empty if nothing is.
 template <int D, typename Real>
-std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector) {
+std::string play(std::size_t max_boxes, std::uint64_t seed, Injector& injector) {
   Rng rng(seed);
   BoxIndex<D, Real> index;
   std::vector<Box<D, Real>> boxes;
@@ -34,7 +34,7 @@ std::string play(std::size_t most_boxes, std::uint64_t seed, Injector& injector)
   everywhere.min.fill(-1);
   everywhere.max.fill(1e6F);
   for (int frame = 0; frame < 8; ++frame) {
-    boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
+    boxes.resize(rng.below(max_boxes + 1), absent_box<D, Real>());
     const std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(boxes.size(), rng);
     std::vector<BoxId> changed;
     for (std::size_t i = 0; i < boxes.size(); ++i) {

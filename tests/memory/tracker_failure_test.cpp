@@ -32,18 +32,18 @@ Filter any_filter(Rng& rng) {
 /// Frames in which boxes come, move and go, filters and ignored pairs change. Some come twice: as one that is
 /// handed in again because it has failed.
 template <int D, typename Real>
-std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t most_boxes, Rng& rng) {
+std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t max_boxes, Rng& rng) {
   std::vector<WholeFrame<D, Real>> frames;
   WholeFrame<D, Real> frame;
   // Where many boxes move by little, trackers enlarge them.
-  const bool trembles = most_boxes > 600 && rng.one_in(2);
-  frame.boxes = lattice_boxes<D, Real>(trembles ? most_boxes : rng.below(most_boxes + 1), rng);
-  std::vector<Filter> filters(most_boxes);
+  const bool trembles = max_boxes > 600 && rng.one_in(2);
+  frame.boxes = lattice_boxes<D, Real>(trembles ? max_boxes : rng.below(max_boxes + 1), rng);
+  std::vector<Filter> filters(max_boxes);
   std::vector<Pair> ignored;
   bool has_filters = rng.one_in(3);
   bool has_ignored = rng.one_in(2);
   while (frames.size() < count) {
-    if (rng.one_in(trembles ? 20 : 4)) frame.boxes.resize(rng.below(most_boxes + 1), absent_box<D, Real>());
+    if (rng.one_in(trembles ? 20 : 4)) frame.boxes.resize(rng.below(max_boxes + 1), absent_box<D, Real>());
     std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(frame.boxes.size(), rng);
     const std::size_t part = trembles ? 20 : rng.one_in(3) ? 1 : rng.one_in(2) ? 4 : 20;
     if (trembles) {
@@ -59,9 +59,9 @@ std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t mo
     }
     if (rng.one_in(8)) has_filters = !has_filters;
     if (rng.one_in(8)) has_ignored = !has_ignored;
-    for (std::size_t i = rng.below(4); i > 0; --i) filters[rng.below(most_boxes)] = any_filter(rng);
+    for (std::size_t i = rng.below(4); i > 0; --i) filters[rng.below(max_boxes)] = any_filter(rng);
     for (std::size_t i = rng.below(6); i > 0; --i) {
-      const std::size_t near = std::min<std::size_t>(most_boxes, 12);
+      const std::size_t near = std::min<std::size_t>(max_boxes, 12);
       const auto a = BoxId(rng.below(near));
       const auto b = BoxId(rng.below(near));
       const Pair pair{std::min(a, b), std::max(a, b)};

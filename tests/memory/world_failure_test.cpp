@@ -28,8 +28,8 @@ namespace {
 template <int D, typename Real>
 class Model {
  public:
-  Model(const WorldOptions& options, std::size_t most_boxes, std::uint64_t seed, Injector& injector)
-      : rng_(seed), most_boxes_(most_boxes), injector_(injector) {
+  Model(const WorldOptions& options, std::size_t max_boxes, std::uint64_t seed, Injector& injector)
+      : rng_(seed), max_boxes_(max_boxes), injector_(injector) {
     while (!injector_.attempt([&] { world_.emplace(options); })) {
     }
   }
@@ -41,7 +41,7 @@ class Model {
       case 1:
         return add(1 + rng_.below(2));
       case 2:
-        return add(rng_.below(most_boxes_ + 1));
+        return add(rng_.below(max_boxes_ + 1));
       case 3:
       case 4:
         return move();
@@ -96,7 +96,7 @@ class Model {
 
   Box<D, Real> any_box() {
     for (;;) {
-      const Box<D, Real> box = lattice_boxes<D, Real>(std::max<std::size_t>(most_boxes_, 1), rng_).front();
+      const Box<D, Real> box = lattice_boxes<D, Real>(std::max<std::size_t>(max_boxes_, 1), rng_).front();
       if (is_present(box)) return box;
     }
   }
@@ -289,7 +289,7 @@ class Model {
   }
 
   Rng rng_;
-  std::size_t most_boxes_;
+  std::size_t max_boxes_;
   Injector& injector_;
   std::optional<World<D, Real>> world_;
   Known known_;
@@ -369,8 +369,8 @@ class WorldFailure : public MemoryTest {
     std::uint64_t failures = 0;
     const std::int64_t blocks = blocks_held();
     std::string text;
-    const auto run = [&](std::size_t steps, std::size_t most_boxes, std::uint64_t seed, Injector injector) {
-      Model<D, Real> model(options, most_boxes, seed, injector);
+    const auto run = [&](std::size_t steps, std::size_t max_boxes, std::uint64_t seed, Injector injector) {
+      Model<D, Real> model(options, max_boxes, seed, injector);
       text.clear();
       for (std::size_t i = 0; text.empty() && i < steps; ++i) text = model.act();
       if (text.empty()) text = model.end();

@@ -125,7 +125,7 @@ class History {
 
 template <int D, typename Real>
 Box<D, Real> drawn(Rng& rng) {
-  const Box<D> box = random_box<D>(rng, {.places = 40, .most_extent = 5, .infinite_one_in = 100});
+  const Box<D> box = random_box<D>(rng, {.places = 40, .max_extent = 5, .infinite_one_in = 100});
   if constexpr (sizeof(Real) == sizeof(float))
     return box;
   else

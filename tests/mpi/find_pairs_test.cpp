@@ -54,17 +54,17 @@ template <int D>
 std::vector<std::vector<Box<D>>> scenes() {
   Rng rng(11);
   std::vector<std::vector<Box<D>>> scenes(4);
-  scenes[0] = random_boxes<D>(rng, 1500, {.places = 200, .most_extent = 4, .infinite_one_in = 400});
+  scenes[0] = random_boxes<D>(rng, 1500, {.places = 200, .max_extent = 4, .infinite_one_in = 400});
   for (std::size_t i = 0; i < 1500; i += 7) scenes[0][i] = absent_box<D>();
   for (int i = 0; i < 3000; ++i) {
-    Box<D> box = random_box<D>(rng, {.places = 60, .most_extent = 1, .infinite_one_in = 0});
+    Box<D> box = random_box<D>(rng, {.places = 60, .max_extent = 1, .infinite_one_in = 0});
     const auto cluster = static_cast<float>(rng.whole(0, 9));
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] += cluster * cluster * 20;
       box.max[axis] += cluster * cluster * 20;
     }
     scenes[1].push_back(box);
-    scenes[2].push_back(random_box<D>(rng, {.places = 900, .most_extent = 2, .infinite_one_in = 0}));
+    scenes[2].push_back(random_box<D>(rng, {.places = 900, .max_extent = 2, .infinite_one_in = 0}));
     if (i % 300 == 0) scenes[2].back().max[i % D] += 800;
   }
   Box<D> everywhere;

@@ -59,17 +59,17 @@ std::vector<std::vector<Box<D>>> scenes() {
   std::vector<std::vector<Box<D>>> scenes = {{}};
   for (const std::size_t count : {1U, 2U, 16U, 17U, 60U, 250U, 600U})
     scenes.push_back(random_boxes<D>(rng, count, {.places = 100}));
-  scenes.push_back(random_boxes<D>(rng, 500, {.places = 2000, .most_extent = 3, .infinite_one_in = 0}));
+  scenes.push_back(random_boxes<D>(rng, 500, {.places = 2000, .max_extent = 3, .infinite_one_in = 0}));
   scenes.push_back(random_boxes<D>(rng, 250, {.places = 5, .infinite_one_in = 0}));
   scenes.push_back(std::vector<Box<D>>(200, random_box<D>(rng)));
-  std::vector<Box<D>> mixed = random_boxes<D>(rng, 500, {.places = 600, .most_extent = 5});
+  std::vector<Box<D>> mixed = random_boxes<D>(rng, 500, {.places = 600, .max_extent = 5});
   for (Box<D>& box : mixed) {
     for (int axis = 0; axis < D && rng.one_in(8); ++axis)
       box.max[axis] += static_cast<float>(1 << rng.whole(0, 10));
   }
   scenes.push_back(std::move(mixed));
   std::vector<Box<D>> line =
-      random_boxes<D>(rng, 300, {.places = 4000, .most_extent = 3, .infinite_one_in = 0});
+      random_boxes<D>(rng, 300, {.places = 4000, .max_extent = 3, .infinite_one_in = 0});
   for (Box<D>& box : line) {
     for (int axis = 1; axis < D; ++axis) box.min[axis] = box.max[axis] = 1;
   }

@@ -47,7 +47,7 @@ void on_each_instruction_set(Body body) {
 /// How boxes are drawn: on a lattice, so that they touch and coincide.
 struct BoxKind {
   int places = 60;  ///< minima are whole numbers below this one
-  int most_extent = 10;
+  int max_extent = 10;
   std::size_t infinite_one_in = 40;  ///< sides that are infinite; 0: none
 };
 
@@ -57,7 +57,7 @@ Box<D> random_box(Rng& rng, const BoxKind& kind = {}) {
   Box<D> box;
   for (int axis = 0; axis < D; ++axis) {
     box.min[axis] = static_cast<float>(rng.whole(0, kind.places - 1));
-    box.max[axis] = box.min[axis] + static_cast<float>(rng.whole(0, kind.most_extent));
+    box.max[axis] = box.min[axis] + static_cast<float>(rng.whole(0, kind.max_extent));
     if (is_infinite()) box.min[axis] = -infinity;
     if (is_infinite()) box.max[axis] = infinity;
   }

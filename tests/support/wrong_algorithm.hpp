@@ -47,7 +47,7 @@ inline Algorithm spoilt(std::string name, const Spoil& spoil) {
   return algorithm;
 }
 
-inline Algorithm misses_a_pair() {
+inline Algorithm misses_per_pair() {
   return spoilt("misses", [](std::vector<Pair>& pairs, std::size_t) { pairs.pop_back(); });
 }
 
@@ -56,7 +56,7 @@ inline Algorithm repeats_a_pair() {
 }
 
 /// Puts a pair that does not overlap in the place of one that does, so that their number is right.
-inline void mistake_a_pair(std::vector<Pair>& pairs) {
+inline void mistakes_per_pair(std::vector<Pair>& pairs) {
   const auto last = static_cast<std::uint32_t>(pairs.size());
   for (std::uint32_t j = 1; j <= last; ++j) {
     if (pairs[j - 1] != Pair{BoxId{0}, BoxId{j}}) {
@@ -66,8 +66,8 @@ inline void mistake_a_pair(std::vector<Pair>& pairs) {
   }
 }
 
-inline Algorithm mistakes_a_pair() {
-  return spoilt("mistakes", [](std::vector<Pair>& pairs, std::size_t) { mistake_a_pair(pairs); });
+inline Algorithm mistakes_per_pair() {
+  return spoilt("mistakes", [](std::vector<Pair>& pairs, std::size_t) { mistakes_per_pair(pairs); });
 }
 
 }  // namespace broadside::lab

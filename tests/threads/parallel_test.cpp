@@ -283,9 +283,9 @@ TEST(Parallel, KeepsABoundedNumberOfPairs) {
   parallel.start(with(elsewhere, 2), 1000);
   std::uint64_t pairs = 0;
   PairFunction count([&pairs](std::span<const Pair> chunk) { pairs += chunk.size(); });
-  constexpr std::size_t pairs_a_part = std::size_t{1} << 20;  // 8 MiB
+  constexpr std::size_t pairs_per_part = std::size_t{1} << 20;  // 8 MiB
   parallel.search(24, count, [](Range parts, std::size_t, PairSink& sink) {
-    for (std::size_t i = 0; i < (parts.end - parts.begin) * pairs_a_part / 512; ++i) {
+    for (std::size_t i = 0; i < (parts.end - parts.begin) * pairs_per_part / 512; ++i) {
       Pair* const out = sink.room(512);
       std::fill_n(out, 512, Pair{BoxId{0}, BoxId{1}});
       sink.commit(512);
@@ -293,7 +293,7 @@ TEST(Parallel, KeepsABoundedNumberOfPairs) {
     return Statistics{};
   });
   count.flush();
-  EXPECT_EQ(pairs, 24 * pairs_a_part);
+  EXPECT_EQ(pairs, 24 * pairs_per_part);
   EXPECT_GT(elsewhere.runs, 1);
 }
 

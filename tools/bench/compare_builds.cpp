@@ -80,7 +80,7 @@ void run(const std::vector<std::string>& programs, std::size_t rounds,
   const lab::Build build = lab::this_build();
   fmt::print("{} over {}, {} rounds; {}, {} cores; {}\n", programs[1], programs[0], rounds,
              lab::this_machine().cpu, lab::this_machine().cores, build.compiler);
-  lab::Columns columns("<>>>");
+  lab::AlignedColumns columns("<>>>");
   columns.add({"case and algorithm", "old ms", "new ms", "new over old"});
   std::vector<lab::RatiosBySeed> pairs;
   for (const auto& [name, both] : times) {

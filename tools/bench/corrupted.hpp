@@ -25,29 +25,29 @@ namespace broadside::bench {
 
 /// What happens to one pair: of a search's pairs, or of a frame's events. Tracker delivers each event of a
 /// frame once whatever an algorithm writes, so a doubled event is one that comes again in the next frame.
-enum class Fault { dropped, doubled, swapped };
+enum class CorruptionKind { dropped, doubled, swapped };
 
 /// A corruption, drawn by its number, and how far it is.
 struct Corruption {
   Corruption(std::uint64_t number, std::size_t of_calls)
-      : random(number), call(random() % of_calls), fault(static_cast<Fault>(random() % 3)) {}
+      : random(number), call(random() % of_calls), fault(static_cast<CorruptionKind>(random() % 3)) {}
 
   std::mt19937_64 random;
   std::size_t
       call;  ///< the first search or update, counted over all, in which there may be a pair to corrupt
-  Fault fault;
+  CorruptionKind fault;
   std::size_t calls = 0;  ///< that were made
   bool is_applied = false;
   std::vector<Pair> again{};  ///< what the next frame reports once more
 };
 
 /// Corrupts one of the sorted pairs of `boxes` boxes, of which there is at least one.
-inline void corrupt(std::vector<Pair>& pairs, Fault fault, std::size_t boxes, std::mt19937_64& random) {
+inline void corrupt(std::vector<Pair>& pairs, CorruptionKind fault, std::size_t boxes, std::mt19937_64& random) {
   const Pair from{BoxId(random() % boxes), BoxId(random() % boxes)};
   auto found = std::ranges::lower_bound(pairs, from);
   if (found == pairs.end()) found = pairs.begin();
   const Pair chosen = *found;
-  if (fault == Fault::doubled) {
+  if (fault == CorruptionKind::doubled) {
     pairs.push_back(chosen);
     return;
   }
@@ -57,7 +57,7 @@ inline void corrupt(std::vector<Pair>& pairs, Fault fault, std::size_t boxes, st
     const std::size_t b = random() % boxes;
     if (a != b) other = {BoxId(std::min(a, b)), BoxId(std::max(a, b))};
   }
-  if (fault == Fault::swapped)
+  if (fault == CorruptionKind::swapped)
     *found = other;
   else
     pairs.erase(found);
@@ -143,7 +143,7 @@ class CorruptedFollower final : public Follower<D> {
     if (!is_due || (begins.empty() && ends.empty())) return;
     std::vector<Pair>& events =
         ends.empty() || (!begins.empty() && corruption.random() % 2 == 0) ? begins : ends;
-    if (corruption.fault == Fault::doubled) {
+    if (corruption.fault == CorruptionKind::doubled) {
       corruption.again = {events[corruption.random() % events.size()]};
       return;
     }
@@ -222,7 +222,7 @@ inline constexpr std::size_t corruption_rounds = 4;
 
 inline lab::Effort corruption_effort(std::size_t definition_boxes) {
   lab::Effort effort{.budget_seconds = 1e6, .history_seconds = 1e6, .share_seconds = 0};
-  effort.least_rounds = effort.most_rounds = effort.slow_rounds = effort.far_rounds = corruption_rounds;
+  effort.min_rounds = effort.max_rounds = effort.slow_rounds = effort.far_rounds = corruption_rounds;
   effort.definition_boxes = definition_boxes;
   return effort;
 }
@@ -277,10 +277,10 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
             "grid", [&is_applied, number, &request](std::vector<Pair>& pairs, std::size_t boxes) {
               // The same place in the array each time, so that it is the same pair while that holds.
               std::mt19937_64 random(number);
-              const auto fault = static_cast<Fault>(random() % 3);
+              const auto fault = static_cast<CorruptionKind>(random() % 3);
               if (boxes != request.boxes || pairs.empty()) return;
               // A tracker that finds anew takes no pair twice.
-              corrupt(pairs, request.frames > 0 && fault == Fault::doubled ? Fault::dropped : fault, boxes,
+              corrupt(pairs, request.frames > 0 && fault == CorruptionKind::doubled ? CorruptionKind::dropped : fault, boxes,
                       random);
               is_applied = true;
             });

@@ -41,7 +41,7 @@ Caught corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) 
 }
 
 int run(std::size_t count) {
-  lab::Columns columns("<>>>");
+  lab::AlignedColumns columns("<>>>");
   columns.add({"what was corrupted", "corruptions", "caught", ""});
   bool all_caught = true;
   const auto add = [&](const std::string& what, const Caught& caught) {

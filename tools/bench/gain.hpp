@@ -75,7 +75,7 @@ inline double milliseconds_of(const std::function<void()>& run) {
 /// Adds a row: `make(workers)` makes the same work for these.
 inline void add_gain(const std::string& name,
                      const std::function<std::unique_ptr<Work>(const Workers&)>& make, std::size_t rounds,
-                     lab::Columns& columns) {
+                     lab::AlignedColumns& columns) {
   Accountant accountant;
   const auto one = make({});
   const auto two = make({.threads = 2});
@@ -117,13 +117,13 @@ inline void add_gain(const std::string& name,
                fmt::format("{:.0f} %", part * 100), with(8), with(16)});
 }
 
-inline lab::Columns gain_columns() {
-  lab::Columns columns("<>>>>>>>");
+inline lab::AlignedColumns gain_columns() {
+  lab::AlignedColumns columns("<>>>>>>>");
   columns.add({"", "one thread, ms", "two threads", "two copies", "of these", "shared", "8", "16"});
   return columns;
 }
 
-inline std::string text_of_gains(const lab::Columns& columns) {
+inline std::string text_of_gains(const lab::AlignedColumns& columns) {
   return columns.text("  ") + "(how many times as fast as one thread; 8 and 16 by the part that is shared)\n";
 }
 

@@ -133,8 +133,8 @@ void run(const std::string& before, const std::string& after, std::size_t rounds
              lab::grouped(mesh.vertices.size()), lab::grouped(mesh.edges.size()),
              lab::grouped(mesh.faces.size()), rounds - 1, machine.cpu, machine.cores, build.compiler,
              build.revision);
-  lab::Columns gains = gain_columns();
-  lab::Columns doubles("<>>>>");
+  lab::AlignedColumns gains = gain_columns();
+  lab::AlignedColumns doubles("<>>>>");
   doubles.add({"", "pairs", "floats, ms", "doubles, ms", "ratio"});
   const auto join = [&](const std::string& name, const lab::MeshElements& left,
                         const lab::MeshElements& right) {

@@ -32,16 +32,16 @@ namespace {
 using lab::peers::Answers;
 
 /// Something that answers a batch.
-struct Participant {
+struct QueryRacer {
   std::string name;
   std::function<Answers()> ask;
   std::vector<double> samples{};  // ns a query
 };
 
-void race(const std::string& what, std::vector<Participant> participants, std::size_t queries,
+void race(const std::string& what, std::vector<QueryRacer> participants, std::size_t queries,
           std::size_t rounds) {
   const Answers expected = participants.front().ask();
-  for (const Participant& participant : participants) {
+  for (const QueryRacer& participant : participants) {
     const Answers found = participant.ask();
     if (found != expected)
       throw std::runtime_error(fmt::format("{}: {} found {}; expected the {} that {} found, the same ones",
@@ -50,7 +50,7 @@ void race(const std::string& what, std::vector<Participant> participants, std::s
   }
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < participants.size(); ++i) {
-      Participant& participant = participants[(i + round) % participants.size()];
+      QueryRacer& participant = participants[(i + round) % participants.size()];
       const lab::Stopwatch watch;
       const Answers found = participant.ask();
       participant.samples.push_back(watch.milliseconds() * 1e6 / static_cast<double>(queries));
@@ -60,7 +60,7 @@ void race(const std::string& what, std::vector<Participant> participants, std::s
   const double own = lab::median(participants.front().samples);
   const auto count = static_cast<double>(queries);
   fmt::print("{:<32}{:>9.1f}", what, static_cast<double>(expected.count) / count);
-  for (const Participant& participant : participants) {
+  for (const QueryRacer& participant : participants) {
     const double time = lab::median(participant.samples);
     fmt::print("  {} {:.0f}", participant.name, time);
     if (&participant != &participants.front()) fmt::print(" ({:.1f}x)", time / own);
@@ -94,8 +94,8 @@ class Queries {
     boxes("box, about 4 hits", 1);
     boxes("box, about 100 hits", D == 2 ? 9 : 5);
     const std::vector<Ray<D>> rays = make_rays();
-    std::vector<Participant> first = {{"broadside", [&] { return own_first_hits(rays); }}};
-    std::vector<Participant> all = {{"broadside", [&] { return own_all_hits(rays); }}};
+    std::vector<QueryRacer> first = {{"broadside", [&] { return own_first_hits(rays); }}};
+    std::vector<QueryRacer> all = {{"broadside", [&] { return own_all_hits(rays); }}};
     for (const auto& peer : peers_) {
       if (!peer->has_rays()) continue;
       first.push_back({peer->name(), [&rays, &peer] { return peer->first_hits(rays); }});
@@ -123,7 +123,7 @@ class Queries {
       for (int axis = 0; axis < D; ++axis)
         query.max[axis] = query.min[axis] + times * (like.max[axis] - like.min[axis]);
     }
-    std::vector<Participant> participants = {{"broadside", [&] { return own_overlapping(queries); }}};
+    std::vector<QueryRacer> participants = {{"broadside", [&] { return own_overlapping(queries); }}};
     for (const auto& peer : peers_) {
       if (peer->has_boxes())
         participants.push_back({peer->name(), [&queries, &peer] { return peer->overlapping(queries); }});

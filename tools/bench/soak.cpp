@@ -34,7 +34,7 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-class Boxes {
+class SoakBoxes {
  public:
   Box2 next() {
     const float x = unit() * 1000;
@@ -66,7 +66,7 @@ void verify(const World2& world, const std::vector<Handle>& handles, std::uint64
 }
 
 void run(std::uint64_t frames, const std::string& spec) {
-  Boxes boxes;
+  SoakBoxes boxes;
   World2 world(spec);
   std::vector<Handle> handles;
   for (std::size_t i = 0; i < count; ++i) handles.push_back(world.add(boxes.next()));

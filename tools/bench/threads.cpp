@@ -27,7 +27,7 @@ constexpr const char* trackers = "auto";
 constexpr const char* finders = "bvh,auto";
 constexpr std::array<double, 2> fractions = {0.1, 1};
 
-struct Wishes {
+struct ThreadBenchmarkOptions {
   std::size_t rounds;
   std::string scene;
   std::size_t followed_boxes;
@@ -87,7 +87,7 @@ class Following final : public Work {
 };
 
 template <int D>
-void compare_all(const Wishes& wishes, lab::Columns& columns) {
+void compare_all(const ThreadBenchmarkOptions& wishes, lab::AlignedColumns& columns) {
   const lab::Catalogue catalogue;
   const lab::NamedScene named = lab::find_scene(wishes.scene);
   const auto history = [&](std::size_t boxes, std::size_t frames, double moving) {
@@ -113,7 +113,7 @@ void compare_all(const Wishes& wishes, lab::Columns& columns) {
   }
 }
 
-void run(const Wishes& wishes) {
+void run(const ThreadBenchmarkOptions& wishes) {
   if (wishes.rounds < 2)
     throw std::invalid_argument(fmt::format(
         "the number of rounds is {}; expected 2 or more, the first of which does not count", wishes.rounds));
@@ -121,7 +121,7 @@ void run(const Wishes& wishes) {
   const lab::Build build = lab::this_build();
   fmt::print("{}, medians of {} rounds; {}, {} cores; {}, {}\n", wishes.scene, wishes.rounds - 1, machine.cpu,
              machine.cores, build.compiler, build.revision);
-  lab::Columns columns = gain_columns();
+  lab::AlignedColumns columns = gain_columns();
   compare_all<2>(wishes, columns);
   compare_all<3>(wishes, columns);
   fmt::print("{}", text_of_gains(columns));

@@ -46,7 +46,7 @@ using AnyHistory =
     std::variant<lab::History<2>, lab::History<3>, lab::History<2, double>, lab::History<3, double>>;
 
 /// What is advised on.
-struct Boxes {
+struct AdvisedHistory {
   std::string name;
   std::string warning;
   AnyHistory history;
@@ -76,7 +76,7 @@ AnyHistory whole(lab::FrameReader<D, Real>& frames, std::string& warning) {
   return history;
 }
 
-Boxes read_file(const AdviseArguments& arguments) {
+AdvisedHistory read_file(const AdviseArguments& arguments) {
   lab::ReadOptions options = read_options(arguments.read, arguments.input);
   // What is set moving is of floats.
   if (asks_for_motion(arguments)) {
@@ -85,7 +85,7 @@ Boxes read_file(const AdviseArguments& arguments) {
     options.precision = lab::Precision::float32;
   }
   lab::BoxFile file = lab::open_file(arguments.input, options);
-  Boxes boxes{file.name, {}, {}};
+  AdvisedHistory boxes{file.name, {}, {}};
   boxes.history = std::visit([&](const auto& frames) { return whole(*frames, boxes.warning); }, file.frames);
   if (!asks_for_motion(arguments)) return boxes;
   const lab::SceneRequest request = request_of(arguments);
@@ -102,7 +102,7 @@ Boxes read_file(const AdviseArguments& arguments) {
   return boxes;
 }
 
-Boxes make_scene(const AdviseArguments& arguments, const lab::NamedScene& named) {
+AdvisedHistory make_scene(const AdviseArguments& arguments, const lab::NamedScene& named) {
   lab::SceneRequest request = request_of(arguments);
   const int dimension = arguments.read.dimension != 0  ? arguments.read.dimension
                         : named.scene.has_dimension(2) ? 2
@@ -155,7 +155,7 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
         fmt::format("--algorithms is '{}'; expected one of Broadside's own among them: other libraries, and "
                     "what is from the literature, are never advised",
                     options.algorithms));
-  Boxes boxes = reads ? read_file(arguments) : make_scene(arguments, named);
+  AdvisedHistory boxes = reads ? read_file(arguments) : make_scene(arguments, named);
 
   on_signal(OnSignal::note_then_end);
   lab::Advice advice;

@@ -29,10 +29,10 @@ namespace {
 constexpr std::size_t drawn_boxes = 300;
 
 /// Of more boxes a picture is a black square, and too large a file.
-constexpr std::size_t most_boxes = 20'000;
+constexpr std::size_t max_boxes = 20'000;
 
 /// Of a scene that is made; a file has as many as it has.
-constexpr std::size_t most_frames = 10'000;
+constexpr std::size_t max_frames = 10'000;
 
 struct DrawArguments {
   std::vector<std::string> scenes;
@@ -85,9 +85,9 @@ std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::stri
 std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
   if (arguments.frame.empty()) return 0;
   const std::size_t frame = read_index("--frame", arguments.frame);
-  if (scene.kind != lab::SceneKind::file && frame > most_frames)
+  if (scene.kind != lab::SceneKind::file && frame > max_frames)
     throw Unusable(fmt::format("--frame is {}; expected at most {}, as all frames before it are made", frame,
-                               most_frames));
+                               max_frames));
   return frame;
 }
 
@@ -114,9 +114,9 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   const std::size_t boxes = arguments.boxes.empty() ? drawn_boxes : read_count("-n", arguments.boxes);
-  if (boxes > most_boxes)
+  if (boxes > max_boxes)
     throw Unusable(fmt::format("-n is {}; expected at most {}, which is more than an eye tells apart", boxes,
-                               most_boxes));
+                               max_boxes));
   const lab::Drawing drawing =
       lab::draw_scene(named, dimension, 0, entries(catalogue, arguments.algorithms, dimension), boxes,
                       arguments.seed.value_or(lab::SceneRequest{}.seed), frame_of(arguments, named.scene));

@@ -17,8 +17,8 @@ namespace broadside::cli {
 namespace {
 
 constexpr std::size_t standard_width = 80;
-constexpr std::size_t least_width = 40;
-constexpr std::size_t most_width = 100;  // longer lines are hard to read
+constexpr std::size_t min_width = 40;
+constexpr std::size_t max_width = 100;  // longer lines are hard to read
 
 std::size_t terminal_width() {
   std::size_t width = 0;
@@ -27,7 +27,7 @@ std::size_t terminal_width() {
     std::from_chars(text.data(), text.data() + text.size(), width);
   }
   if (width == 0) width = lab::platform::terminal_width();
-  return width == 0 ? standard_width : std::clamp(width, least_width, most_width);
+  return width == 0 ? standard_width : std::clamp(width, min_width, max_width);
 }
 
 /// The words of `text` in lines of at most `width`; the first begins in column `column`, the others
@@ -74,7 +74,7 @@ std::string HelpFormatter::make_subcommand(const CLI::App* verb) const {
   return entry(verb->get_name(), verb->get_description());
 }
 
-HelpFormatter::Entry HelpFormatter::entry_of(const CLI::Option& option, bool is_positional) const {
+HelpFormatter::OptionText HelpFormatter::entry_of(const CLI::Option& option, bool is_positional) const {
   std::string name;
   if (is_positional) {
     name = option.get_name(true, false);
@@ -93,7 +93,7 @@ HelpFormatter::Entry HelpFormatter::entry_of(const CLI::Option& option, bool is_
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
-  const Entry shown = entry_of(*option, is_positional);
+  const OptionText shown = entry_of(*option, is_positional);
   return entry(shown.name, shown.text);
 }
 

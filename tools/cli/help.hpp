@@ -23,11 +23,11 @@ class HelpFormatter : public CLI::Formatter {
 
  protected:
   /// What is shown of an option: how it is written, such as "-o, --output FILE", and what it does.
-  struct Entry {
+  struct OptionText {
     std::string name;
     std::string text;
   };
-  Entry entry_of(const CLI::Option& option, bool is_positional) const;
+  OptionText entry_of(const CLI::Option& option, bool is_positional) const;
 
  private:
   std::string entry(const std::string& name, const std::string& text) const;

@@ -123,7 +123,7 @@ Exit run(const lab::Catalogue& catalogue) {
         fmt::format("{} ({})", format.missing.empty() ? format.summary : "not there: " + format.missing,
                     fmt::join(format.extensions, " ")));
     std::string_view suffix = "; default";
-    for (const lab::Part& part : format.parts) {
+    for (const lab::ElementKind& part : format.parts) {
       print_wrapped(fmt::format("      --boxes {}  ", part.name), fmt::format("{}{}", part.summary, suffix));
       suffix = "";
     }

@@ -51,9 +51,9 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
 }
 
 /// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
-class Join {
+class PairsCommand {
  public:
-  Join(const PairsArguments& arguments, const lab::Catalogue& catalogue)
+  PairsCommand(const PairsArguments& arguments, const lab::Catalogue& catalogue)
       : arguments_(arguments), entry_(entry_of(arguments, catalogue)) {
     const lab::Stopwatch watch;
     if (arguments.is_swept) {
@@ -70,8 +70,8 @@ class Join {
 
   /// Says how many pairs were found up to now; how many there will be is not known.
   void show(std::uint64_t pairs) {
-    constexpr std::uint64_t pairs_a_report = std::uint64_t{1} << 20;
-    if (pairs - shown_pairs_ < pairs_a_report) return;
+    constexpr std::uint64_t pairs_per_report = std::uint64_t{1} << 20;
+    if (pairs - shown_pairs_ < pairs_per_report) return;
     shown_pairs_ = pairs;
     progress_.show(
         fmt::format("joining by {}: {}", entry_.spec.text(), lab::counted(pairs, "pair", "pairs")));
@@ -178,11 +178,11 @@ class Join {
 };
 
 void write_all(std::span<const Pair> pairs, lab::PairFile& file) {
-  constexpr std::size_t pairs_a_report = std::size_t{1} << 16;
+  constexpr std::size_t pairs_per_report = std::size_t{1} << 16;
   ProgressLine progress;
-  for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_a_report) {
+  for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_per_report) {
     progress.show("writing pairs", static_cast<double>(begin) / static_cast<double>(pairs.size()));
-    file.write(pairs.subspan(begin, std::min(pairs_a_report, pairs.size() - begin)));
+    file.write(pairs.subspan(begin, std::min(pairs_per_report, pairs.size() - begin)));
   }
 }
 
@@ -190,7 +190,7 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check(arguments, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
-  Join join(arguments, catalogue);
+  PairsCommand join(arguments, catalogue);
   if (arguments.counts) {
     PairCounter counter;
     join.find(counter);

@@ -44,14 +44,14 @@ std::string axes_text(const FileInfo& info) {
   return table.text("  ");
 }
 
-/// A line for each power of two; beyond most_lines, the smallest sizes share the first line.
+/// A line for each power of two; beyond max_lines, the smallest sizes share the first line.
 std::string sizes_text(const FileInfo& info) {
   if (info.sizes.empty()) return {};
-  constexpr std::size_t most_lines = 16;
+  constexpr std::size_t max_lines = 16;
   constexpr double longest_bar = 40;
   std::vector<SizeBin> bins = info.sizes;
-  const bool is_merged = bins.size() > most_lines;
-  while (bins.size() > most_lines) {
+  const bool is_merged = bins.size() > max_lines;
+  while (bins.size() > max_lines) {
     bins[1].boxes += bins[0].boxes;
     bins.erase(bins.begin());
   }
@@ -126,15 +126,15 @@ std::string reading_text(const FileInfo& info) {
   if (info.format.empty()) return "";
   const auto size = static_cast<double>(info.bytes);
   // What takes no time has no speed: what is measured is the opening.
-  constexpr std::uint64_t least_bytes = 1'000'000;
-  constexpr std::uint64_t least_boxes = 50'000;
-  if (info.bytes > 0 ? info.bytes < least_bytes : info.boxes < least_boxes)
+  constexpr std::uint64_t min_bytes = 1'000'000;
+  constexpr std::uint64_t min_boxes = 50'000;
+  if (info.bytes > 0 ? info.bytes < min_bytes : info.boxes < min_boxes)
     return fmt::format("  read in {}{}\n", duration(info.seconds), info.bytes > 0 ? ": " + bytes(size) : "");
   const double seconds = std::max(info.seconds, 1e-9);
-  const double boxes_a_second = static_cast<double>(info.boxes) / seconds;
+  const double boxes_per_second = static_cast<double>(info.boxes) / seconds;
   std::string text = fmt::format("  read in {}: ", duration(info.seconds));
   if (info.bytes > 0) text += fmt::format("{}, {} a second, ", bytes(size), bytes(size / seconds));
-  return text + fmt::format("{} boxes a second\n", whole(boxes_a_second));
+  return text + fmt::format("{} boxes a second\n", whole(boxes_per_second));
 }
 
 }  // namespace

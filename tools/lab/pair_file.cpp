@@ -13,7 +13,7 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::size_t bytes_a_piece = std::size_t{1} << 16;
+constexpr std::size_t bytes_per_piece = std::size_t{1} << 16;
 
 template <typename Number>
 void append(std::string& text, Number number, const std::vector<std::string>* ids, char end) {
@@ -57,7 +57,7 @@ void PairFile::write(std::span<const Pair> pairs) {
   for (const Pair pair : pairs) {
     append(text_, index(pair.first), ids_.left, ',');
     append(text_, index(pair.second), ids_.right, '\n');
-    if (text_.size() >= bytes_a_piece) write_text();
+    if (text_.size() >= bytes_per_piece) write_text();
   }
 }
 
@@ -66,7 +66,7 @@ void PairFile::write(std::span<const std::array<std::uint64_t, 2>> pairs) {
   for (const std::array<std::uint64_t, 2>& pair : pairs) {
     append(text_, pair[0], ids_.left, ',');
     append(text_, pair[1], ids_.right, '\n');
-    if (text_.size() >= bytes_a_piece) write_text();
+    if (text_.size() >= bytes_per_piece) write_text();
   }
 }
 

@@ -20,7 +20,7 @@ namespace {
 /// Of the boxes that leave the bounds of their leaf, one in this many is reinserted; for the others the
 /// bounds grow. Of 1, 2, 4, 8, 16 and 32, the greater were the faster for 20,000 drifting boxes (2D and 3D, 1
 /// to 25 % moving: 1 took some 1.3 times as long as 8), but they leave more to the next build.
-constexpr std::uint64_t departures_an_insertion = 8;
+constexpr std::uint64_t departures_per_insertion = 8;
 
 /// Boxes that must have moved before their tests are judged.
 constexpr std::uint64_t movers_to_judge = 512;
@@ -126,7 +126,7 @@ class BvhFollower final : public Follower<D> {
     for (std::size_t i = 0; i < moved_.size(); ++i) {
       if (!moved_[i].is_present) continue;
       const bool left = (calls_for_[i] & kernels::left_leaf) != 0;
-      if (left && (!overlap(moved_[i].before, moved_[i].now) || ++departures_ % departures_an_insertion == 0))
+      if (left && (!overlap(moved_[i].before, moved_[i].now) || ++departures_ % departures_per_insertion == 0))
         tree_.reinsert(moved_[i].id);
       else if (calls_for_[i] != 0)
         tree_.refit(moved_[i].id);

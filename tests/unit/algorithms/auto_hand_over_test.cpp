@@ -117,7 +117,7 @@ TEST(AutoHandOver, BoundsTheTestsWhateverTheSampleShows) {
 
 /// The tests of a search in two stacks of plates side by side, over the number of boxes.
 template <int D>
-double tests_a_plate(std::size_t count) {
+double tests_per_plate(std::size_t count) {
   lab::Random random(6);
   Finder<D, double> finder("auto");
   PairCounter pairs;
@@ -126,9 +126,9 @@ double tests_a_plate(std::size_t count) {
 }
 
 TEST(AutoHandOver, IsNotNeededForSomeThousandPlates) {
-  EXPECT_LE(tests_a_plate<2>(5'000), 30);
-  EXPECT_LE(tests_a_plate<2>(10'000), 30);
-  EXPECT_LE(tests_a_plate<3>(10'000), 30);
+  EXPECT_LE(tests_per_plate<2>(5'000), 30);
+  EXPECT_LE(tests_per_plate<2>(10'000), 30);
+  EXPECT_LE(tests_per_plate<3>(10'000), 30);
 }
 
 TEST(AutoHandOver, FindsEachPairOnce) {

@@ -20,7 +20,7 @@ namespace {
 
 template <int D>
 Box<D> draw(Rng& rng) {
-  return random_box<D>(rng, {.places = 400, .most_extent = 24, .infinite_one_in = 256});
+  return random_box<D>(rng, {.places = 400, .max_extent = 24, .infinite_one_in = 256});
 }
 
 /// Counts the boxes below a node, and expects bounds to contain them and slots to lead to them.

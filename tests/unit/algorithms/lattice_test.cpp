@@ -32,7 +32,7 @@ std::vector<Box<D>> lattice(std::size_t side, bool first_is_fastest) {
 }
 
 template <int D>
-void expect_few_tests(std::string_view algorithm, std::size_t side, double most_a_box) {
+void expect_few_tests(std::string_view algorithm, std::size_t side, double max_per_box) {
   for (const bool first_is_fastest : {false, true}) {
     SCOPED_TRACE(std::string(algorithm) + ", " + std::to_string(D) + "D, " + std::to_string(side) +
                  (first_is_fastest ? ", the first axis fastest" : ""));
@@ -44,7 +44,7 @@ void expect_few_tests(std::string_view algorithm, std::size_t side, double most_
     double near = 1;
     for (int axis = 0; axis < D; ++axis) near *= static_cast<double>(3 * side - 2);
     EXPECT_EQ(static_cast<double>(pairs.count()), (near - static_cast<double>(boxes.size())) / 2);
-    EXPECT_LE(static_cast<double>(statistics->tests) / static_cast<double>(boxes.size()), most_a_box);
+    EXPECT_LE(static_cast<double>(statistics->tests) / static_cast<double>(boxes.size()), max_per_box);
   }
 }
 

@@ -76,16 +76,16 @@ TEST(Limits, HoldWhileBoxesAreFollowed) {
       std::vector<BoxId> all;
       for (std::size_t i = 0; i < count; ++i) all.push_back(BoxId(i));
       std::vector<Box<D>> boxes(count, absent_box<D>());
-      std::uint64_t most_events = 0;
+      std::uint64_t max_events = 0;
       const auto update = [&](std::size_t max_references) {
         PairCounter events;
         const auto statistics = tracker.update({boxes, all}, events, events);
-        most_events = std::max(most_events, events.count());
+        max_events = std::max(max_events, events.count());
         ASSERT_TRUE(statistics);
         EXPECT_LE(statistics->references, max_references * count) << spec;
         EXPECT_LE(statistics->cells, 8 * count) << spec;
         EXPECT_LE(statistics->tests, 4 * count * count) << spec;
-        EXPECT_LE(tracker.bytes(), 4000 * count + 64 * most_events) << spec;
+        EXPECT_LE(tracker.bytes(), 4000 * count + 64 * max_events) << spec;
       };
       for (const std::vector<Box<D>>& next : hard_boxes<D>(count)) {
         // A third at a time becomes of another kind, in a structure made for others.

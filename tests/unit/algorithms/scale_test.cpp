@@ -15,7 +15,7 @@ namespace broadside::lab {
 namespace {
 
 constexpr std::uint64_t crowd = 3'000;  // whose pairs, kept, would take 36 MB
-constexpr std::int64_t most_bytes = 2'000'000;
+constexpr std::int64_t max_bytes = 2'000'000;
 
 /// The most that was held while the pairs were counted, the boxes aside.
 template <typename Search>
@@ -24,7 +24,7 @@ void expect_little_memory(std::uint64_t pairs, const Search& search) {
   const AllocationMeter meter;
   search(counter);
   if (const auto allocation = meter.read()) {
-    EXPECT_LE(allocation->peak, most_bytes);
+    EXPECT_LE(allocation->peak, max_bytes);
   }
   EXPECT_EQ(counter.count(), pairs);
 }

@@ -22,7 +22,7 @@ template <int D>
 class Frames {
  public:
   Frames(std::size_t count, const BoxKind& kind) : kind_(kind), boxes(count, absent_box<D>()) {
-    const BoxKind shorter{kind.places, kind.most_extent / 2, kind.infinite_one_in};
+    const BoxKind shorter{kind.places, kind.max_extent / 2, kind.infinite_one_in};
     for (Box<D>& box : boxes) {
       if (!rng.one_in(4)) box = random_box<D>(rng, shorter);
     }
@@ -74,8 +74,8 @@ class Frames {
 
 TEST(HierarchicalCells, TellWhatMovedBoxesChange) {
   on_each_instruction_set([]<int D>() {
-    for (const BoxKind& kind : {BoxKind{}, BoxKind{.places = 400, .most_extent = 20, .infinite_one_in = 400},
-                                BoxKind{.places = 300, .most_extent = 90, .infinite_one_in = 0}}) {
+    for (const BoxKind& kind : {BoxKind{}, BoxKind{.places = 400, .max_extent = 20, .infinite_one_in = 400},
+                                BoxKind{.places = 300, .max_extent = 90, .infinite_one_in = 0}}) {
       Frames<D> frames(300, kind);
       HierarchicalCells<D> cells(std::nullopt);
       cells.build(frames.boxes, frames.boxes);
@@ -176,10 +176,10 @@ void nodes_of(const QuadtreeNodes<D>& tree, const Box<D>& box, std::uint32_t at,
 
 TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
   in_each_dimension([]<int D>() {
-    Frames<D> frames(3000, {.places = 1000, .most_extent = 12, .infinite_one_in = 100});
+    Frames<D> frames(3000, {.places = 1000, .max_extent = 12, .infinite_one_in = 100});
     QuadtreeNodes<D> tree(16);
     tree.build(frames.boxes);
-    std::size_t most_nodes = 0;
+    std::size_t max_nodes = 0;
     for (int round = 0; round < 30; ++round) {
       std::size_t references = 0;
       std::size_t kept = 0;
@@ -195,7 +195,7 @@ TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
       }
       ASSERT_EQ(tree.references(), references) << "round " << round;
       ASSERT_EQ(tree.kept(), kept) << "round " << round;
-      most_nodes = std::max(most_nodes, tree.node_count());
+      max_nodes = std::max(max_nodes, tree.node_count());
       frames.step(4);
       for (const core::MovedBox<D>& box : frames.moved) {
         if (round > 20 && !box.was_present) continue;  // in the end boxes only go
@@ -217,7 +217,7 @@ TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
       }
       tree.tidy(frames.boxes);
     }
-    EXPECT_LT(tree.node_count(), most_nodes / 2) << "nodes merge as boxes go";
+    EXPECT_LT(tree.node_count(), max_nodes / 2) << "nodes merge as boxes go";
   });
 }
 

@@ -162,7 +162,7 @@ TEST(ShadowTracker, ThrowsTheSameAgainOnceItHasDiverged) {
 }
 
 TEST(ShadowTracker, SaysWhichPairsAreReportedThoughTheyDoNotHold) {
-  const Algorithm wrong = lab::mistakes_a_pair();
+  const Algorithm wrong = lab::mistakes_per_pair();
   ShadowTracker<2> shadow([&] { return Tracker<2>(wrong, Spec{}); });
   const std::vector<Box2> boxes = {at(0), at(5), at(5.5F), at(20)};
   // A tracker that finds anew tests what its searcher reports, so that only what is missing is wrong.

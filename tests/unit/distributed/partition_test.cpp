@@ -31,14 +31,14 @@ std::vector<std::vector<Box<D>>> inputs() {
   far.max.fill(infinity);
   inputs[0].push_back(far);
   for (int i = 0; i < 300; ++i) {
-    Box<D> box = random_box<D>(rng, {.places = 8, .most_extent = 2, .infinite_one_in = 0});
+    Box<D> box = random_box<D>(rng, {.places = 8, .max_extent = 2, .infinite_one_in = 0});
     const float place = static_cast<float>(rng.whole(0, 5) * 100);
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] += place;
       box.max[axis] += place;
     }
     inputs[1].push_back(box);
-    inputs[2].push_back(random_box<D>(rng, {.places = 500, .most_extent = 1, .infinite_one_in = 0}));
+    inputs[2].push_back(random_box<D>(rng, {.places = 500, .max_extent = 1, .infinite_one_in = 0}));
     if (i % 30 == 0) inputs[2].back().max[i % D] += 400;
     inputs[3].push_back(inputs[1][0]);
   }

@@ -37,7 +37,7 @@ template <int D>
 std::vector<Box<D, double>> boxes_that_round(Rng& rng, std::size_t count) {
   std::vector<Box<D, double>> boxes(count);
   for (Box<D, double>& box : boxes) {
-    const Box<D> drawn = random_box<D>(rng, {.most_extent = 25});
+    const Box<D> drawn = random_box<D>(rng, {.max_extent = 25});
     for (int axis = 0; axis < D; ++axis) {
       box.min[axis] = 0x1p24 + drawn.min[axis] / 2;
       box.max[axis] = 0x1p24 + drawn.max[axis] / 2;

@@ -17,8 +17,8 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::int64_t most_waiting = std::int64_t{64} << 20;
-constexpr std::int64_t most_bytes_a_box = 200;
+constexpr std::int64_t max_waiting = std::int64_t{64} << 20;
+constexpr std::int64_t max_bytes_per_box = 200;
 
 class SearchMemory : public testing::Test {
  protected:
@@ -46,10 +46,10 @@ TEST_F(SearchMemory, IsBoundedWhereThreadsFindMorePairsThanWait) {
     std::int64_t pairs = 0;
     PairFunction function(
         [&pairs](std::span<const Pair> chunk) { pairs += static_cast<std::int64_t>(chunk.size()); });
-    EXPECT_LE(peak_of(boxes, *executor, function), most_waiting + count * most_bytes_a_box);
+    EXPECT_LE(peak_of(boxes, *executor, function), max_waiting + count * max_bytes_per_box);
     EXPECT_EQ(pairs, count * (count - 1) / 2);
     PairCounter counter;
-    EXPECT_LE(peak_of(boxes, *executor, counter), count * most_bytes_a_box);
+    EXPECT_LE(peak_of(boxes, *executor, counter), count * max_bytes_per_box);
   }
 }
 
@@ -73,7 +73,7 @@ void expect_little_for_nested_boxes() {
   const std::vector<Box<D, Real>> boxes = nested_boxes<D, Real>(100'000);
   laws::TeamExecutor team;
   PairCounter pairs;
-  EXPECT_LE(peak_of(boxes, team, pairs), static_cast<std::int64_t>(boxes.size()) * most_bytes_a_box);
+  EXPECT_LE(peak_of(boxes, team, pairs), static_cast<std::int64_t>(boxes.size()) * max_bytes_per_box);
 }
 
 TEST_F(SearchMemory, IsBoundedWhereBoxesCrowdInACell) {

@@ -84,7 +84,7 @@ TEST(BvhNode, TakesABoxIntoTheChildThatGrowsLeastAndOfThoseTheSmallest) {
 
 TEST(BvhNode, TellsHowFarItsChildrenAre) {
   on_nodes([]<int D>(Rng& rng, const std::vector<Box<D>>& children) {
-    const Box<D> point = random_box<D>(rng, {.places = 20, .most_extent = 0, .infinite_one_in = 0});
+    const Box<D> point = random_box<D>(rng, {.places = 20, .max_extent = 0, .infinite_one_in = 0});
     DistanceQuery<D> query{.point = point, .weight = {}, .max = infinity};
     query.weight.fill(1);
     std::array<float, fan_out> found;
@@ -116,7 +116,7 @@ TEST(BvhCast, MeetsWhatTheDefinitionSaysAndTheFirstOfThem) {
       const std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
       algorithm::DynamicBvh<D> tree;
       tree.build(boxes);
-      BoxCast<D> cast{.box = random_box<D>(rng, {.most_extent = 2, .infinite_one_in = 0}), .direction = {}};
+      BoxCast<D> cast{.box = random_box<D>(rng, {.max_extent = 2, .infinite_one_in = 0}), .direction = {}};
       cast.t_max = rng.one_in(4) ? infinity : static_cast<float>(rng.whole(0, 8));
       CastQuery<D> query{.box = cast.box, .direction = {}, .inverse = {}, .course = {}, .exact = true};
       for (int axis = 0; axis < D; ++axis) {
@@ -195,7 +195,7 @@ void on_packed_trees(Body body) {
     for (std::size_t size = 1; size <= 900; size += 1 + size / 3) {
       for (const bool is_between : {false, true}) {
         SCOPED_TRACE(testing::Message() << size << (is_between ? " boxes of two sets" : " boxes"));
-        const std::vector<Box<D>> boxes = random_boxes<D>(rng, size, {.places = 40, .most_extent = 4});
+        const std::vector<Box<D>> boxes = random_boxes<D>(rng, size, {.places = 40, .max_extent = 4});
         const std::size_t left_count = is_between ? (size + 1) / 2 : 0;
         const std::size_t left_places = algorithm::whole_leaves(left_count);
         const std::size_t end = left_places + (size - left_count);

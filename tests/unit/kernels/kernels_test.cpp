@@ -125,7 +125,7 @@ Run<D> fill(RunBuffer<D>& buffer, const Entries<D>& entries, const Box<D, double
 struct Kind {
   std::string name;
   int values;  ///< coordinates are whole numbers below this one: where they are few, many are equal
-  int most_extent;
+  int max_extent;
   bool infinite;             ///< some reach to infinity, on either side or both
   std::uint32_t dedup_mask;  ///< these bits of `dedup_mask` are set at random
   bool doubles = false;      ///< boxes that touch as floats may be apart
@@ -151,7 +151,7 @@ Entries<D> entries_of(const Kind& kind, std::size_t count, std::size_t first_id,
       float& min = entries[i].box.min[axis];
       float& max = entries[i].box.max[axis];
       min = static_cast<float>(rng.whole(0, kind.values - 1));
-      max = min + static_cast<float>(rng.whole(0, kind.most_extent));
+      max = min + static_cast<float>(rng.whole(0, kind.max_extent));
       if (!kind.infinite || !rng.one_in(4)) continue;
       const int sides = rng.whole(0, 4);  // one of them: a box at an infinite point
       if (sides != 0) max = infinity;

@@ -18,7 +18,7 @@ namespace {
 
 template <int D>
 Box<D> box_or_none(Rng& rng) {
-  return rng.one_in(8) ? nan_box<D>() : random_box<D>(rng, {.places = 12, .most_extent = 5});
+  return rng.one_in(8) ? nan_box<D>() : random_box<D>(rng, {.places = 12, .max_extent = 5});
 }
 
 /// Boxes that rest, by id, and some that move, with greater ids.

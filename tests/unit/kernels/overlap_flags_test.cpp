@@ -31,7 +31,7 @@ void check(const std::vector<Box<D, Real>>& boxes) {
 TEST(OverlapFlags, AreThoseOfTheDefinition) {
   on_each_instruction_set([]<int D>() {
     Rng rng(7);
-    std::vector<Box<D>> boxes = random_boxes<D>(rng, 60, {.places = 10, .most_extent = 4});
+    std::vector<Box<D>> boxes = random_boxes<D>(rng, 60, {.places = 10, .max_extent = 4});
     boxes.push_back(absent_box<D>());
     boxes.push_back(core::nan_box<D>());
     Box<D> whole;

@@ -33,7 +33,7 @@ class Field {
   Field& variant(const std::string& spec, double milliseconds) { return add(spec, milliseconds, true); }
   Measurement& last() { return measurements_.back(); }
 
-  std::optional<Choice> choice(bool by_time = true) const { return choose(rivals_, by_time); }
+  std::optional<AlgorithmChoice> choice(bool by_time = true) const { return choose(rivals_, by_time); }
   std::string chosen() const {
     const auto choice = choose(rivals_);
     return choice ? rivals_[choice->chosen].measurement->algorithm : "";
@@ -44,18 +44,18 @@ class Field {
   std::vector<Rival> rivals_;
 };
 
-TEST(Choice, TakesTheFastest) {
+TEST(AlgorithmChoice, TakesTheFastest) {
   Field field;
   field.add("bvh", 3).add("grid", 2).add("quadtree", 4);
   EXPECT_EQ(field.chosen(), "grid");
   EXPECT_EQ(field.choice()->why, Why::fastest);
 }
 
-TEST(Choice, TakesTheFirstOfTwoThatAreEquallyFast) {
+TEST(AlgorithmChoice, TakesTheFirstOfTwoThatAreEquallyFast) {
   EXPECT_EQ(Field().add("bvh", 2).add("grid", 2).chosen(), "bvh");
 }
 
-TEST(Choice, PrefersAutoWhereItIsHardlySlower) {
+TEST(AlgorithmChoice, PrefersAutoWhereItIsHardlySlower) {
   Field near;
   near.add("grid", 1).add("auto", 1.03);
   EXPECT_EQ(near.chosen(), "auto");
@@ -66,7 +66,7 @@ TEST(Choice, PrefersAutoWhereItIsHardlySlower) {
   EXPECT_EQ(Field().add("brute_force", 0.0001).add("auto", 0.00025).chosen(), "auto");
 }
 
-TEST(Choice, TakesAutoWhereTimesSayNothing) {
+TEST(AlgorithmChoice, TakesAutoWhereTimesSayNothing) {
   Field field;
   field.add("grid", 1).add("auto", 3).variant("grid:cell=2", 0.1);
   EXPECT_EQ(field.choice(false)->chosen, 1u);
@@ -74,7 +74,7 @@ TEST(Choice, TakesAutoWhereTimesSayNothing) {
   EXPECT_EQ(Field().add("bvh", 2).choice(false)->chosen, 0u);
 }
 
-TEST(Choice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
+TEST(AlgorithmChoice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
   EXPECT_EQ(Field().add("grid", 1).variant("grid:cell=2", 0.96).chosen(), "grid");
   Field clear;
   clear.add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 0.9).variant("grid:cell=4", 0.92);
@@ -83,7 +83,7 @@ TEST(Choice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
   EXPECT_EQ(Field().add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 1.1).chosen(), "bvh");
 }
 
-TEST(Choice, DoesNotTakeAVariantThatIsFasterInFewRounds) {
+TEST(AlgorithmChoice, DoesNotTakeAVariantThatIsFasterInFewRounds) {
   Field field;
   field.add("grid", 1).variant("grid:cell=2", 0.8);
   field.last().samples_ms = {2, 2, 2, 2, 0.8, 0.8, 0.8, 0.8, 0.8, 0.8};
@@ -92,7 +92,7 @@ TEST(Choice, DoesNotTakeAVariantThatIsFasterInFewRounds) {
   EXPECT_EQ(field.chosen(), "grid:cell=2");
 }
 
-TEST(Choice, LeavesOutWhatFailedAndWhatWasSkipped) {
+TEST(AlgorithmChoice, LeavesOutWhatFailedAndWhatWasSkipped) {
   Field field;
   field.add("grid", 1);
   field.last().outcome = Outcome::failed;
@@ -104,7 +104,7 @@ TEST(Choice, LeavesOutWhatFailedAndWhatWasSkipped) {
   EXPECT_EQ(field.chosen(), "quadtree");
 }
 
-TEST(Choice, NamesAPeerThatIsFasterAndAdvisesOneOfOurs) {
+TEST(AlgorithmChoice, NamesAPeerThatIsFasterAndAdvisesOneOfOurs) {
   Field field;
   field.add("grid", 2).add("boost_rtree", 1);
   field.last().kind = AlgorithmKind::peer;
@@ -120,7 +120,7 @@ TEST(Choice, NamesAPeerThatIsFasterAndAdvisesOneOfOurs) {
   EXPECT_EQ(alone.choice(), std::nullopt);
 }
 
-TEST(Choice, AutoWithThreadsIsAuto) {
+TEST(AlgorithmChoice, AutoWithThreadsIsAuto) {
   EXPECT_EQ(Field().add("grid:threads=2", 1).add("auto:threads=2", 1.01).chosen(), "auto:threads=2");
 }
 
@@ -139,7 +139,7 @@ TEST(PartOfRounds, TakesAHistoryAsOneRound) {
   Measurement follow;
   rebuild.samples_ms = {2, 2, 3, 2, 2, 3};
   follow.samples_ms = {1, 1, 9, 1, 1, 9};
-  rebuild.samples_a_round = follow.samples_a_round = 3;
+  rebuild.samples_per_round = follow.samples_per_round = 3;
   EXPECT_EQ(part_of_rounds(rebuild, follow), 1);
 }
 
@@ -161,7 +161,7 @@ Advice made_up() {
     ranked.is_finalist = true;
     advice.ranking.push_back(ranked);
   }
-  advice.choice = Choice{0, Why::fastest, 0};
+  advice.choice = AlgorithmChoice{0, Why::fastest, 0};
   return advice;
 }
 

@@ -84,8 +84,8 @@ TEST(Signals, TellsHowBoxesMove) {
   const Signals signals = signals_of(history);
   ASSERT_TRUE(signals.motion);
   EXPECT_EQ(signals.motion->frames, 2u);
-  EXPECT_DOUBLE_EQ(signals.motion->least_moving, 1.0 / 4);
-  EXPECT_DOUBLE_EQ(signals.motion->most_moving, 2.0 / 5);
+  EXPECT_DOUBLE_EQ(signals.motion->min_moving, 1.0 / 4);
+  EXPECT_DOUBLE_EQ(signals.motion->max_moving, 2.0 / 5);
   EXPECT_DOUBLE_EQ(signals.motion->moving, (1.0 / 4 + 2.0 / 5) / 2);
   EXPECT_DOUBLE_EQ(*signals.motion->drift, 1);
   EXPECT_DOUBLE_EQ(signals.motion->jumps, 1.0 / 3);

@@ -59,7 +59,7 @@ TEST(CaseList, GivesEachCaseItsBoxesAlgorithmsAndEffort) {
   ASSERT_EQ(cases.size(), 2u);
   EXPECT_EQ(cases[0].algorithms, "paper_grid");
   EXPECT_EQ(cases[0].request, (CaseRequest{.scene = "uniform", .boxes = 200}));
-  EXPECT_EQ(cases[0].effort.most_rounds, 5u);
+  EXPECT_EQ(cases[0].effort.max_rounds, 5u);
   EXPECT_EQ(cases[1].algorithms, "bvh,grid:update=follow");
   EXPECT_EQ(cases[1].request, (CaseRequest{.scene = "uniform",
                                            .dimension = 3,
@@ -70,8 +70,8 @@ TEST(CaseList, GivesEachCaseItsBoxesAlgorithmsAndEffort) {
                                            .teleport = 0.25}));
   EXPECT_EQ(cases[1].seed, 7u);
   EXPECT_EQ(cases[1].seeds, 3u);
-  EXPECT_EQ(cases[1].effort.least_rounds, 3u);
-  EXPECT_EQ(cases[1].effort.most_rounds, 9u);
+  EXPECT_EQ(cases[1].effort.min_rounds, 3u);
+  EXPECT_EQ(cases[1].effort.max_rounds, 9u);
 }
 
 TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {

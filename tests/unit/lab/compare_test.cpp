@@ -133,13 +133,13 @@ TEST(Compare, RefusesMoreMotionThanCanBeKept) {
 
 TEST(Compare, ShowsEveryWayOfBeingWrong) {
   for (const CaseRequest& request : {small_still, small_moving}) {
-    std::vector<std::pair<Algorithm, std::string>> wrong = {{misses_a_pair(), "is missing"}};
+    std::vector<std::pair<Algorithm, std::string>> wrong = {{misses_per_pair(), "is missing"}};
     if (request.frames == 0) {
       wrong.emplace_back(repeats_a_pair(), "is reported more than once");
-      wrong.emplace_back(mistakes_a_pair(), "is reported; expected not");
+      wrong.emplace_back(mistakes_per_pair(), "is reported; expected not");
     } else {
       // A tracker asks the boxes themselves, so that it lets no pair through that there is not.
-      wrong.emplace_back(mistakes_a_pair(), "is missing");
+      wrong.emplace_back(mistakes_per_pair(), "is missing");
     }
     for (const auto& [algorithm, what] : wrong) {
       Catalogue catalogue;
@@ -159,11 +159,11 @@ TEST(Compare, ShowsEveryWayOfBeingWrong) {
 TEST(Compare, SeesWhatGoesWrongOnlyLater) {
   Catalogue catalogue;
   catalogue.add(spoilt("late", [](std::vector<Pair>& pairs, std::size_t searches) {
-    if (searches == 20) mistake_a_pair(pairs);
+    if (searches == 20) mistakes_per_pair(pairs);
   }));
   CompareOptions options = options_for("late", {small_still});
   options.effort.share_seconds = 60;
-  options.effort.most_rounds = 30;
+  options.effort.max_rounds = 30;
   const Measurement still = only(compare(catalogue, options));
   EXPECT_EQ(still.outcome, Outcome::failed);
   EXPECT_THAT(still.reason,
@@ -180,7 +180,7 @@ TEST(Compare, LetsASlowAlgorithmTakePartInTheFirstRoundsOfTheOthers) {
     options.effort.share_seconds = 0.01;
     options.effort.slow_seconds = options.effort.slow_history_seconds = 0.01;
     options.effort.slow_rounds = 2;
-    options.effort.most_rounds = 8;
+    options.effort.max_rounds = 8;
     const Comparison comparison = compare(catalogue, options);
     const CaseResult& result = comparison.cases.at(0);
     const std::size_t a_round = std::max<std::size_t>(result.of.frames, 1);
@@ -196,7 +196,7 @@ TEST(Compare, LetsASlowAlgorithmTakePartInTheFirstRoundsOfTheOthers) {
 TEST(Compare, LetsEveryAlgorithmTakePartInTheLeastOfRounds) {
   CompareOptions options = options_for("own", {small_still, small_moving});
   options.effort.share_seconds = 0;
-  options.effort.least_rounds = 6;
+  options.effort.min_rounds = 6;
   for (const CaseResult& result : compare(Catalogue(), options).cases) {
     for (const Measurement& measurement : result.measurements)
       EXPECT_EQ(round_times(measurement).size(), 6u) << measurement.algorithm;

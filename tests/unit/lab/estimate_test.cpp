@@ -11,14 +11,14 @@ namespace {
 
 /// An algorithm whose time is known.
 struct Clockwork {
-  double seconds_a_box;
+  double seconds_per_box;
   double exponent;
   std::vector<std::size_t> tried{};
 
   std::optional<Estimate> estimate(double budget, std::size_t boxes) {
     return estimate_above(budget, boxes, [this](std::size_t count) {
       tried.push_back(count);
-      return seconds_a_box * std::pow(static_cast<double>(count), exponent);
+      return seconds_per_box * std::pow(static_cast<double>(count), exponent);
     });
   }
 };

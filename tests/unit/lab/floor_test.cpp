@@ -48,7 +48,7 @@ CaseResult compared(const CaseRequest& request) {
   options.algorithms = "grid,quadtree";
   options.plan = {request};
   options.effort.share_seconds = 0;
-  options.effort.least_rounds = 3;
+  options.effort.min_rounds = 3;
   return compare(Catalogue(), options).cases.at(0);
 }
 

@@ -14,12 +14,12 @@
 namespace broadside::lab {
 namespace {
 
-Measurement with(std::string algorithm, std::vector<double> samples, std::size_t samples_a_round = 1) {
+Measurement with(std::string algorithm, std::vector<double> samples, std::size_t samples_per_round = 1) {
   Measurement measurement;
   measurement.algorithm = std::move(algorithm);
   measurement.outcome = Outcome::verified;
   measurement.samples_ms = std::move(samples);
-  measurement.samples_a_round = samples_a_round;
+  measurement.samples_per_round = samples_per_round;
   return measurement;
 }
 

@@ -66,7 +66,7 @@ TEST(CheckSample, FindsAMissingPairOfASampledBox) {
                 [&](Pair pair) { return index(pair.first) == sampled || index(pair.second) == sampled; });
   const auto divergence = check_sample<2>(boxes, pairs);
   ASSERT_TRUE(divergence);
-  EXPECT_EQ(divergence->kind, Divergence::Kind::missing);
+  EXPECT_EQ(divergence->kind, PairDivergence::Kind::missing);
 }
 
 TEST(CheckSample, FindsARepeatedPairOfASampledBox) {

@@ -68,8 +68,8 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-TEST(Columns, AlignsEachAsItIsToldAndLeavesNoSpaceAtTheEnd) {
-  Columns columns("<>>");
+TEST(AlignedColumns, AlignsEachAsItIsToldAndLeavesNoSpaceAtTheEnd) {
+  AlignedColumns columns("<>>");
   columns.add({"a", "1", ""});
   columns.add({"bbb", "1,000", "x"});
   EXPECT_EQ(columns.text("  "), "  a        1\n  bbb  1,000  x\n");
@@ -290,7 +290,7 @@ TEST(JsonResults, HoldHowBoxesMovedAndWhatTheFirstFrameTook) {
   of.moving = 0.1;
   of.drift = 0.2;
   comparison.cases[0].measurements[0].build_ms = 5;
-  comparison.cases[0].measurements[0].samples_a_round = 3;
+  comparison.cases[0].measurements[0].samples_per_round = 3;
   const Json measurements = Json::parse(json_of(comparison, std::vector<std::string>{}))["measurements"];
   EXPECT_EQ(measurements[0]["mode"], "track");
   EXPECT_EQ(measurements[0]["drift"], 0.2);

@@ -9,17 +9,17 @@
 namespace broadside::lab {
 namespace {
 
-Measurement timed(AlgorithmKind kind, std::vector<double> samples_ms, std::size_t samples_a_round = 1) {
+Measurement timed(AlgorithmKind kind, std::vector<double> samples_ms, std::size_t samples_per_round = 1) {
   Measurement measurement;
   measurement.kind = kind;
   measurement.outcome = Outcome::verified;
   measurement.samples_ms = std::move(samples_ms);
-  measurement.samples_a_round = samples_a_round;
+  measurement.samples_per_round = samples_per_round;
   return measurement;
 }
 
 const Effort effort{
-    .share_seconds = 0.01, .least_rounds = 3, .most_rounds = 5, .slow_rounds = 2, .far_rounds = 1};
+    .share_seconds = 0.01, .min_rounds = 3, .max_rounds = 5, .slow_rounds = 2, .far_rounds = 1};
 
 TEST(Rounds, GoOnUntilAShareOfTimeIsSpent) {
   EXPECT_TRUE(has_another_round(timed(AlgorithmKind::own, {9, 9}), effort, no_limit));      // the least

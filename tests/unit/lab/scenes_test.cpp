@@ -239,11 +239,11 @@ std::vector<Pair> pairs_of(const std::vector<Box<D>>& boxes) {
 }
 
 template <int D>
-void check_that_a_pile_rests(std::size_t least_pairs) {
+void check_that_a_pile_rests(std::size_t min_pairs) {
   constexpr std::size_t count = 800;
   const auto frames = pile_frames<D>("pile", {.boxes = count, .seed = 3, .frames = 20});
   std::vector<Pair> pairs = pairs_of(frames[0]);
-  EXPECT_GT(pairs.size(), least_pairs);
+  EXPECT_GT(pairs.size(), min_pairs);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     std::size_t moved = 0;
     float furthest = 0;
@@ -258,7 +258,7 @@ void check_that_a_pile_rests(std::size_t least_pairs) {
     const std::vector<Pair> now = pairs_of(frames[i]);
     std::vector<Pair> changed;
     std::ranges::set_symmetric_difference(pairs, now, std::back_inserter(changed));
-    EXPECT_LT(changed.size(), least_pairs / 100);
+    EXPECT_LT(changed.size(), min_pairs / 100);
     pairs = now;
   }
 }

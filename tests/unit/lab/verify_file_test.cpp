@@ -29,8 +29,8 @@ class VerifyFile : public Files {
       wrong.kind = AlgorithmKind::peer;
       catalogue_.add(std::move(wrong));
     };
-    add(misses_a_pair());
-    add(mistakes_a_pair());
+    add(misses_per_pair());
+    add(mistakes_per_pair());
     add(spoilt("forgets", [](std::vector<Pair>& pairs, std::size_t searches) {
       if (searches == 2) pairs.pop_back();
     }));
@@ -173,7 +173,7 @@ TEST(VerifyHistory, FindsTheFaultInAReferenceThatIsWrong) {
     const auto x = static_cast<float>(i);
     boxes.push_back({{x, 0}, {x + 1, 1}});
   }
-  Algorithm wrong = misses_a_pair();
+  Algorithm wrong = misses_per_pair();
   wrong.name = "quadtree";
   const std::vector<Algorithm> known = {wrong};
   const Catalogue catalogue;

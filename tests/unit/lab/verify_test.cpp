@@ -31,7 +31,7 @@ class FixedSearcher final : public Searcher<2> {
 };
 
 // By a peer: whether a user's searcher writes pairs of two boxes is checked before the law sees them.
-std::optional<Divergence> divergence_of(const Pairs& found) {
+std::optional<PairDivergence> divergence_of(const Pairs& found) {
   const Algorithm fixed = {
       .name = "fixed",
       .summary = "",
@@ -61,7 +61,7 @@ TEST(CheckFinder, SeesAMissingPair) {
   for (const Pairs& found : {Pairs{}, Pairs{pair(0, 1)}, Pairs{pair(1, 2)}}) {
     const auto divergence = divergence_of(found);
     ASSERT_TRUE(divergence.has_value());
-    EXPECT_EQ(divergence->kind, Divergence::Kind::missing);
+    EXPECT_EQ(divergence->kind, PairDivergence::Kind::missing);
   }
 }
 
@@ -70,7 +70,7 @@ TEST(CheckFinder, SeesAnExtraPairWhereverItSorts) {
        {pair(0, 2), pair(1, 3), pair(2, 3), pair(1, 1), pair(0, 0), pair(1, 0), pair(0, 9)}) {
     const auto divergence = divergence_of({pair(0, 1), pair(1, 2), extra});
     ASSERT_TRUE(divergence.has_value());
-    EXPECT_EQ(divergence->kind, Divergence::Kind::extra);
+    EXPECT_EQ(divergence->kind, PairDivergence::Kind::extra);
     EXPECT_EQ(divergence->pair, extra);
   }
 }
@@ -79,7 +79,7 @@ TEST(CheckFinder, SeesARepeatedPair) {
   for (const Pair repeated : {pair(0, 1), pair(1, 2)}) {
     const auto divergence = divergence_of({pair(0, 1), pair(1, 2), repeated});
     ASSERT_TRUE(divergence.has_value());
-    EXPECT_EQ(divergence->kind, Divergence::Kind::repeated);
+    EXPECT_EQ(divergence->kind, PairDivergence::Kind::repeated);
     EXPECT_EQ(divergence->pair, repeated);
   }
 }
@@ -116,7 +116,7 @@ class FixedFollower final : public Follower<2> {
 /// Box 1 leaves box 0 for box 3 (with which no one overlapped) and keeps box 2 behind.
 const History<2> leaving = {chain, {Step<2>{4, {BoxId{1}}, {{{6, 6}, {7, 7}}}}, Step<2>{4, {}, {}}}};
 
-std::optional<Divergence> tracking_divergence(const std::vector<FixedFollower::Events>& frames) {
+std::optional<PairDivergence> tracking_divergence(const std::vector<FixedFollower::Events>& frames) {
   Tracker<2> tracker(std::make_unique<FixedFollower>(frames));
   return check_tracker<2>(tracker, leaving, "fixed");
 }
@@ -129,7 +129,7 @@ TEST(CheckTracker, PassesTheRightEvents) {
 TEST(CheckTracker, SeesEventsThatAreMissingOrExtra) {
   const FixedFollower::Events first = {{pair(0, 1), pair(1, 2)}, {}};
   const FixedFollower::Events second = {{pair(1, 3)}, {pair(0, 1), pair(1, 2)}};
-  using Kind = Divergence::Kind;
+  using Kind = PairDivergence::Kind;
   const auto expect = [](const std::vector<FixedFollower::Events>& frames, Kind kind, std::size_t frame) {
     const auto divergence = tracking_divergence(frames);
     ASSERT_TRUE(divergence.has_value());

@@ -418,7 +418,7 @@ void seal(Bytes& bytes) {
 TEST(Snapshot, ThatLiesUnderARightChecksumDoesNoHarm) {
   const Bytes right = full_world().snapshot();
   std::size_t refused = 0;
-  std::int64_t most_memory = 0;
+  std::int64_t max_memory = 0;
   for (std::size_t bit = 8 * 24; bit < 8 * (right.size() - 4); ++bit) {
     Bytes bytes = right;
     bytes[bit / 8] ^= std::byte{1} << bit % 8;
@@ -431,12 +431,12 @@ TEST(Snapshot, ThatLiesUnderARightChecksumDoesNoHarm) {
       ++refused;
       EXPECT_EQ(world.size(), 0u);
     }
-    if (const auto allocation = meter.read()) most_memory = std::max(most_memory, allocation->peak);
+    if (const auto allocation = meter.read()) max_memory = std::max(max_memory, allocation->peak);
     world.add(at(0));
     world.update();  // it may say that it keeps no pairs
   }
   EXPECT_GT(refused, right.size());
-  EXPECT_LT(most_memory, std::int64_t{1} << 20) << "a count that is not true takes no memory";
+  EXPECT_LT(max_memory, std::int64_t{1} << 20) << "a count that is not true takes no memory";
 }
 
 TEST(Snapshot, LeavesTheWorldAsItWasWhenItsPairsAreNotThoseOfItsBoxes) {

@@ -29,7 +29,7 @@
 namespace broadside::bench {
 namespace {
 
-struct Wishes {
+struct PlanBenchmarkOptions {
   std::vector<std::string> scenes{"uniform", "clustered", "mixed", "coastlines", "bunny"};
   std::vector<std::uint64_t> boxes{1'000'000'000, 10'000'000'000};
   std::size_t ranks = 1000;
@@ -198,7 +198,7 @@ double ranks_per_query(const std::vector<Box<D>>& boxes, const Partition<D>& par
 }
 
 template <int D>
-void simulate(const lab::NamedScene& named, const Wishes& wishes, lab::Columns& columns) {
+void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& wishes, lab::AlignedColumns& columns) {
   const std::vector<Box<D>> sample =
       lab::make_history<D>(named.scene, named.spec, {.boxes = wishes.sample_boxes, .seed = 1}).boxes;
   for (const std::uint64_t boxes : wishes.boxes) {
@@ -238,7 +238,7 @@ void simulate(const lab::NamedScene& named, const Wishes& wishes, lab::Columns& 
 }
 
 int run(int count, char** arguments) {
-  Wishes wishes;
+  PlanBenchmarkOptions wishes;
   CLI::App app("Simulates the distributed plan for more boxes and ranks than this machine has.");
   app.add_option("--scenes", wishes.scenes, "scenes whose distributions are simulated")
       ->delimiter(',')
@@ -264,7 +264,7 @@ int run(int count, char** arguments) {
   const lab::Build build = lab::this_build();
   fmt::print("{} ranks, {} boxes drawn; {}, {}, {}, {}\n", lab::grouped(wishes.ranks),
              lab::grouped(wishes.drawn), machine.cpu, build.compiler, build.revision, lab::today());
-  lab::Columns columns("<<>>>>>>>>>>>>>>>");
+  lab::AlignedColumns columns("<<>>>>>>>>>>>>>>>");
   columns.add({"scene", "", "boxes", "pairs a box", "steps", "sampled a rank", "cost, largest/mean", "boxes",
                "pairs", "parts a box", "bytes sent a box", "memory a rank", "Sedona: cost", "boxes", "pairs",
                "parts a box", "ArborX: ranks a query"});

@@ -24,7 +24,7 @@
 namespace broadside::bench {
 namespace {
 
-struct Wishes {
+struct BulletBenchmarkOptions {
   std::vector<std::string> scenes;
   std::size_t bodies = 5000;
   std::size_t steps = 600;
@@ -33,7 +33,7 @@ struct Wishes {
 };
 
 std::unique_ptr<btBroadphaseInterface> bullets() { return std::make_unique<btDbvtBroadphase>(); }
-std::unique_ptr<btBroadphaseInterface> ours(const Wishes& wishes) {
+std::unique_ptr<btBroadphaseInterface> ours(const BulletBenchmarkOptions& wishes) {
   return std::make_unique<BulletBroadphase>(wishes.options);
 }
 
@@ -63,14 +63,14 @@ void print_times_heading() {
 
 /// A simulation over Bullet's own broad phase that has run to its end, and what it told that.
 struct Recorded {
-  Recorded(const std::string& scene, const Wishes& wishes)
+  Recorded(const std::string& scene, const BulletBenchmarkOptions& wishes)
       : Recorded(scene, wishes, std::make_unique<Recording>()) {}
 
   const Recording& recording;
   Simulation simulation;
 
  private:
-  Recorded(const std::string& scene, const Wishes& wishes, std::unique_ptr<Recording> broadphase)
+  Recorded(const std::string& scene, const BulletBenchmarkOptions& wishes, std::unique_ptr<Recording> broadphase)
       : recording(*broadphase), simulation(scene, wishes.bodies, std::move(broadphase)) {
     for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
   }
@@ -86,7 +86,7 @@ void check_pairs(Replay& one, Replay& other, std::size_t step) {
                   others.size()));
 }
 
-void stage(const Wishes& wishes) {
+void stage(const BulletBenchmarkOptions& wishes) {
   print_times_heading();
   for (const std::string& scene : wishes.scenes) {
     const Recorded recorded(scene, wishes);
@@ -135,7 +135,7 @@ double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::ui
   return watch.microseconds();
 }
 
-void rays(const Wishes& wishes) {
+void rays(const BulletBenchmarkOptions& wishes) {
   print_times_heading();
   for (const std::string& scene : wishes.scenes) {
     const Recorded recorded(scene, wishes);
@@ -161,7 +161,7 @@ void rays(const Wishes& wishes) {
   }
 }
 
-void step(const Wishes& wishes) {
+void step(const BulletBenchmarkOptions& wishes) {
   print_times_heading();
   for (const std::string& scene : wishes.scenes) {
     Simulation one(scene, wishes.bodies, bullets());
@@ -184,7 +184,7 @@ void step(const Wishes& wishes) {
   }
 }
 
-void manifolds(const Wishes& wishes) {
+void manifolds(const BulletBenchmarkOptions& wishes) {
   fmt::print("\n{:<8} {:>7} {:>20} {:>22}\n", "", "frames", "contacts at the end", "frames that differ");
   for (const std::string& scene : wishes.scenes) {
     Simulation moving(scene, wishes.bodies, bullets());
@@ -201,7 +201,7 @@ void manifolds(const Wishes& wishes) {
   }
 }
 
-void drift(const Wishes& wishes) {
+void drift(const BulletBenchmarkOptions& wishes) {
   fmt::print("\n{:<8} {:>29}   {:>29}\n{:<8} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "energy, kJ, mean",
              "penetration, mm a contact", "", "Bullet", "ours", "differ", "Bullet", "ours", "differ");
   for (const std::string& scene : wishes.scenes) {
@@ -227,11 +227,11 @@ void drift(const Wishes& wishes) {
 }
 
 int run(int count, char** arguments) {
-  const std::vector<std::pair<std::string, void (*)(const Wishes&)>> parts = {
+  const std::vector<std::pair<std::string, void (*)(const BulletBenchmarkOptions&)>> parts = {
       {"stage", stage}, {"rays", rays}, {"step", step}, {"manifolds", manifolds}, {"drift", drift}};
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
-  Wishes wishes;
+  BulletBenchmarkOptions wishes;
   for (const BulletScene& scene : bullet_scenes()) wishes.scenes.push_back(scene.name);
   std::vector<std::string> wanted;
 

@@ -15,7 +15,7 @@
 namespace broadside::bench {
 
 /// A box that was set, by the proxy's place in the order of creation.
-struct Call {
+struct ProxyMove {
   int proxy;
   btVector3 min;
   btVector3 max;
@@ -25,7 +25,7 @@ struct Call {
 class Recording final : public btDbvtBroadphase {
  public:
   struct Created {
-    Call call;
+    ProxyMove call;
     int group;
     int mask;
   };
@@ -49,7 +49,7 @@ class Recording final : public btDbvtBroadphase {
   }
 
   std::vector<Created> created;
-  std::vector<Call> calls;
+  std::vector<ProxyMove> calls;
   std::vector<std::size_t> ends;  ///< where the calls of each step end
 
  private:
@@ -71,7 +71,7 @@ class Replay {
     const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
     const Stopwatch watch;
     for (std::size_t i = first; i < recording_.ends[number]; ++i) {
-      const Call& call = recording_.calls[i];
+      const ProxyMove& call = recording_.calls[i];
       broadphase_->setAabb(proxies_[static_cast<std::size_t>(call.proxy)], call.min, call.max, nullptr);
     }
     broadphase_->calculateOverlappingPairs(nullptr);

@@ -51,9 +51,9 @@ Simulation::~Simulation() {
 }
 
 void Simulation::step() {
-  constexpr btScalar turns_a_step = btScalar(SIMD_2_PI) / 90;
+  constexpr btScalar turns_per_step = btScalar(SIMD_2_PI) / 90;
   for (std::size_t i = 0; i < waving_.size(); ++i) {
-    const btScalar phase = btScalar(steps_) * turns_a_step + btScalar(i % 100) / 5;
+    const btScalar phase = btScalar(steps_) * turns_per_step + btScalar(i % 100) / 5;
     waving_[i]->getWorldTransform().getOrigin().setY(std::sin(phase) / 2);
   }
   ++steps_;

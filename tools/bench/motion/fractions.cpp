@@ -15,20 +15,20 @@ namespace broadside::bench {
 namespace {
 
 template <int D>
-Outcome race_in(const Wishes& wishes, const std::string& algorithms, const std::string& scene,
+Outcome race_in(const MotionOptions& wishes, const std::string& algorithms, const std::string& scene,
                 std::size_t boxes, double moving, const Turns& turns) {
   const lab::Catalogue catalogue;
   return race<D>(catalogue.select(algorithms), motion_of<D>(scene, wishes.request(boxes, turns, moving)),
                  turns);
 }
 
-Outcome race_in(int dimension, const Wishes& wishes, const std::string& algorithms, const std::string& scene,
+Outcome race_in(int dimension, const MotionOptions& wishes, const std::string& algorithms, const std::string& scene,
                 std::size_t boxes, double moving, const Turns& turns) {
   return dimension == 2 ? race_in<2>(wishes, algorithms, scene, boxes, moving, turns)
                         : race_in<3>(wishes, algorithms, scene, boxes, moving, turns);
 }
 
-std::vector<std::string> scenes_of(const Wishes& wishes) {
+std::vector<std::string> scenes_of(const MotionOptions& wishes) {
   return wishes.scenes.empty() ? std::vector<std::string>{"uniform"} : wishes.scenes;
 }
 
@@ -51,7 +51,7 @@ double over_the_best(const Outcome& outcome) {
   return first.ran() && std::isfinite(best) ? lab::median(first.frames_ms) / best : 0;
 }
 
-void ways_in(int dimension, const std::string& scene, const Wishes& wishes, std::vector<double>& ratios) {
+void ways_in(int dimension, const std::string& scene, const MotionOptions& wishes, std::vector<double>& ratios) {
   const std::string algorithms = wishes.algorithms_or("auto,auto:update=rebuild,auto:update=follow");
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(20, 3);
@@ -59,7 +59,7 @@ void ways_in(int dimension, const std::string& scene, const Wishes& wishes, std:
   const lab::Catalogue catalogue;
   const std::vector<lab::Entry> entries = catalogue.select(algorithms);
   print_heading(scene, dimension, boxes, turns);
-  lab::Columns columns(">>" + std::string(entries.size(), '>') + "><");
+  lab::AlignedColumns columns(">>" + std::string(entries.size(), '>') + "><");
   std::vector<std::string> head = {"moving", "movers"};
   for (const lab::Entry& entry : entries) head.push_back(entry.spec.text());
   head.insert(head.end(), {"over the best", "the last frame"});
@@ -80,7 +80,7 @@ void ways_in(int dimension, const std::string& scene, const Wishes& wishes, std:
 
 }  // namespace
 
-void against_peers(const Wishes& wishes) {
+void against_peers(const MotionOptions& wishes) {
   const std::array<std::string, 2> peers = {"bullet_dbvt,box2d_tree,chipmunk_bb_tree",
                                             "bullet_dbvt,fcl_dynamic_aabb_tree"};
   const std::vector<double> fractions =
@@ -102,7 +102,7 @@ void against_peers(const Wishes& wishes) {
   }
 }
 
-void against_ways(const Wishes& wishes) {
+void against_ways(const MotionOptions& wishes) {
   std::vector<double> ratios;
   for (const int dimension : wishes.dimensions) {
     for (const std::string& scene : scenes_of(wishes)) ways_in(dimension, scene, wishes, ratios);
@@ -112,7 +112,7 @@ void against_ways(const Wishes& wishes) {
              lab::geometric_mean(ratios), std::ranges::max(ratios));
 }
 
-void one_mover(const Wishes& wishes) {
+void one_mover(const MotionOptions& wishes) {
   for (const int dimension : wishes.dimensions) {
     for (const std::string& scene : scenes_of(wishes)) {
       const std::size_t boxes = wishes.boxes_or(1'000'000);

@@ -27,12 +27,12 @@ std::vector<Box<D>> boxes_of(const std::string& scene, std::size_t boxes, std::u
   return lab::make_history<D>(named.scene, named.spec, {.boxes = boxes, .seed = seed}).boxes;
 }
 
-std::string scene_of(const Wishes& wishes) { return wishes.scenes.empty() ? "uniform" : wishes.scenes[0]; }
+std::string scene_of(const MotionOptions& wishes) { return wishes.scenes.empty() ? "uniform" : wishes.scenes[0]; }
 
-double moving_of(const Wishes& wishes) { return wishes.moving.empty() ? 0.1 : wishes.moving[0]; }
+double moving_of(const MotionOptions& wishes) { return wishes.moving.empty() ? 0.1 : wishes.moving[0]; }
 
 template <int D>
-void spikes_in(const Wishes& wishes) {
+void spikes_in(const MotionOptions& wishes) {
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(1'000, 5);
   const lab::Catalogue catalogue;
@@ -54,7 +54,7 @@ void spikes_in(const Wishes& wishes) {
 constexpr std::size_t between_jumps = 9;
 
 template <int D>
-void jumps_in(const Wishes& wishes) {
+void jumps_in(const MotionOptions& wishes) {
   const std::size_t boxes = wishes.boxes_or(100'000);
   const Turns turns = wishes.turns(5 * (between_jumps + 1), 5);
   const lab::Catalogue catalogue;
@@ -63,7 +63,7 @@ void jumps_in(const Wishes& wishes) {
       race<D>(catalogue.select(wishes.algorithms_or("auto,auto:update=rebuild")),
               motion_of<D>(scene, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames}), turns);
   print_heading(scene, D, boxes, turns);
-  lab::Columns columns("<>>>>");
+  lab::AlignedColumns columns("<>>>>");
   columns.add({"algorithm", "jump us", "the frame after", "others", "first frame"});
   std::vector<std::pair<std::string, double>> jumps;
   for (const Runner& runner : outcome.runners) {
@@ -130,7 +130,7 @@ std::array<Population<D>, 2> populations(const std::string& scene, std::size_t r
 }
 
 template <int D>
-void rest_in(const Wishes& wishes) {
+void rest_in(const MotionOptions& wishes) {
   constexpr std::size_t around = 10'000;
   constexpr std::size_t movers = 2'000;
   const std::size_t resting = wishes.boxes_or(1'000'000);
@@ -177,7 +177,7 @@ void rest_in(const Wishes& wishes) {
 }
 
 template <int D>
-void recorded_in(const Wishes& wishes, const std::string& engine, const std::string& scenes_of_engine) {
+void recorded_in(const MotionOptions& wishes, const std::string& engine, const std::string& scenes_of_engine) {
   const std::size_t boxes = wishes.boxes_or(5'000);
   const Turns turns = wishes.turns(60, 5);
   const lab::Catalogue catalogue;
@@ -198,28 +198,28 @@ void recorded_in(const Wishes& wishes, const std::string& engine, const std::str
   }
 }
 
-bool wants(const Wishes& wishes, int dimension) {
+bool wants(const MotionOptions& wishes, int dimension) {
   return std::ranges::find(wishes.dimensions, dimension) != wishes.dimensions.end();
 }
 
 }  // namespace
 
-void spikes(const Wishes& wishes) {
+void spikes(const MotionOptions& wishes) {
   if (wants(wishes, 2)) spikes_in<2>(wishes);
   if (wants(wishes, 3)) spikes_in<3>(wishes);
 }
 
-void jumps(const Wishes& wishes) {
+void jumps(const MotionOptions& wishes) {
   if (wants(wishes, 2)) jumps_in<2>(wishes);
   if (wants(wishes, 3)) jumps_in<3>(wishes);
 }
 
-void rest(const Wishes& wishes) {
+void rest(const MotionOptions& wishes) {
   if (wants(wishes, 2)) rest_in<2>(wishes);
   if (wants(wishes, 3)) rest_in<3>(wishes);
 }
 
-void recorded(const Wishes& wishes) {
+void recorded(const MotionOptions& wishes) {
   if (wants(wishes, 2)) recorded_in<2>(wishes, "box2d_tree", "box2d_");
   if (wants(wishes, 3)) recorded_in<3>(wishes, "bullet_dbvt", "bullet_");
 }

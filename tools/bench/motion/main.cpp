@@ -15,14 +15,14 @@
 namespace broadside::bench {
 namespace {
 
-struct Part {
+struct MotionBenchmark {
   std::string name;
   std::string what;
-  void (*run)(const Wishes&);
+  void (*run)(const MotionOptions&);
 };
 
-const std::vector<Part>& parts() {
-  static const std::vector<Part> list = {
+const std::vector<MotionBenchmark>& parts() {
+  static const std::vector<MotionBenchmark> list = {
       {"peers", "auto against peers that follow motion: 1, 10, 50, 100 % of 100,000 boxes", against_peers},
       {"ways", "auto over the better of rebuilding and following, 0.1 to 100 % moving", against_ways},
       {"one", "one mover among 1,000,000 boxes", one_mover},
@@ -39,10 +39,10 @@ const std::vector<Part>& parts() {
 int run(int count, char** arguments) {
   CLI::App program("Prints a table for each claim about motion.");
   std::vector<std::string> wanted;
-  Wishes wishes;
+  MotionOptions wishes;
   std::string listing;
   std::vector<std::string> names;
-  for (const Part& part : parts()) {
+  for (const MotionBenchmark& part : parts()) {
     listing += fmt::format("\n  {:<10} {}", part.name, part.what);
     names.push_back(part.name);
   }
@@ -73,7 +73,7 @@ int run(int count, char** arguments) {
       ->capture_default_str();
   program.add_option("--seed", wishes.seed, "Of the boxes and their motion")->capture_default_str();
   CLI11_PARSE(program, count, arguments);
-  for (const Part& part : parts()) {
+  for (const MotionBenchmark& part : parts()) {
     if (wanted.empty() || std::ranges::find(wanted, part.name) != wanted.end()) part.run(wishes);
   }
   return 0;

@@ -17,7 +17,7 @@
 
 namespace broadside::bench {
 
-Turns Wishes::turns(std::size_t standard_frames, std::size_t standard_rounds) const {
+Turns MotionOptions::turns(std::size_t standard_frames, std::size_t standard_rounds) const {
   return {.frames = frames > 0 ? frames : standard_frames,
           .rounds = rounds > 0 ? rounds : standard_rounds,
           .in_a_row = in_a_row,
@@ -64,7 +64,7 @@ double mean_of(const std::vector<double>& times) {
 }  // namespace
 
 void print_table(const Outcome& outcome) {
-  lab::Columns columns("<>>>>>>>><");
+  lab::AlignedColumns columns("<>>>>>>>><");
   columns.add(
       {"algorithm", "us a frame", "mean", "p99", "worst", "ns a mover", "ratio", "of means", "build us", ""});
   const double movers = std::max(outcome.mean_movers(), 1.0);

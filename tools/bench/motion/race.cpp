@@ -64,7 +64,7 @@ struct Told {
 };
 
 template <int D>
-struct Participant {
+struct Racer {
   Competitor<D> competitor;
   Runner* runner;
   std::unique_ptr<MotionFollower<D>> follower{};  // of this round
@@ -88,7 +88,7 @@ class Race {
       follow(motion, round);
       // The first one is verified, and knows what that found.
       if (round > 0) continue;
-      for (Participant<D>& participant : participants_) {
+      for (Racer<D>& participant : participants_) {
         if (participant.follower) participant.runner->explanation = participant.follower->explanation();
       }
     }
@@ -99,7 +99,7 @@ class Race {
   void let_in(std::span<const Box<D>> boxes) {
     lab::Extremes extremes;
     extremes.take<D>(boxes);
-    for (Participant<D>& participant : participants_) {
+    for (Racer<D>& participant : participants_) {
       std::string& why = participant.runner->left_out;
       if (participant.competitor.entry != nullptr)
         why = lab::unfit(*participant.competitor.entry, D, extremes);
@@ -121,7 +121,7 @@ class Race {
   void follow(Motion<D>& motion, std::size_t round) {
     const lab::Step<D> first = first_step<D>(motion.boxes);
     for (const std::size_t place : lab::turns(participants_.size(), round)) {
-      Participant<D>& participant = participants_[place];
+      Racer<D>& participant = participants_[place];
       if (participant.done) continue;
       make(participant);
       const double milliseconds = update(participant, first);
@@ -142,7 +142,7 @@ class Race {
     }
   }
 
-  void take(Participant<D>& participant, const lab::Step<D>& step, std::size_t frame, std::size_t round) {
+  void take(Racer<D>& participant, const lab::Step<D>& step, std::size_t frame, std::size_t round) {
     if (participant.done) return;
     const double milliseconds = update(participant, step);
     check(participant, frame + 1, round);
@@ -156,12 +156,12 @@ class Race {
                        participant.spent_ms > turns_.budget_seconds * 1e3;
   }
 
-  static void make(Participant<D>& participant) {
+  static void make(Racer<D>& participant) {
     participant.follower.reset();
     participant.follower = participant.competitor.make();
   }
 
-  double update(Participant<D>& participant, const lab::Step<D>& step) {
+  double update(Racer<D>& participant, const lab::Step<D>& step) {
     participant.follower->take(step);
     if (turns_.is_cold) flush_caches();
     const lab::Stopwatch watch;
@@ -175,7 +175,7 @@ class Race {
     for (std::size_t i = 0; i < flushed_.size(); i += 64) ++flushed_[i];
   }
 
-  void check(const Participant<D>& participant, std::size_t frame, std::size_t round) {
+  void check(const Racer<D>& participant, std::size_t frame, std::size_t round) {
     const lab::Events& events = participant.follower->events();
     lab::EventHasher hasher;
     hasher.add(events);
@@ -195,7 +195,7 @@ class Race {
 
   const Turns& turns_;
   Outcome outcome_;
-  std::vector<Participant<D>> participants_;
+  std::vector<Racer<D>> participants_;
   std::vector<char> flushed_{};
   std::map<std::string, std::vector<Told>> told_;  // by definition, and frame, the first one too
 };

@@ -140,7 +140,7 @@ class WorldFollower final : public MotionFollower<D> {
 };
 
 template <int D>
-void race_worlds(const Wishes& wishes, const std::string& name, std::size_t boxes,
+void race_worlds(const MotionOptions& wishes, const std::string& name, std::size_t boxes,
                  const StartMotion<D>& motion, const Turns& turns) {
   const lab::Catalogue catalogue;
   const std::string peer = D == 2 ? "box2d_tree" : "bullet_dbvt";
@@ -165,7 +165,7 @@ void race_worlds(const Wishes& wishes, const std::string& name, std::size_t boxe
   fmt::print("\n");
 }
 
-void race_trace(const Wishes& wishes, const std::string& path) {
+void race_trace(const MotionOptions& wishes, const std::string& path) {
   const lab::FileContent content = lab::read_file(path);
   const auto race = [&]<int D>(const std::optional<History<D>>& read) {
     if (!read) return false;
@@ -184,7 +184,7 @@ void race_trace(const Wishes& wishes, const std::string& path) {
 }
 
 template <int D>
-void race_scenes(const Wishes& wishes) {
+void race_scenes(const MotionOptions& wishes) {
   const std::size_t boxes = wishes.boxes_or(20'000);
   const Turns turns = wishes.turns(20, 5);
   const std::vector<double> fractions = wishes.moving.empty() ? std::vector{0.01, 0.1, 1.0} : wishes.moving;
@@ -198,7 +198,7 @@ void race_scenes(const Wishes& wishes) {
 
 }  // namespace
 
-void worlds(const Wishes& wishes) {
+void worlds(const MotionOptions& wishes) {
   for (const std::string& path : wishes.traces) race_trace(wishes, path);
   if (!wishes.traces.empty()) return;
   for (const int dimension : wishes.dimensions) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double uniform_seconds = 120;
 
 /// The lesser times of two runs that found the same.
-void take_least(Run& run, const Run& again) {
+void take_least(MeasuredRun& run, const MeasuredRun& again) {
   if (!again.finished()) return;
   if (!run.finished() || again.milliseconds < run.milliseconds) run = again;
 }
@@ -25,10 +25,10 @@ bool is_auto(const std::string& algorithm) { return algorithm == "auto" || algor
 
 bool is_above(const Finding& finding, const InputResult& result, const Bounds& bounds) {
   if (!is_auto(finding.algorithm)) return finding.over_uniform > bounds.over_uniform;
-  const bool searches = result.input.call != lab::Call::track;
+  const bool searches = result.input.call != lab::HardCall::track;
   return finding.over_uniform > bounds.auto_over_uniform || finding.over_best > bounds.auto_over_best ||
-         finding.run.end == Run::End::too_slow || finding.run.end == Run::End::out_of_memory ||
-         (searches && finding.run.peak_bytes > bounds.auto_bytes_a_box);
+         finding.run.end == MeasuredRun::End::too_slow || finding.run.end == MeasuredRun::End::out_of_memory ||
+         (searches && finding.run.peak_bytes > bounds.auto_bytes_per_box);
 }
 
 Hunter::Runs Hunter::run_all(const RunAlgorithm& run, bool is_uniform) const {
@@ -36,7 +36,7 @@ Hunter::Runs Hunter::run_all(const RunAlgorithm& run, bool is_uniform) const {
   double seconds = is_uniform ? uniform_seconds : hunt_.limit_seconds;
   for (const lab::Entry& entry : hunt_.algorithms) {
     runs.push_back(run(entry, seconds));
-    if (runs.back().end == Run::End::too_many_pairs) break;
+    if (runs.back().end == MeasuredRun::End::too_many_pairs) break;
     if (hunt_.judges_auto && !is_uniform && is_auto(entry.spec.text()) && runs.back().finished()) {
       const auto calls = static_cast<double>(hunt_.effort.rounds + 1);
       const double frames = runs.back().worst_milliseconds > runs.back().milliseconds
@@ -70,10 +70,10 @@ const Hunter::Runs& Hunter::uniform(const lab::HardInput& input, bool again) {
 }
 
 void Hunter::check(InputResult& result, const RunAlgorithm& run) const {
-  const Run* first = nullptr;
+  const MeasuredRun* first = nullptr;
   const std::string* by = nullptr;
   std::size_t finished = 0;
-  const auto differs = [&](const Run& found, const std::string& name) {
+  const auto differs = [&](const MeasuredRun& found, const std::string& name) {
     if (first == nullptr) {
       first = &found;
       by = &name;
@@ -85,14 +85,14 @@ void Hunter::check(InputResult& result, const RunAlgorithm& run) const {
   };
   for (const Finding& finding : result.findings) {
     if (finding.run.finished()) differs(finding.run, finding.algorithm);
-    if (finding.run.end == Run::End::failed)
+    if (finding.run.end == MeasuredRun::End::failed)
       result.fault = fmt::format("{}: {}", finding.algorithm, finding.run.fault.data());
   }
   for (const lab::Entry& reference : hunt_.references) {
     if (finished != 1) break;
     const std::string name = reference.spec.text();
     if (name == *by) continue;
-    const Run again = run(reference, hunt_.reference_seconds);
+    const MeasuredRun again = run(reference, hunt_.reference_seconds);
     if (again.finished()) differs(again, name);
   }
   if (finished < 2 && result.state == InputResult::State::measured)
@@ -117,9 +117,9 @@ InputResult Hunter::judged(const lab::HardInput& input, const Runs& runs, const 
         best = runs[i].milliseconds;
         result.best = finding.algorithm;
       }
-    } else if (runs[i].end == Run::End::too_slow && !(hunt_.judges_auto && i > 0)) {
+    } else if (runs[i].end == MeasuredRun::End::too_slow && !(hunt_.judges_auto && i > 0)) {
       // At least so long: of the calls that were made one has not ended.
-      const double calls = input.call == lab::Call::track ? static_cast<double>(hunt_.effort.frames + 1) : 1;
+      const double calls = input.call == lab::HardCall::track ? static_cast<double>(hunt_.effort.frames + 1) : 1;
       finding.over_uniform = hunt_.limit_seconds * 1e3 / static_cast<double>(hunt_.effort.rounds + 1) /
                              calls / uniform[i].milliseconds;
     }
@@ -133,7 +133,7 @@ InputResult Hunter::judged(const lab::HardInput& input, const Runs& runs, const 
 InputResult Hunter::measure(const lab::HardInput& input) {
   const RunAlgorithm run = prepare(input, hunt_.effort);
   Runs runs = run_all(run, false);
-  if (runs.back().end == Run::End::too_many_pairs)
+  if (runs.back().end == MeasuredRun::End::too_many_pairs)
     return {.input = input, .state = InputResult::State::too_many_pairs};
   InputResult result = judged(input, runs, uniform(input, false));
   const auto above = [&](const Finding& finding) {

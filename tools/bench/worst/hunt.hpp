@@ -17,7 +17,7 @@ struct Bounds {
   double auto_over_uniform = 12;
   double auto_over_best = 4;
   double over_uniform = 100;      ///< of every other algorithm
-  double auto_bytes_a_box = 200;  ///< of a search
+  double auto_bytes_per_box = 200;  ///< of a search
 };
 
 /// What is hunted with.
@@ -34,7 +34,7 @@ struct Hunt {
 /// An algorithm on an input. Ratios are 0 where there is no time.
 struct Finding {
   std::string algorithm;
-  Run run;
+  MeasuredRun run;
   double over_uniform = 0;        ///< its time over its own on uniform boxes; a limit where it was too slow
   double tests_over_uniform = 0;  ///< likewise; 0 where it does not count
   double over_best = 0;           ///< its time over the least on this input
@@ -67,7 +67,7 @@ class Hunter {
 
  private:
   /// The run of each algorithm on an input, the references not among them.
-  using Runs = std::vector<Run>;
+  using Runs = std::vector<MeasuredRun>;
 
   Runs run_all(const RunAlgorithm& run, bool is_uniform) const;
   const Runs& uniform(const lab::HardInput& input, bool again);

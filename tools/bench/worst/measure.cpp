@@ -40,22 +40,22 @@ namespace broadside::bench {
 namespace {
 
 /// The beginning of a text, as Run::fault holds it.
-Fault fault_of(std::string_view text) {
-  Fault fault{};
+FaultText fault_of(std::string_view text) {
+  FaultText fault{};
   text.copy(fault.data(), fault.size() - 1);
   return fault;
 }
 
-[[noreturn]] void answer(int pipe, std::uint64_t most_bytes, const std::function<Run()>& run) {
-  const rlimit limit{most_bytes, most_bytes};
+[[noreturn]] void answer(int pipe, std::uint64_t max_bytes, const std::function<MeasuredRun()>& run) {
+  const rlimit limit{max_bytes, max_bytes};
   setrlimit(RLIMIT_AS, &limit);
-  Run result;
+  MeasuredRun result;
   try {
     result = run();
   } catch (const std::bad_alloc&) {
-    result = {.end = Run::End::out_of_memory};
+    result = {.end = MeasuredRun::End::out_of_memory};
   } catch (const std::exception& error) {
-    result = {.end = Run::End::failed, .fault = fault_of(error.what())};
+    result = {.end = MeasuredRun::End::failed, .fault = fault_of(error.what())};
   }
   const bool written = write(pipe, &result, sizeof result) == sizeof result;
   // Not exit(): what the parent has not yet written out is the parent's to write.
@@ -63,14 +63,14 @@ Fault fault_of(std::string_view text) {
 }
 
 /// Calls `run` in a process of its own and returns its result; too_slow after `seconds`, out_of_memory beyond
-/// `most_bytes` of address space. Throws std::runtime_error if no process can be made.
-Run in_child(double seconds, std::uint64_t most_bytes, const std::function<Run()>& run) {
+/// `max_bytes` of address space. Throws std::runtime_error if no process can be made.
+MeasuredRun in_child(double seconds, std::uint64_t max_bytes, const std::function<MeasuredRun()>& run) {
   const auto refuse = [](const char* what) { throw std::system_error(errno, std::generic_category(), what); };
   std::array<int, 2> ends;
   if (pipe2(ends.data(), O_CLOEXEC) != 0) refuse("worst: a pipe");
   const pid_t child = fork();
   if (child < 0) refuse("worst: a process");
-  if (child == 0) answer(ends[1], most_bytes, run);
+  if (child == 0) answer(ends[1], max_bytes, run);
   close(ends[1]);
   pollfd waiting{ends[0], POLLIN, 0};
   const auto limit = static_cast<int>(std::min(seconds * 1e3 + 1, 1e9));
@@ -78,14 +78,14 @@ Run in_child(double seconds, std::uint64_t most_bytes, const std::function<Run()
   do {
     ready = poll(&waiting, 1, limit);
   } while (ready < 0 && errno == EINTR);
-  Run result;
+  MeasuredRun result;
   const bool answered = ready > 0 && read(ends[0], &result, sizeof result) == sizeof result;
   if (!answered) kill(child, SIGKILL);
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  if (ready == 0) return {.end = Run::End::too_slow};
-  if (!answered) return {.end = Run::End::failed, .fault = fault_of("ended without a result")};
+  if (ready == 0) return {.end = MeasuredRun::End::too_slow};
+  if (!answered) return {.end = MeasuredRun::End::failed, .fault = fault_of("ended without a result")};
   return result;
 }
 
@@ -125,20 +125,20 @@ class Measured {
  public:
   Measured(const lab::HardInput& input, const Effort& effort)
       : effort_(effort),
-        is_tracked_(input.call == lab::Call::track),
+        is_tracked_(input.call == lab::HardCall::track),
         left_count_(lab::left_count(input, effort.boxes)),
         history_(lab::make_input<D, Real>(input, effort.boxes, effort.frames)),
-        most_pairs_(effort.most_pairs * static_cast<double>(effort.boxes)) {}
+        max_pairs_(effort.max_pairs * static_cast<double>(effort.boxes)) {}
 
-  Run run(const lab::Entry& entry) const {
-    Run counted;
+  MeasuredRun run(const lab::Entry& entry) const {
+    MeasuredRun counted;
     try {
       counted = once(entry, true);
     } catch (const TooManyPairs&) {
-      return {.end = Run::End::too_many_pairs};
+      return {.end = MeasuredRun::End::too_many_pairs};
     }
     for (std::size_t round = 0; round < effort_.rounds; ++round) {
-      const Run timed = once(entry, false);
+      const MeasuredRun timed = once(entry, false);
       if (timed.pairs != counted.pairs || timed.hash != counted.hash)
         throw std::runtime_error("found other pairs in another call; expected the same");
       if (round == 0 || timed.milliseconds < counted.milliseconds) {
@@ -150,12 +150,12 @@ class Measured {
   }
 
  private:
-  Run once(const lab::Entry& entry, bool count) const {
+  MeasuredRun once(const lab::Entry& entry, bool count) const {
     return is_tracked_ ? track(entry, count) : find(entry, count);
   }
 
-  Run find(const lab::Entry& entry, bool count) const {
-    LimitedHasher pairs(most_pairs_);
+  MeasuredRun find(const lab::Entry& entry, bool count) const {
+    LimitedHasher pairs(max_pairs_);
     std::optional<lab::AllocationMeter> meter;
     if (count) meter.emplace();
     const lab::Stopwatch watch;
@@ -172,9 +172,9 @@ class Measured {
             .peak_bytes = meter ? peak(*meter) : 0};
   }
 
-  Run track(const lab::Entry& entry, bool count) const {
+  MeasuredRun track(const lab::Entry& entry, bool count) const {
     std::vector<Box<D, Real>> boxes = history_.boxes;
-    Run run;
+    MeasuredRun run;
     std::vector<double> frames;
     std::vector<double> tests;
     std::optional<lab::AllocationMeter> meter;
@@ -185,7 +185,7 @@ class Measured {
     const auto update = [&](std::span<const BoxId> changed, bool is_first) {
       // A hundred movers may begin a pair each with a giant.
       const double most =
-          is_first ? most_pairs_ : effort_.most_pairs * (100 + static_cast<double>(changed.size()));
+          is_first ? max_pairs_ : effort_.max_pairs * (100 + static_cast<double>(changed.size()));
       LimitedHasher begun(most);
       LimitedHasher ended(most);
       const lab::Stopwatch watch;
@@ -196,7 +196,7 @@ class Measured {
       run.hash = (run.hash * odd + begun.hash()) * odd + ended.hash();
       (is_first ? run.pairs : run.events) += begun.count() + ended.count();
       held += static_cast<std::int64_t>(begun.count()) - static_cast<std::int64_t>(ended.count());
-      if (static_cast<double>(held) > most_pairs_) throw TooManyPairs();
+      if (static_cast<double>(held) > max_pairs_) throw TooManyPairs();
       return milliseconds;
     };
     update({}, true);
@@ -216,14 +216,14 @@ class Measured {
   bool is_tracked_;
   std::size_t left_count_;
   lab::History<D, Real> history_;
-  double most_pairs_;
+  double max_pairs_;
 };
 
 template <int D, typename Real>
 RunAlgorithm prepare_in(const lab::HardInput& input, const Effort& effort) {
   const auto measured = std::make_shared<const Measured<D, Real>>(input, effort);
-  return [measured, most_bytes = effort.most_bytes](const lab::Entry& entry, double seconds) {
-    return in_child(seconds, most_bytes, [&] { return measured->run(entry); });
+  return [measured, max_bytes = effort.max_bytes](const lab::Entry& entry, double seconds) {
+    return in_child(seconds, max_bytes, [&] { return measured->run(entry); });
   };
 }
 

@@ -12,10 +12,10 @@
 namespace broadside::bench {
 
 /// The beginning of an error's text, in a Run that a child sends through a pipe.
-using Fault = std::array<char, 256>;
+using FaultText = std::array<char, 256>;
 
 /// What an algorithm did with an input. A frame is the call itself where nothing moves.
-struct Run {
+struct MeasuredRun {
   enum class End { finished, too_slow, out_of_memory, too_many_pairs, failed };
 
   End end = End::finished;
@@ -26,7 +26,7 @@ struct Run {
   std::uint64_t events = 0;       ///< of a tracker: begun and ended in all frames after the first
   std::uint64_t hash = 0;         ///< of both
   double peak_bytes = 0;          ///< taken beyond input and output
-  Fault fault{};                  ///< what it threw where it failed; ends with 0
+  FaultText fault{};                  ///< what it threw where it failed; ends with 0
 
   bool finished() const { return end == End::finished; }
 };
@@ -36,12 +36,12 @@ struct Effort {
   std::size_t boxes = 100'000;
   std::size_t rounds = 2;  ///< timed calls; the first, counted call is not among them
   std::size_t frames = 9;  ///< of a tracker, after its first
-  double most_pairs = 10;  ///< a box, and events a mover and frame: an input with more is left out
-  std::uint64_t most_bytes = std::uint64_t{6} << 30;
+  double max_pairs = 10;  ///< a box, and events a mover and frame: an input with more is left out
+  std::uint64_t max_bytes = std::uint64_t{6} << 30;
 };
 
 /// A run of one algorithm of at most `seconds`, in a process of its own.
-using RunAlgorithm = std::function<Run(const lab::Entry& entry, double seconds)>;
+using RunAlgorithm = std::function<MeasuredRun(const lab::Entry& entry, double seconds)>;
 
 /// Makes the boxes of `input` and returns what runs algorithms on them. A run makes one call in which tests,
 /// memory and pairs are counted, then `rounds` that are timed and whose pairs must be the same. A tracker

@@ -33,7 +33,7 @@ std::vector<Line> lines_of(std::span<const InputResult> results, const std::stri
   return lines;
 }
 
-std::string_view name(Run::End end) {
+std::string_view name(MeasuredRun::End end) {
   constexpr std::array<std::string_view, 5> names = {"finished", "too slow", "out of memory",
                                                      "too many pairs", "failed"};
   return names[static_cast<std::size_t>(end)];
@@ -48,11 +48,11 @@ template <typename Key>
 std::string worst(std::vector<Line> lines, std::size_t most, const Key& key) {
   std::ranges::stable_sort(lines, std::ranges::greater(), key);
   lines.resize(std::min(lines.size(), most));
-  lab::Columns columns(">>>>>>><<");
+  lab::AlignedColumns columns(">>>>>>><<");
   columns.add({"over uniform", "over best", "ms", "tests/box", "over uniform", "bytes/box", "pairs/box",
                "best", "input"});
   for (const Line& line : lines) {
-    const Run& run = line.finding->run;
+    const MeasuredRun& run = line.finding->run;
     const bool finished = run.finished();
     columns.add(
         {(finished ? "" : ">") + lab::ratio_text(line.finding->over_uniform),
@@ -91,7 +91,7 @@ std::string above_text(const InputResult& result, const Bounds& bounds) {
   std::string text;
   for (const Finding& finding : result.findings) {
     if (!is_above(finding, result, bounds)) continue;
-    const Run& run = finding.run;
+    const MeasuredRun& run = finding.run;
     text += fmt::format("{}: {}{} times uniform, {} times {}, {} ms, {} bytes a box: {}\n", finding.algorithm,
                         run.finished() ? "" : "above ", lab::ratio_text(finding.over_uniform),
                         run.finished() ? lab::ratio_text(finding.over_best) : "?", result.best,
@@ -126,7 +126,7 @@ std::string summary(std::span<const InputResult> results, const Hunt& hunt) {
         "  {:<20} {} above {}, {} not finished\n", entry.spec.text(), lab::counted(above, "input", "inputs"),
         entry.spec.name == "auto" ? fmt::format("{} times uniform, {} times the best or {} bytes a box",
                                                 hunt.bounds.auto_over_uniform, hunt.bounds.auto_over_best,
-                                                hunt.bounds.auto_bytes_a_box)
+                                                hunt.bounds.auto_bytes_per_box)
                                   : fmt::format("{} times uniform", hunt.bounds.over_uniform),
         unfinished);
   }
@@ -138,23 +138,23 @@ Json to_json(std::span<const InputResult> results, const Hunt& hunt) {
   for (const InputResult& result : results) {
     Json findings = Json::array();
     for (const Finding& finding : result.findings) {
-      const Run& run = finding.run;
+      const MeasuredRun& run = finding.run;
       findings.push_back({{"algorithm", finding.algorithm},
                           {"end", name(run.end)},
                           {"ms", run.milliseconds},
                           {"worst_ms", run.worst_milliseconds},
                           {"over_uniform", finding.over_uniform},
                           {"over_best", finding.over_best},
-                          {"tests_a_box", run.tests},
+                          {"tests_per_box", run.tests},
                           {"tests_over_uniform", finding.tests_over_uniform},
-                          {"bytes_a_box", run.peak_bytes},
+                          {"bytes_per_box", run.peak_bytes},
                           {"above_bounds", is_above(finding, result, hunt.bounds)}});
     }
     list.push_back({{"input", result.input.text()},
                     {"state", name(result.state)},
                     {"fault", result.fault},
-                    {"pairs_a_box", result.pairs},
-                    {"events_a_box", result.events},
+                    {"pairs_per_box", result.pairs},
+                    {"events_per_box", result.events},
                     {"best", result.best},
                     {"algorithms", std::move(findings)}});
   }

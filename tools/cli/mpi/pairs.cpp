@@ -46,7 +46,7 @@ class PairsOfRanks {
   void give() const {
     std::span<const LargePair> rest = own_;
     while (is_asked()) {
-      const std::span<const LargePair> piece = rest.first(std::min(rest.size(), pairs_a_piece));
+      const std::span<const LargePair> piece = rest.first(std::min(rest.size(), pairs_per_piece));
       const std::uint64_t size = piece.size();
       send(&size, sizeof(size), 0);
       send(piece.data(), piece.size_bytes(), 0);
@@ -67,7 +67,7 @@ class PairsOfRanks {
   }
 
  private:
-  static constexpr std::size_t pairs_a_piece = std::size_t{1} << 18;
+  static constexpr std::size_t pairs_per_piece = std::size_t{1} << 18;
 
   static bool is_asked() {
     char is_wanted = 0;
@@ -82,7 +82,7 @@ class PairsOfRanks {
 
   template <typename Take>
   static void take_those_of(int from, const Take& take) {
-    std::vector<LargePair> pairs(pairs_a_piece);
+    std::vector<LargePair> pairs(pairs_per_piece);
     for (std::uint64_t size = 1; size > 0;) {
       ask(from, true);
       receive(&size, sizeof(size), from);
@@ -97,11 +97,11 @@ class PairsOfRanks {
 };
 
 void write(std::span<const LargePair> pairs, bool has_large_ids, lab::PairFile& file) {
-  constexpr std::size_t pairs_a_piece = std::size_t{1} << 14;
+  constexpr std::size_t pairs_per_piece = std::size_t{1} << 14;
   std::vector<Pair> small;
   std::vector<std::array<std::uint64_t, 2>> large;
   while (!pairs.empty()) {
-    const std::span<const LargePair> piece = pairs.first(std::min(pairs.size(), pairs_a_piece));
+    const std::span<const LargePair> piece = pairs.first(std::min(pairs.size(), pairs_per_piece));
     pairs = pairs.subspan(piece.size());
     small.clear();
     large.clear();

@@ -19,10 +19,10 @@ namespace {
 
 /// An algorithm that takes more than this many times the best one's time is not measured again.
 constexpr double margin_of_finalists = 1.6;
-constexpr std::size_t most_finalists = 4;
+constexpr std::size_t max_finalists = 4;
 
 /// Of how many of the best other settings are tried.
-constexpr std::size_t most_with_variants = 2;
+constexpr std::size_t max_with_variants = 2;
 
 /// The first of `frames` frames in which about as many boxes change as in the mean of the history: those
 /// nearest its middle, where boxes have come to do what they usually do.
@@ -57,8 +57,8 @@ History<D, Real> window(const History<D, Real>& history, double budget_seconds, 
   const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
   double most = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
   // The definition is asked about every frame.
-  constexpr double most_places_by_definition = 5'000;
-  if (places <= most_places_by_definition)
+  constexpr double max_places_by_definition = 5'000;
+  if (places <= max_places_by_definition)
     most = std::min(most, std::max(budget_seconds * 2e8 / (places * places), 8.0));
   advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(most));
   if (advice.frames < history.steps.size()) advice.first_frame = typical_frames(history, advice.frames);
@@ -171,8 +171,8 @@ class Adviser {
     return {.budget_seconds = budget / 12,
             .history_seconds = budget / 3,
             .share_seconds = 0.3 * budget / static_cast<double>(entries),
-            .least_rounds = advice_.mode == Mode::find ? std::size_t{6} : std::size_t{2},
-            .most_rounds = 64,
+            .min_rounds = advice_.mode == Mode::find ? std::size_t{6} : std::size_t{2},
+            .max_rounds = 64,
             .slow_seconds = budget / 20,
             .slow_history_seconds = budget / 20,
             .slow_rounds = 1,
@@ -185,8 +185,8 @@ class Adviser {
     return {.budget_seconds = budget,
             .history_seconds = budget,
             .share_seconds = 0.6 * budget / static_cast<double>(entries),
-            .least_rounds = advice_.mode == Mode::find ? std::size_t{9} : std::size_t{3},
-            .most_rounds = 400,
+            .min_rounds = advice_.mode == Mode::find ? std::size_t{9} : std::size_t{3},
+            .max_rounds = 400,
             .slow_seconds = budget / 8,
             .slow_history_seconds = budget / 8,
             .slow_rounds = 3,
@@ -220,11 +220,11 @@ class Adviser {
     std::size_t with_variants = 0;
     for (const std::size_t i : order) {
       const bool is_near = time(first[i]) <= margin_of_finalists * time(first[*best]) &&
-                           (is_peer(i) || ours++ < most_finalists);
+                           (is_peer(i) || ours++ < max_finalists);
       if (!is_near && !is_auto(i)) continue;
       finalists.push_back(plain[i]);
       if (!is_peer(i)) add_threads(plain[i], tried);
-      if (is_auto(i) || (!is_peer(i) && with_variants++ < most_with_variants)) add_variants(plain[i], tried);
+      if (is_auto(i) || (!is_peer(i) && with_variants++ < max_with_variants)) add_variants(plain[i], tried);
     }
     std::erase_if(tried, [&](const Entry& entry) {
       return std::ranges::any_of(plain,

@@ -45,7 +45,7 @@ struct Advice {
   std::optional<double> floor_ms{};
   std::vector<Ranked> ranking{};   ///< finalists first; of them and of the others the fastest first,
                                    ///< those without a time last
-  std::optional<Choice> choice{};  ///< its indices are into the ranking
+  std::optional<AlgorithmChoice> choice{};  ///< its indices are into the ranking
 
   std::string spec{};     ///< what is advised
   double milliseconds{};  ///< that it takes, a call or a frame, as in Ranked

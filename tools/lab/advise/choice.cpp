@@ -77,13 +77,13 @@ double part_of_rounds(const Measurement& a, const Measurement& b) {
   return rounds == 0 ? 0 : static_cast<double>(longer) / static_cast<double>(rounds);
 }
 
-std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time) {
+std::optional<AlgorithmChoice> choose(std::span<const Rival> rivals, bool by_time) {
   const auto plain = fastest(rivals, [](const Rival& rival) { return !rival.is_variant && !is_peer(rival); });
   if (!plain) return std::nullopt;
   const double least = rivals[*plain].milliseconds;
-  Choice choice{*plain, is_auto(rivals[*plain]) ? Why::automatic : Why::fastest, *plain, {}};
+  AlgorithmChoice choice{*plain, is_auto(rivals[*plain]) ? Why::automatic : Why::fastest, *plain, {}};
   const auto automatic = fastest(rivals, is_auto);
-  if (automatic && !by_time) return Choice{*automatic, Why::automatic, *plain, {}};
+  if (automatic && !by_time) return AlgorithmChoice{*automatic, Why::automatic, *plain, {}};
   if (automatic) {
     const double time = rivals[*automatic].milliseconds;
     if (time <= least * margin_of_auto || time - least <= indifferent_ms) {

@@ -41,7 +41,7 @@ enum class Why {
 };
 
 /// The choice. Numbers are indices of rivals.
-struct Choice {
+struct AlgorithmChoice {
   std::size_t chosen;
   Why why;
   std::size_t fastest_plain;  ///< the fastest algorithm whose tunables are its own choice
@@ -64,7 +64,7 @@ double part_of_rounds(const Measurement& a, const Measurement& b);
 /// Chooses among the verified; empty if none of ours and the paper's was. Of equals the first is
 /// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that
 /// is among them.
-std::optional<Choice> choose(std::span<const Rival> rivals, bool by_time = true);
+std::optional<AlgorithmChoice> choose(std::span<const Rival> rivals, bool by_time = true);
 
 /// The settings that are worth a try: cells of some multiples of the boxes' size, capacities, axes, and where
 /// boxes move each way to follow them. The entry's own values stay as they are. Empty for an algorithm

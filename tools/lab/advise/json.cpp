@@ -19,10 +19,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const MotionSignals& motion) {
-  return {{"frames", motion.frames},        {"least_moving", motion.least_moving},
-          {"moving", motion.moving},        {"most_moving", motion.most_moving},
+  return {{"frames", motion.frames},        {"min_moving", motion.min_moving},
+          {"moving", motion.moving},        {"max_moving", motion.max_moving},
           {"drift", or_null(motion.drift)}, {"jumps", motion.jumps},
-          {"added_a_frame", motion.added},  {"removed_a_frame", motion.removed}};
+          {"added_per_frame", motion.added},  {"removed_per_frame", motion.removed}};
 }
 
 Json json_of(const Signals& signals) {
@@ -37,9 +37,9 @@ Json json_of(const Signals& signals) {
                {"size_percentiles", size_percentiles},
                {"sizes", signals.sizes},
                {"largest", signals.largest},
-               {"axis_tests_a_box", signals.axis_tests},
+               {"axis_tests_per_box", signals.axis_tests},
                {"clustering", signals.clustering},
-               {"overlaps_a_box", or_null(signals.overlaps)}};
+               {"overlaps_per_box", or_null(signals.overlaps)}};
   json["motion"] = signals.motion ? json_of(*signals.motion) : Json();
   return json;
 }
@@ -77,7 +77,7 @@ Json json_of(const Ranked& ranked) {
 
 Json advice_json(const Advice& advice) {
   if (!advice.choice) return {};
-  const Choice& choice = *advice.choice;
+  const AlgorithmChoice& choice = *advice.choice;
   const Measurement& chosen = advice.ranking[choice.chosen].measurement;
   const auto spec_of = [&](std::size_t place) { return advice.ranking[place].measurement.algorithm; };
   constexpr std::array<std::string_view, 3> whys = {"fastest", "automatic", "variant"};

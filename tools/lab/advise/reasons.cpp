@@ -23,7 +23,7 @@ constexpr double alike = 4;
 
 /// Sentences call an algorithm no slower if it takes up to this many times the time.
 constexpr double as_fast = 1.05;
-constexpr std::size_t most_others = 5;
+constexpr std::size_t max_others = 5;
 
 /// A count explains a time if it is this many times the other count.
 constexpr double clearly = 1.2;
@@ -136,7 +136,7 @@ std::string times(double ratio) { return ratio_text(ratio) + " times"; }
 std::vector<std::string> reasons_of(const Advice& advice) {
   std::vector<std::string> reasons;
   if (!advice.choice) return reasons;
-  const Choice& choice = *advice.choice;
+  const AlgorithmChoice& choice = *advice.choice;
   const Measurement& chosen = advice.ranking[choice.chosen].measurement;
   const Measurement& fastest = advice.ranking[choice.fastest_plain].measurement;
   const std::string name = base_of(chosen.algorithm);
@@ -189,7 +189,7 @@ std::vector<std::string> reasons_of(const Advice& advice) {
     const Measurement& other = ranked.measurement;
     if (ranked.is_variant || &other == &chosen || !is_timed(other) || is_foreign(other.kind)) continue;
     const double ratio = ranked.milliseconds / time;
-    if (ratio <= as_fast || ++others > most_others) continue;
+    if (ratio <= as_fast || ++others > max_others) continue;
     const std::string why = base_of(other.algorithm) == default_algorithm
                                 ? what_auto_takes(other, name, advice.mode)
                                 : hinders(ranked, advice.ranking[choice.chosen], advice.signals);

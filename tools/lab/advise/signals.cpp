@@ -161,8 +161,8 @@ class MotionCollector {
   MotionSignals finish() {
     MotionSignals motion{.frames = fractions_.size()};
     const auto frames = static_cast<double>(fractions_.size());
-    motion.least_moving = std::ranges::min(fractions_);
-    motion.most_moving = std::ranges::max(fractions_);
+    motion.min_moving = std::ranges::min(fractions_);
+    motion.max_moving = std::ranges::max(fractions_);
     for (const double fraction : fractions_) motion.moving += fraction / frames;
     motion.added = static_cast<double>(added_) / frames;
     motion.removed = static_cast<double>(removed_) / frames;

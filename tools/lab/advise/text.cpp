@@ -18,7 +18,7 @@ std::string percent(double part) { return fmt::format("{:.3g} %", part * 100); }
 std::string motion_text(const MotionSignals& motion) {
   std::string text = fmt::format("In {} after the first, {} of the boxes move in the mean ({} to {})",
                                  counted(motion.frames, "frame", "frames"), percent(motion.moving),
-                                 percent(motion.least_moving), percent(motion.most_moving));
+                                 percent(motion.min_moving), percent(motion.max_moving));
   if (motion.drift)
     text += fmt::format(", by {} of their longest side in the median", rounded(*motion.drift));
   if (motion.jumps > 0)

@@ -39,7 +39,7 @@ constexpr int none = -1;
 using Found = std::array<int, roles>;
 
 /// The two columns that give the bounds on an axis.
-struct Choice {
+struct BoundsColumns {
   BoundsForm form;
   int first;
   int second;
@@ -66,7 +66,7 @@ bool is_interval(const Found& found) {
          std::ranges::count(found, none) == std::ptrdiff_t{roles} - 2;
 }
 
-std::optional<Choice> choose(const Found& found, int radius, bool are_chosen) {
+std::optional<BoundsColumns> choose(const Found& found, int radius, bool are_chosen) {
   struct Way {
     BoundsForm form;
     Role first;
@@ -87,14 +87,14 @@ std::optional<Choice> choose(const Found& found, int radius, bool are_chosen) {
   });
   for (const Way& way : ways) {
     if (of(found, way.first) != none && of(found, way.second) != none)
-      return Choice{way.form, of(found, way.first), of(found, way.second)};
+      return BoundsColumns{way.form, of(found, way.first), of(found, way.second)};
   }
   if (are_chosen && of(found, Role::position) != none && of(found, Role::size) != none)
-    return Choice{BoundsForm::min_size, of(found, Role::position), of(found, Role::size)};
-  if (is_interval(found)) return Choice{BoundsForm::min_max, of(found, Role::begin), of(found, Role::end)};
+    return BoundsColumns{BoundsForm::min_size, of(found, Role::position), of(found, Role::size)};
+  if (is_interval(found)) return BoundsColumns{BoundsForm::min_max, of(found, Role::begin), of(found, Role::end)};
   for (const Role role : {Role::centre, Role::position, Role::geographic}) {
     if (radius != none && of(found, role) != none && of(found, Role::size) == none)
-      return Choice{BoundsForm::centre_radius, of(found, role), radius};
+      return BoundsColumns{BoundsForm::centre_radius, of(found, role), radius};
   }
   return std::nullopt;
 }
@@ -176,7 +176,7 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
       std::string points = points_of(of_axis, names);
       if (!points.empty()) return points;
     }
-    if (const std::optional<Choice> choice = choose(of_axis, radius, are_chosen)) {
+    if (const std::optional<BoundsColumns> choice = choose(of_axis, radius, are_chosen)) {
       const int of_form = static_cast<int>(axis);
       columns.forms[axis] = choice->form;
       columns.dimension = std::max(2, of_form + 1);

@@ -133,10 +133,10 @@ void check_options(const Format& format, const std::string& name, const ReadOpti
                     "a table or a map",
                     name, format.name));
   if (options.boxes.empty() ||
-      std::ranges::find(format.parts, options.boxes, &Part::name) != format.parts.end())
+      std::ranges::find(format.parts, options.boxes, &ElementKind::name) != format.parts.end())
     return;
   std::vector<std::string> known;
-  for (const Part& part : format.parts) known.push_back(part.name);
+  for (const ElementKind& part : format.parts) known.push_back(part.name);
   throw FileError(fmt::format("{}: boxes of '{}'{} in format {}; expected {}", name, options.boxes,
                               core::did_you_mean(options.boxes, known), format.name,
                               known.empty() ? "none to be asked for: it holds boxes"

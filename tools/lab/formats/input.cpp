@@ -20,13 +20,13 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::uint64_t bytes_a_report = std::uint64_t{1} << 23;
-constexpr std::uint64_t bytes_a_release = std::uint64_t{1} << 24;  // of whole pages, whatever the machine's
+constexpr std::uint64_t bytes_per_report = std::uint64_t{1} << 23;
+constexpr std::uint64_t bytes_per_release = std::uint64_t{1} << 24;  // of whole pages, whatever the machine's
 
 /// How much is copied of what cannot be mapped. Nothing useful comes from a device but a terminal, and what
 /// the others give, such as /dev/zero, has no end. A pipe may have none either; its readers need memory as
 /// well.
-std::uint64_t most_copied_bytes(bool is_device) {
+std::uint64_t max_copied_bytes(bool is_device) {
   constexpr std::uint64_t of_a_device = std::uint64_t{1} << 20;
   if (is_device) return of_a_device;
   const std::uint64_t memory = platform::memory_bytes();
@@ -111,7 +111,7 @@ Input::Input(const std::filesystem::path& path, Progress progress)
     if (path != "-") path_ = path;
     size_ = file.bytes;
   }
-  if (progress_) next_report_ = bytes_a_report;
+  if (progress_) next_report_ = bytes_per_report;
   buffer_ = std::make_unique<Buffer>(*source_);
 }
 
@@ -125,7 +125,7 @@ Input::Input(std::string name, std::string_view bytes)
 std::unique_ptr<Input> Input::in_memory(std::string name, std::string_view bytes, Progress progress) {
   auto input = std::make_unique<Input>(std::move(name), bytes);
   input->progress_ = std::move(progress);
-  if (input->progress_) input->next_report_ = bytes_a_report;
+  if (input->progress_) input->next_report_ = bytes_per_report;
   auto source = std::make_unique<ByteSource>(bytes, input->name_);
   if (!source->is_compressed()) return input;
   input->source_ = std::move(source);
@@ -160,14 +160,14 @@ std::string_view Input::bytes() {
   }
   copy();
   size_ = kept_.size();
-  next_report_ = progress_ ? bytes_a_report : UINT64_MAX;
+  next_report_ = progress_ ? bytes_per_report : UINT64_MAX;
   return all_ = kept_;
 }
 
 /// Reads all bytes into memory.
 void Input::copy() {
   kept_ = buffer_->peek(0);
-  const std::uint64_t most = most_copied_bytes(is_device_);
+  const std::uint64_t most = max_copied_bytes(is_device_);
   std::size_t used = kept_.size();
   try {
     while (used <= most) {
@@ -193,8 +193,8 @@ void Input::copy() {
 }
 
 void Input::release(std::uint64_t byte) {
-  if (mapped_ == nullptr || byte < released_ + bytes_a_release) return;
-  const std::uint64_t end = byte / bytes_a_release * bytes_a_release;  // whole pages
+  if (mapped_ == nullptr || byte < released_ + bytes_per_release) return;
+  const std::uint64_t end = byte / bytes_per_release * bytes_per_release;  // whole pages
   platform::release(static_cast<char*>(mapped_) + released_, end - released_);
   released_ = end;
 }
@@ -212,7 +212,7 @@ std::istream& Input::stream() {
 }
 
 void Input::report(std::uint64_t byte) {
-  next_report_ = byte + bytes_a_report;
+  next_report_ = byte + bytes_per_report;
   progress_(byte, size_);
 }
 

@@ -17,7 +17,7 @@ namespace broadside::lab {
 class Quarantine {
  public:
   /// The number of boxes that are reported one by one; the rest are only counted.
-  static constexpr std::uint64_t most_told = 20;
+  static constexpr std::uint64_t max_told = 20;
 
   explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
 
@@ -45,12 +45,12 @@ class Quarantine {
   std::string warning(std::string_view file) const {
     if (count_ == 0) return {};
     return fmt::format("{}: left out {}{}", file, counted(count_, "invalid box", "invalid boxes"),
-                       count_ > most_told ? fmt::format("; only the first {} are listed", most_told) : "");
+                       count_ > max_told ? fmt::format("; only the first {} are listed", max_told) : "");
   }
 
  private:
   void add(std::string_view why) {
-    if (count_++ < most_told) say_(why);
+    if (count_++ < max_told) say_(why);
   }
 
   std::function<void(std::string_view)> say_;

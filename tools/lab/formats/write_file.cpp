@@ -89,9 +89,9 @@ std::optional<int> descriptor_of(const std::filesystem::path& path) {
 
 /// Where a path's links lead, whether or not there is something; but not on from a descriptor.
 std::filesystem::path followed(std::filesystem::path path) {
-  constexpr int most_links = 40;
+  constexpr int max_links = 40;
   std::error_code error;
-  for (int links = 0; links < most_links; ++links) {
+  for (int links = 0; links < max_links; ++links) {
     if (descriptor_of(path) || !std::filesystem::is_symlink(path, error)) return path;
     const std::filesystem::path to = std::filesystem::read_symlink(path, error);
     if (error) refuse(path, error.message());

@@ -19,14 +19,14 @@ namespace broadside::lab::literature {
 class IntervalEnd {
  public:
   /// Ids need one bit less than they have.
-  static constexpr std::uint32_t most_ids = 0x7fffffffU;
+  static constexpr std::uint32_t max_ids = 0x7fffffffU;
 
   IntervalEnd() = default;
   IntervalEnd(float value, bool is_max, std::uint32_t id) noexcept
       : bits_(std::uint64_t{sort_key(value)} << 32 | (is_max ? 0x80000000U : 0U) | id) {}
 
   bool is_max() const noexcept { return (bits_ & 0x80000000U) != 0; }
-  std::uint32_t id() const noexcept { return static_cast<std::uint32_t>(bits_) & most_ids; }
+  std::uint32_t id() const noexcept { return static_cast<std::uint32_t>(bits_) & max_ids; }
 
   friend auto operator<=>(const IntervalEnd&, const IntervalEnd&) = default;
 

@@ -122,7 +122,7 @@ class KarrasLbvh final : public Searcher<D> {
 
   static constexpr std::uint32_t leaf_bit = 0x80000000U;
   // Codes have up to 64 bits and places 32: each level of the tree shares at least one bit more.
-  static constexpr std::size_t most_levels = 96;
+  static constexpr std::size_t max_levels = 96;
 
   /// The leaves: `boxes` from `begin` to `end` in the order of their codes.
   void sort(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, std::size_t begin, std::size_t end) {
@@ -213,7 +213,7 @@ class KarrasLbvh final : public Searcher<D> {
 
   /// Writes the pairs of `box` with the leaves from index `first` on. Returns the number of bounds compared.
   std::uint64_t search(const Box<D>& box, BoxId id, std::size_t first, PairSink& pairs) const {
-    std::array<std::uint32_t, most_levels + 1> stack;
+    std::array<std::uint32_t, max_levels + 1> stack;
     std::uint64_t compared = 0;
     std::size_t depth = 0;
     std::uint32_t place = 0;

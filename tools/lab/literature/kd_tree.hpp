@@ -114,7 +114,7 @@ class KdTree {
   };
 
   /// What one search is about.
-  struct Search {
+  struct JoinContext {
     std::span<const Box<D>> boxes;
     std::span<const std::uint8_t> flags;
     bool across = false;
@@ -337,7 +337,7 @@ class KdTree {
   std::vector<std::uint32_t> stack_;
 
   // Of a search: boxes without a flag and with one.
-  Search search_;
+  JoinContext search_;
   std::array<std::vector<std::uint32_t>, 2> above_;
   std::array<std::vector<std::uint32_t>, 2> here_;
   std::array<SortedBoxes<D>, 2> sorted_here_;

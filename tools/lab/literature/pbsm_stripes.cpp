@@ -26,7 +26,7 @@ namespace {
 
 /// A box in a stripe: on the sweep axis, and on the others.
 template <int D>
-struct Reference {
+struct StripeEntry {
   float begin;
   float end;
   std::array<float, D - 1> low;
@@ -69,7 +69,7 @@ class PbsmStripes final : public Searcher<D> {
   }
 
  private:
-  using Run = std::span<const Reference<D>>;
+  using Run = std::span<const StripeEntry<D>>;
 
   /// The sweep is along the axis on which the fewest pairs of boxes share a cell of a histogram; stripes cut
   /// the next best.
@@ -103,7 +103,7 @@ class PbsmStripes final : public Searcher<D> {
 
   /// The references of a set, stripe by stripe, in the order of their minima on the sweep axis.
   struct Partition {
-    std::vector<Reference<D>> references;
+    std::vector<StripeEntry<D>> references;
     std::vector<std::size_t> ends;
 
     Run run(std::size_t stripe) const {
@@ -127,7 +127,7 @@ class PbsmStripes final : public Searcher<D> {
     partition.references.resize(next[stripes_.cells]);
     for (const auto& entry : sorter_.sort()) {
       const Box<D>& box = boxes[entry.place];
-      Reference<D> reference{.begin = box.min[sweep_axis_],
+      StripeEntry<D> reference{.begin = box.min[sweep_axis_],
                              .end = box.max[sweep_axis_],
                              .low = {},
                              .high = {},
@@ -146,7 +146,7 @@ class PbsmStripes final : public Searcher<D> {
     }
   }
 
-  static bool meets(const Reference<D>& a, const Reference<D>& b) noexcept {
+  static bool meets(const StripeEntry<D>& a, const StripeEntry<D>& b) noexcept {
     bool touching = !(a.begins_before && b.begins_before);
     for (int i = 0; i < D - 1; ++i) {
       touching &= a.low[i] <= b.high[i];

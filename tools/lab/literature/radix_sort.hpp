@@ -31,21 +31,21 @@ inline std::uint32_t sort_key(float value) noexcept {
 template <typename Key>
 class RadixSort {
  public:
-  struct Entry {
+  struct KeyedPlace {
     Key key;
     std::uint32_t place;
   };
 
   /// Room for `count` entries to be filled in and sorted. Valid until the next call.
-  std::span<Entry> entries(std::size_t count) {
+  std::span<KeyedPlace> entries(std::size_t count) {
     entries_.resize(count);
     return entries_;
   }
 
   /// Sorts what was filled in. The result is valid until the next call of entries().
-  std::span<const Entry> sort() {
+  std::span<const KeyedPlace> sort() {
     for (auto& counts : counts_) counts.fill(0);
-    for (const Entry& entry : entries_) {
+    for (const KeyedPlace& entry : entries_) {
       for (std::size_t pass = 0; pass < passes; ++pass) ++counts_[pass][digit(entry.key, pass)];
     }
     other_.resize(entries_.size());
@@ -58,7 +58,7 @@ class RadixSort {
         count = begin;
         begin = next;
       }
-      for (const Entry& entry : entries_) other_[counts[digit(entry.key, pass)]++] = entry;
+      for (const KeyedPlace& entry : entries_) other_[counts[digit(entry.key, pass)]++] = entry;
       entries_.swap(other_);
     }
     return entries_;
@@ -72,8 +72,8 @@ class RadixSort {
     return static_cast<std::size_t>(key >> (pass * digit_bits)) & ((std::size_t{1} << digit_bits) - 1);
   }
 
-  std::vector<Entry> entries_;
-  std::vector<Entry> other_;
+  std::vector<KeyedPlace> entries_;
+  std::vector<KeyedPlace> other_;
   std::array<std::array<std::uint32_t, std::size_t{1} << digit_bits>, passes> counts_;
 };
 

@@ -62,8 +62,8 @@ class Regions {
       cut(widest, counts_[widest] * 2);
       std::size_t references = 0;
       for (const Box<D>& box : sample) references += range_of(box).count();
-      constexpr std::size_t most_references = 4;
-      if (width(widest) > 0 && references <= most_references * sample.size()) continue;
+      constexpr std::size_t max_references = 4;
+      if (width(widest) > 0 && references <= max_references * sample.size()) continue;
       cut(widest, counts_[widest] / 2);
       is_done[widest] = true;
     }

@@ -29,14 +29,14 @@ namespace {
 template <int D>
 class SegmentedSap final : public Searcher<D> {
  public:
-  explicit SegmentedSap(const Settings& settings) : boxes_a_region_(settings.number("region")) {}
+  explicit SegmentedSap(const Settings& settings) : boxes_per_region_(settings.number("region")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    const Regions<D> regions(input.boxes, static_cast<double>(input.boxes.size()) / boxes_a_region_);
+    const Regions<D> regions(input.boxes, static_cast<double>(input.boxes.size()) / boxes_per_region_);
     file(input.boxes, regions);
     Checkpoint checkpoint(input.workers.checkpoint);
     for (std::size_t region = 0; region + 1 < begins_.size(); ++region)
-      sweep(std::span<const Member>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
+      sweep(std::span<const RegionEntry>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
             input.left_count, checkpoint, pairs);
     return std::nullopt;
   }
@@ -44,7 +44,7 @@ class SegmentedSap final : public Searcher<D> {
  private:
   /// A box in a region. A pair is reported in the region that holds the greater of its minima on each axis:
   /// unless both boxes begin before it on some axis.
-  struct Member {
+  struct RegionEntry {
     Box<D> box;
     std::uint32_t id;
     std::uint32_t begins_before;  // a bit for each axis
@@ -73,7 +73,7 @@ class SegmentedSap final : public Searcher<D> {
     begins_.pop_back();
   }
 
-  static void sweep(std::span<const Member> members, std::size_t left, Checkpoint& checkpoint,
+  static void sweep(std::span<const RegionEntry> members, std::size_t left, Checkpoint& checkpoint,
                     PairSink& pairs) {
     for (auto a = members.begin(); a != members.end(); ++a) {
       auto b = a + 1;
@@ -86,9 +86,9 @@ class SegmentedSap final : public Searcher<D> {
     }
   }
 
-  double boxes_a_region_;
+  double boxes_per_region_;
   RadixSort<std::uint32_t> sorter_;
-  std::vector<Member> members_;      // of all regions
+  std::vector<RegionEntry> members_;      // of all regions
   std::vector<std::size_t> begins_;  // of each region's members
 };
 
@@ -96,7 +96,7 @@ template <int D>
 class SegmentedSapFollower final : public Follower<D> {
  public:
   explicit SegmentedSapFollower(const Settings& settings)
-      : boxes_a_region_(settings.number("region")),
+      : boxes_per_region_(settings.number("region")),
         segment_(static_cast<std::size_t>(settings.integer("segment"))),
         batch_(settings.number("batch")) {}
 
@@ -175,7 +175,7 @@ class SegmentedSapFollower final : public Follower<D> {
     std::vector<Box<D>> boxes(change.before.begin(), change.before.end());
     boxes.insert(boxes.end(), change.now.begin(), change.now.end());
     const auto count = static_cast<double>(std::ranges::count_if(change.now, is_present<D, float>));
-    regions_.emplace(boxes, count / boxes_a_region_);
+    regions_.emplace(boxes, count / boxes_per_region_);
     lists_.assign(regions_->count(), Lists(D, IntervalList(segment_)));
     load_ = {};
     made_for_ = {};
@@ -351,7 +351,7 @@ class SegmentedSapFollower final : public Follower<D> {
     }
   }
 
-  double boxes_a_region_;
+  double boxes_per_region_;
   std::size_t segment_;
   double batch_;
   std::optional<Regions<D>> regions_;
@@ -397,7 +397,7 @@ Algorithm segmented_sap() {
                 .followers = {{.name = "interval lists", .make = make_strategy<SegmentedSapFollower<2>>}}},
       .in_3d = {.searcher = make_strategy<SegmentedSap<3>>,
                 .followers = {{.name = "interval lists", .make = make_strategy<SegmentedSapFollower<3>>}}},
-      .limits = {.max_boxes = IntervalEnd::most_ids},
+      .limits = {.max_boxes = IntervalEnd::max_ids},
   };
 }
 

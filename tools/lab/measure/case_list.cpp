@@ -57,8 +57,8 @@ void read_effort(const JsonPlace& place, Effort& effort) {
       {"slow_seconds", &Effort::slow_seconds},
       {"slow_history_seconds", &Effort::slow_history_seconds}};
   const std::pair<const char*, std::size_t Effort::*> counts[] = {
-      {"min_rounds", &Effort::least_rounds},
-      {"max_rounds", &Effort::most_rounds},
+      {"min_rounds", &Effort::min_rounds},
+      {"max_rounds", &Effort::max_rounds},
       {"slow_rounds", &Effort::slow_rounds},
       {"definition_boxes", &Effort::definition_boxes}};
   place.check_fields({"budget_seconds", "history_seconds", "share_seconds", "slow_seconds",
@@ -69,8 +69,8 @@ void read_effort(const JsonPlace& place, Effort& effort) {
   for (const auto& [name, field] : counts) {
     if (place.has(name)) effort.*field = count_from(place.at(name), 1);
   }
-  if (effort.most_rounds < effort.least_rounds)
-    place.refuse(fmt::format("no fewer max_rounds than min_rounds, {}", effort.least_rounds));
+  if (effort.max_rounds < effort.min_rounds)
+    place.refuse(fmt::format("no fewer max_rounds than min_rounds, {}", effort.min_rounds));
 }
 
 void read_taking(const JsonPlace& place, ListedCase& listed) {

@@ -22,7 +22,7 @@ using Histories = std::type_identity_t<std::span<const History<D, Real>>>;
 
 /// Some of the boxes of a history and its first steps, as a history of their own.
 template <int D, typename Real>
-History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std::size_t most_steps) {
+History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std::size_t max_steps) {
   constexpr std::size_t left_out = static_cast<std::size_t>(-1);
   std::size_t size = history.boxes.size();
   for (const Step<D, Real>& step : history.steps) size = std::max(size, step.size);
@@ -33,7 +33,7 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
     place[i] = next++;
     thin.boxes.push_back(i < history.boxes.size() ? history.boxes[i] : absent_box<D, Real>());
   }
-  for (std::size_t s = 0; s < std::min(most_steps, history.steps.size()); ++s) {
+  for (std::size_t s = 0; s < std::min(max_steps, history.steps.size()); ++s) {
     const Step<D, Real>& step = history.steps[s];
     Step<D, Real> few{thin.boxes.size(), {}, {}};
     for (std::size_t i = 0; i < step.changed.size(); ++i) {

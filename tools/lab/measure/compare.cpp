@@ -29,7 +29,7 @@ std::size_t seeds_for(std::size_t boxes, Mode mode) {
 }
 
 template <int D>
-std::size_t most_boxes(const History<D>& history) {
+std::size_t max_boxes(const History<D>& history) {
   std::size_t most = history.boxes.size();
   for (const Step<D>& step : history.steps) most = std::max(most, step.size);
   return most;
@@ -124,7 +124,7 @@ class Runner {
       return;
     }
     Effort effort = options_.effort;
-    if (!options_.taking.times) effort.least_rounds = effort.most_rounds = effort.slow_rounds = inputs.size();
+    if (!options_.taking.times) effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
     const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.taking};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
@@ -155,7 +155,7 @@ class Runner {
     for (const Tunable& tunable : named.scene.tunables)
       of.parameters.emplace_back(tunable.name, settings.text(tunable.name));
     of.dimension = D;
-    of.boxes = most_boxes(inputs[0]);
+    of.boxes = max_boxes(inputs[0]);
     of.frames = inputs[0].steps.size();
     of.moving = moving_fraction(inputs[0]);
     of.mode = of.frames == 0 ? Mode::find : Mode::track;

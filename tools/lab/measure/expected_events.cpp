@@ -124,7 +124,7 @@ std::string difference(const Events& found, const Events& expected, std::string_
   auto divergence = compare_pairs(list, begun_differs ? expected.begun : expected.ended);
   if (!divergence) {
     const Pair unsorted = *std::ranges::is_sorted_until(list);
-    divergence = Divergence{Divergence::Kind::extra, unsorted, frame, "events are not sorted by id"};
+    divergence = PairDivergence{PairDivergence::Kind::extra, unsorted, frame, "events are not sorted by id"};
   }
   return explained<D, Real>(*std::move(divergence), name, begun_differs ? "begun:" : "ended:", frame, boxes)
       .text;

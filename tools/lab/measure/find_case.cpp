@@ -23,7 +23,7 @@ namespace {
 
 /// The most pairs that are kept to compare with one by one; more are compared by count and hash, and one by
 /// one only where these differ.
-constexpr std::size_t most_pairs_kept = 1'000'000;
+constexpr std::size_t max_pairs_kept = 1'000'000;
 
 /// Stands in for the floor where boxes are of doubles: they have none.
 struct NoFloor {
@@ -49,7 +49,7 @@ struct FindParticipant {
   std::unique_ptr<SeenAlgorithm> seen{};
   std::optional<Finder<D, Real>> finder{};
   std::vector<bool> compared{};  // for each input, whether the pairs were compared one by one
-  std::size_t most_rounds = no_limit;
+  std::size_t max_rounds = no_limit;
 };
 
 template <int D, typename Real>
@@ -69,7 +69,7 @@ class FindCase {
     }
     for (FindParticipant<D, Real>& participant : participants_) warm_up(participant);
     has_floor_ =
-        std::is_same_v<Real, float> && !participants_.empty() && boxes_of(0).size() >= least_boxes_of_floor;
+        std::is_same_v<Real, float> && !participants_.empty() && boxes_of(0).size() >= min_boxes_of_floor;
     if (has_floor_) call_floor(0);  // the first call takes its memory
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
@@ -144,7 +144,7 @@ class FindCase {
       make_finder(participant);
       benchmark_.watch.ask_within(*participant.finder);
       const double first = call(participant, 0);
-      benchmark_.watch.ask_within(*participant.finder, first >= least_asking_ms);
+      benchmark_.watch.ask_within(*participant.finder, first >= min_asking_ms);
       count_memory(measurement, *participant.entry->algorithm, meter.read());
       measurement.pairs = pairs_.size();
       measurement.pair_hash = hash_of(pairs_);
@@ -162,7 +162,7 @@ class FindCase {
     const std::size_t input = round % inputs_.size();
     std::vector<FindParticipant<D, Real>*> players;
     for (FindParticipant<D, Real>& participant : participants_) {
-      if (has_another_round(*participant.measurement, benchmark_.effort, participant.most_rounds))
+      if (has_another_round(*participant.measurement, benchmark_.effort, participant.max_rounds))
         players.push_back(&participant);
     }
     if (players.empty()) return false;
@@ -178,7 +178,7 @@ class FindCase {
     }
     if (round > 0) return true;
     for (FindParticipant<D, Real>& participant : participants_) {
-      participant.most_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
+      participant.max_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
                                             benchmark_.effort.slow_seconds);
     }
     return true;
@@ -260,7 +260,7 @@ class FindCase {
             "reference: {} gives {} pairs, hash {:016x}; expected those of {}: {}, {:016x}", reference.text(),
             expected.count, expected.hash, known->reference.text(), known->count, known->hash);
     }
-    if (pairs.size() <= most_pairs_kept) expected.pairs = std::move(pairs);
+    if (pairs.size() <= max_pairs_kept) expected.pairs = std::move(pairs);
     expectations_.push_back(std::make_unique<ExpectedPairs>(std::move(expected)));
     return *expectations_.back();
   }

@@ -15,7 +15,7 @@ namespace broadside::lab {
 
 /// Below this many boxes there is no floor: a comparison of a few hundred boxes is done before they are
 /// sorted.
-inline constexpr std::size_t least_boxes_of_floor = 1'000;
+inline constexpr std::size_t min_boxes_of_floor = 1'000;
 
 /// One way to find pairs is to sort the boxes along an axis, to bring them into that order, to sweep, and to
 /// write the pairs. This does all of it but the sweep: three counting passes of 11 bits over a 64-bit key for

@@ -20,15 +20,15 @@ namespace {
 // Relaxed throughout: a meter is read in the thread that waited for all others.
 std::atomic<bool> counting = false;
 std::atomic<std::int64_t> held = 0;
-std::atomic<std::int64_t> most_held = 0;
+std::atomic<std::int64_t> max_held = 0;
 
 #if BROADSIDE_COUNTS_ALLOCATIONS
 void count_taken(void* block) noexcept {
   if (!counting.load(std::memory_order_relaxed)) return;
   const auto size = static_cast<std::int64_t>(malloc_usable_size(block));
   const std::int64_t now = held.fetch_add(size, std::memory_order_relaxed) + size;
-  std::int64_t most = most_held.load(std::memory_order_relaxed);
-  while (now > most && !most_held.compare_exchange_weak(most, now, std::memory_order_relaxed)) {
+  std::int64_t most = max_held.load(std::memory_order_relaxed);
+  while (now > most && !max_held.compare_exchange_weak(most, now, std::memory_order_relaxed)) {
   }
 }
 
@@ -56,7 +56,7 @@ void* take(const Allocate& allocate) {
 
 AllocationMeter::AllocationMeter() noexcept {
   held = 0;
-  most_held = 0;
+  max_held = 0;
   counting = true;
 }
 
@@ -64,7 +64,7 @@ AllocationMeter::~AllocationMeter() { counting = false; }
 
 std::optional<Allocation> AllocationMeter::read() const noexcept {
 #if BROADSIDE_COUNTS_ALLOCATIONS
-  return Allocation{held, most_held};
+  return Allocation{held, max_held};
 #else
   return std::nullopt;
 #endif

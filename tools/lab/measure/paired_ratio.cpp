@@ -27,7 +27,7 @@ double median_in_place(std::vector<double>& numbers) {
 
 std::vector<double> round_times(const Measurement& measurement) {
   const std::vector<double>& samples = measurement.samples_ms;
-  const std::size_t a_round = measurement.samples_a_round;
+  const std::size_t a_round = measurement.samples_per_round;
   if (a_round <= 1) return samples;
   std::vector<double> times;
   for (std::size_t first = 0; first + a_round <= samples.size(); first += a_round) {
@@ -72,7 +72,7 @@ std::vector<double> RatiosBySeed::replicates(std::size_t count, std::uint64_t se
 }
 
 std::optional<Interval> RatiosBySeed::interval() const {
-  if (rounds_ < least_rounds_of_interval) return std::nullopt;
+  if (rounds_ < min_rounds_of_interval) return std::nullopt;
   return middle_of(replicates(replicate_count, 1));
 }
 
@@ -117,7 +117,7 @@ MeanRatio geometric_mean(std::span<const RatiosBySeed> pairs) {
     medians.push_back(pairs[i].median());
     std::vector<double> replicates(replicate_count, medians.back());
     // Each pair draws numbers of its own: what they have in common would not average out.
-    if (pairs[i].rounds() >= least_rounds_of_interval)
+    if (pairs[i].rounds() >= min_rounds_of_interval)
       replicates = pairs[i].replicates(replicate_count, i + 1);
     for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += std::log(replicates[j]);
   }

@@ -17,7 +17,7 @@
 namespace broadside::lab {
 
 /// Fewer rounds than this give no interval: it would claim too much.
-inline constexpr std::size_t least_rounds_of_interval = 5;
+inline constexpr std::size_t min_rounds_of_interval = 5;
 
 /// The time of each round that the measurement took part in, in milliseconds: a call's, or the mean of a
 /// history's frames.
@@ -39,7 +39,7 @@ class RatiosBySeed {
   std::vector<double> replicates(std::size_t count, std::uint64_t seed) const;
 
   /// The interval that holds 95 % of the replicates; empty where there are fewer than
-  /// least_rounds_of_interval rounds.
+  /// min_rounds_of_interval rounds.
   std::optional<Interval> interval() const;
 
  private:

@@ -102,14 +102,14 @@ Effort long_effort() {
   return {.budget_seconds = 30,
           .history_seconds = 30,
           .share_seconds = 1,
-          .least_rounds = 7,
-          .most_rounds = 400,
+          .min_rounds = 7,
+          .max_rounds = 400,
           .slow_seconds = 5,
           .slow_history_seconds = 5,
           .slow_rounds = 5};
 }
 
-std::vector<CaseRequest> plan_of(const Wishes& wishes) {
+std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes) {
   const bool named = !wishes.scenes.empty();
   std::vector<std::string> scenes = wishes.scenes;
   if (!named) {

@@ -38,7 +38,7 @@ Effort long_effort();
 
 /// What a user asks for. An empty list stands for its default: every generated scene, 10,000 boxes, both
 /// dimensions, still.
-struct Wishes {
+struct ComparePlanOptions {
   std::vector<std::string> scenes{};
   std::vector<std::size_t> boxes{};
   std::vector<int> dimensions{};
@@ -52,7 +52,7 @@ struct Wishes {
 /// Every combination that exists; others are left out: a dimension that a scene does not have, a count or a
 /// moving fraction where the scene has its own. Throws InvalidSpec if a scene is unknown or has none of the
 /// dimensions, and what a file's reader throws.
-std::vector<CaseRequest> plan_of(const Wishes& wishes);
+std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes);
 
 /// The cases of `plan` in one of the dimensions.
 std::vector<CaseRequest> in_dimensions(std::vector<CaseRequest> plan, std::span<const int> dimensions);

@@ -21,8 +21,8 @@
 namespace broadside::lab {
 
 Reference::Reference(const Algorithm& entry, std::span<const Algorithm> known, std::size_t boxes,
-                     std::size_t most_by_definition) {
-  if (boxes <= most_by_definition) return;
+                     std::size_t max_by_definition) {
+  if (boxes <= max_by_definition) return;
   constexpr std::array<std::string_view, 3> names = {"quadtree", "sweep_and_prune", "grid"};
   for (const std::string_view name : names) {
     if (entry.name.find(name) != std::string::npos) continue;
@@ -52,7 +52,7 @@ std::vector<Pair> Reference::pairs(BoxSpan<D, Real> boxes, const std::function<v
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
+std::optional<PairDivergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
                                        std::uint64_t seed) {
   const std::vector<std::size_t> sample = sample_of(boxes.size(), sampled_boxes, seed);
   std::vector<bool> sampled(boxes.size(), false);
@@ -81,18 +81,18 @@ std::vector<std::size_t> sample_of(std::size_t size, std::size_t count, std::uin
 }
 
 template std::vector<Pair> Reference::pairs<2, float>(BoxSpan<2, float>, const std::function<void()>&) const;
-template std::optional<Divergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>,
+template std::optional<PairDivergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>,
                                                           std::uint64_t);
 template std::vector<Pair> Reference::pairs<2, double>(BoxSpan<2, double>,
                                                        const std::function<void()>&) const;
-template std::optional<Divergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>,
+template std::optional<PairDivergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>,
                                                            std::uint64_t);
 template std::vector<Pair> Reference::pairs<3, float>(BoxSpan<3, float>, const std::function<void()>&) const;
-template std::optional<Divergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>,
+template std::optional<PairDivergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>,
                                                           std::uint64_t);
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>,
                                                        const std::function<void()>&) const;
-template std::optional<Divergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>,
+template std::optional<PairDivergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>,
                                                            std::uint64_t);
 
 template <int D, typename Real>

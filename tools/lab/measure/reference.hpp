@@ -23,10 +23,10 @@ inline constexpr std::size_t sampled_boxes = 200;
 class Reference {
  public:
   /// For pairs of `entry` on at most `boxes` boxes: the definition if these are at most
-  /// `most_by_definition`; otherwise the first among quadtree, sweep_and_prune and grid that is in `known`,
+  /// `max_by_definition`; otherwise the first among quadtree, sweep_and_prune and grid that is in `known`,
   /// and whose name is no part of the entry's name; if there is none, the definition again.
   Reference(const Algorithm& entry, std::span<const Algorithm> known, std::size_t boxes,
-            std::size_t most_by_definition);
+            std::size_t max_by_definition);
 
   /// "the definition", or as in "quadtree + 200 sampled boxes".
   std::string text() const;
@@ -51,7 +51,7 @@ class Reference {
 /// the boxes are no more than the sample all are compared. `seed` is the sample's. Cost: the sample times the
 /// boxes.
 template <int D, typename Real = float>
-std::optional<Divergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
+std::optional<PairDivergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
                                        std::uint64_t seed = 1);
 
 /// The hash of a set of pairs, as PairHasher computes it.

@@ -20,7 +20,7 @@ double sum_of(const std::vector<double>& samples) {
 
 /// The least time of a first round among the algorithms of a kind, in milliseconds; infinite where there is
 /// none.
-double least_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
+double min_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
   double least = std::numeric_limits<double>::infinity();
   for (const Measurement& measurement : all) {
     if (measurement.kind == kind && !measurement.samples_ms.empty())
@@ -48,19 +48,19 @@ bool has_time(const Effort& effort, std::size_t round, double milliseconds) {
 }
 
 bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit) {
-  const std::size_t rounds = measurement.samples_ms.size() / measurement.samples_a_round;
+  const std::size_t rounds = measurement.samples_ms.size() / measurement.samples_per_round;
   if (measurement.outcome == Outcome::failed || !measurement.reason.empty() ||
-      rounds >= std::min(limit, effort.most_rounds))
+      rounds >= std::min(limit, effort.max_rounds))
     return false;
-  return limit != no_limit || rounds < effort.least_rounds ||
+  return limit != no_limit || rounds < effort.min_rounds ||
          sum_of(measurement.samples_ms) < effort.share_seconds * 1e3;
 }
 
 std::size_t round_limit(const Measurement& measurement, std::span<const Measurement> all,
                         const Effort& effort, double slow_seconds) {
   if (measurement.samples_ms.empty()) return no_limit;
-  const double own = least_first_round(all, AlgorithmKind::own);
-  const double peer = least_first_round(all, AlgorithmKind::peer);
+  const double own = min_first_round(all, AlgorithmKind::own);
+  const double peer = min_first_round(all, AlgorithmKind::peer);
   // Without a peer, nothing is far behind one; without one of ours, peers alone count.
   const double close = std::max({far_from_seconds * 1e3, effort.far_ratio * peer,
                                  own < std::numeric_limits<double>::infinity() ? effort.far_ratio * own : 0});

@@ -43,7 +43,7 @@ struct TrackParticipant {
   std::optional<Statistics> counts{};   // the sum of this pass, but for the first frame
   std::int64_t pairs = 0;
   Allocation memory{0, 0};  // taken by the tracker since it was made
-  std::size_t most_rounds = no_limit;
+  std::size_t max_rounds = no_limit;
   bool plays = false;    // in the current pass
   bool is_long = false;  // some of its frames are long
 };
@@ -70,7 +70,7 @@ class TrackCase {
     keep_freed_memory();
     for (const Entry& entry : benchmark_.entries) measurements_.push_back(measurement_of(entry));
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
-      measurements_[i].samples_a_round = inputs_[0].steps.size();
+      measurements_[i].samples_per_round = inputs_[0].steps.size();
       if (is_eligible(benchmark_.entries[i], measurements_[i]))
         participants_.push_back(
             {&benchmark_.entries[i], &measurements_[i],
@@ -162,7 +162,7 @@ class TrackCase {
   bool play(std::size_t round) {
     for (TrackParticipant<D, Real>& participant : participants_)
       participant.plays =
-          has_another_round(*participant.measurement, benchmark_.effort, participant.most_rounds);
+          has_another_round(*participant.measurement, benchmark_.effort, participant.max_rounds);
     if (std::ranges::none_of(participants_, &TrackParticipant<D, Real>::plays)) return false;
     pass(round % inputs_.size(), round + 1, false);
     for (TrackParticipant<D, Real>& participant : participants_) {
@@ -176,7 +176,7 @@ class TrackCase {
     }
     if (round > 0) return true;
     for (TrackParticipant<D, Real>& participant : participants_) {
-      participant.most_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
+      participant.max_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
                                             benchmark_.effort.slow_history_seconds);
     }
     return true;
@@ -228,7 +228,7 @@ class TrackCase {
       return update(*participant.tracker, now);
     };
     const double milliseconds = counts_memory ? counted(participant, make_and_update) : make_and_update();
-    participant.is_long |= milliseconds >= least_asking_ms;
+    participant.is_long |= milliseconds >= min_asking_ms;
     (frame > 0 ? participant.frames_ms : participant.builds_ms).push_back(milliseconds);
     if (counts_memory) note(participant);
     if (frame > 0) note_frame(participant);

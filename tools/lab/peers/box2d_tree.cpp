@@ -50,7 +50,7 @@ class Box2dSearcher final : public Searcher<2>, public TearDown {
     const float scale = scale_of(boxes);
     for (std::size_t i = 0; i < boxes.size(); ++i)
       broad_phase.CreateProxy(scaled(boxes[i], scale), user_data(BoxId(i)));
-    Report report{boxes, CallbackSink(pairs)};
+    PairReport report{boxes, CallbackSink(pairs)};
     broad_phase.UpdatePairs(&report);
     report.pairs.finish();
     return std::nullopt;
@@ -60,7 +60,7 @@ class Box2dSearcher final : public Searcher<2>, public TearDown {
 
  private:
   /// What b2BroadPhase::UpdatePairs calls: margins make more pairs than there are.
-  struct Report {
+  struct PairReport {
     std::span<const Box2> boxes;
     CallbackSink pairs;
 

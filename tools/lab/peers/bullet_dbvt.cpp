@@ -23,7 +23,7 @@ class BulletDbvt final : public Searcher<D>, public TearDown {
       const Box<D>& box = input.boxes[i];
       tree_.insert(btDbvtVolume::FromMM(bullet_point(box.min), bullet_point(box.max)), bullet_data(BoxId(i)));
     }
-    Report report(pairs);
+    ContactReport report(pairs);
     tree_.collideTT(tree_.m_root, tree_.m_root, report);
     return std::nullopt;
   }
@@ -31,8 +31,8 @@ class BulletDbvt final : public Searcher<D>, public TearDown {
   void tear_down() override { tree_.clear(); }
 
  private:
-  struct Report final : btDbvt::ICollide {
-    explicit Report(PairSink& sink) : pairs(sink) {}
+  struct ContactReport final : btDbvt::ICollide {
+    explicit ContactReport(PairSink& sink) : pairs(sink) {}
     void Process(const btDbvtNode* a, const btDbvtNode* b) override {
       pairs.add(id_in(a->data), id_in(b->data));
     }

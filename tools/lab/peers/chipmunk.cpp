@@ -197,13 +197,13 @@ class ChipmunkFollower final : public PeerFollower<2> {
   /// The velocity that makes the tree's margin last for some frames: a game has 60 frames a second. What
   /// moves farther than its own size was put elsewhere and has no velocity.
   static cpVect velocity(const Box2& before, const Box2& now) {
-    constexpr double frames_a_second = 60;
+    constexpr double frames_per_second = 60;
     const auto centre = [](const Box2& box, int axis) { return (double{box.min[axis]} + box.max[axis]) / 2; };
     const cpVect step = cpv(centre(now, 0) - centre(before, 0), centre(now, 1) - centre(before, 1));
     for (int axis = 0; axis < 2; ++axis) {
       if (std::abs(axis == 0 ? step.x : step.y) > double{now.max[axis]} - now.min[axis]) return cpvzero;
     }
-    return cpvmult(step, frames_a_second);
+    return cpvmult(step, frames_per_second);
   }
 
   MakeIndex make_;
@@ -256,9 +256,9 @@ namespace {
 
 ChipmunkIndex make_hash(std::span<const Box2> boxes, bool, cpSpatialIndex* resting) {
   // Its manual: cells about as large as the objects, and ten times as many cells as objects.
-  constexpr std::size_t cells_a_box = 10;
-  constexpr std::size_t most_cells = 100'000'000;
-  const std::size_t cells = std::min(cells_a_box * std::max<std::size_t>(boxes.size(), 1), most_cells);
+  constexpr std::size_t cells_per_box = 10;
+  constexpr std::size_t max_cells = 100'000'000;
+  const std::size_t cells = std::min(cells_per_box * std::max<std::size_t>(boxes.size(), 1), max_cells);
   return ChipmunkIndex(cpSpaceHashNew(cell_size(boxes, 1), static_cast<int>(cells), bounds_of, resting));
 }
 

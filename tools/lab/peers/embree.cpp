@@ -146,7 +146,7 @@ class EmbreeQueries final : public QueryPeer<3> {
   Answers first_hits(std::span<const Ray<3>> rays) override {
     Answers answers;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      Search search(rays[i], nullptr, i);
+      RayContext search(rays[i], nullptr, i);
       RTCRayHit ray_hit = trace(search);
       if (ray_hit.hit.geomID != RTC_INVALID_GEOMETRY_ID) answers.add(i, BoxId{ray_hit.hit.primID});
     }
@@ -156,7 +156,7 @@ class EmbreeQueries final : public QueryPeer<3> {
   Answers all_hits(std::span<const Ray<3>> rays) override {
     Answers answers;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      Search search(rays[i], &answers, i);
+      RayContext search(rays[i], &answers, i);
       trace(search);
     }
     return answers;
@@ -164,8 +164,8 @@ class EmbreeQueries final : public QueryPeer<3> {
 
  private:
   /// What the callback gets to see: Embree hands its context on.
-  struct Search {
-    Search(const Ray<3>& searched, Answers* found, std::size_t number)
+  struct RayContext {
+    RayContext(const Ray<3>& searched, Answers* found, std::size_t number)
         : ray(searched), answers(found), query(number) {
       rtcInitIntersectContext(&context);
       for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = 1 / ray.direction[axis];
@@ -178,7 +178,7 @@ class EmbreeQueries final : public QueryPeer<3> {
     std::array<float, 3> inverse;
   };
 
-  RTCRayHit trace(Search& search) const {
+  RTCRayHit trace(RayContext& search) const {
     const Ray<3>& ray = search.ray;
     RTCRayHit ray_hit{};
     ray_hit.ray.org_x = ray.origin[0];
@@ -203,7 +203,7 @@ class EmbreeQueries final : public QueryPeer<3> {
   /// Slabs, with an inverse that was computed once a ray, as fast code does.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
-    const auto& search = *reinterpret_cast<const Search*>(arguments->context);
+    const auto& search = *reinterpret_cast<const RayContext*>(arguments->context);
     const Box3& box = self.boxes_[arguments->primID];
     auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);  // of one ray
     float enter = 0;

@@ -204,9 +204,9 @@ class FclTreeFollower final : public PeerFollower<D> {
     // One by one where few changed: all against each other takes time for resting boxes as well.
     constexpr std::size_t few = 4;
     if (change.changed.size() < change.now.size() / few) {
-      Query query{&search, change.flags};
+      ChangedQuery query{&search, change.flags};
       for (const BoxId id : change.changed) {
-        if (is_present(change.now[index(id)])) tree_->collide(&objects_[index(id)], &query, Query::take);
+        if (is_present(change.now[index(id)])) tree_->collide(&objects_[index(id)], &query, ChangedQuery::take);
       }
     } else {
       tree_->collide(&search, FclSearch<D>::take);
@@ -215,12 +215,12 @@ class FclTreeFollower final : public PeerFollower<D> {
   }
 
   /// The search for the pairs of one object that changed.
-  struct Query {
+  struct ChangedQuery {
     FclSearch<D>* search;
     std::span<const std::uint8_t> changed;
 
     static bool take(fcl::CollisionObjectd* other, fcl::CollisionObjectd* asked, void* data) {
-      const auto& query = *static_cast<Query*>(data);
+      const auto& query = *static_cast<ChangedQuery*>(data);
       const BoxId a = static_cast<FclObject*>(other)->id();
       const BoxId b = static_cast<FclObject*>(asked)->id();
       // It finds itself, and another one that changed will find it in turn.

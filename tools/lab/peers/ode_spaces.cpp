@@ -48,8 +48,8 @@ Levels levels_of(std::span<const Box3> boxes) {
     }
   }
   // A cell's place is an int: what is farther off aborts the program.
-  constexpr int most_bits = 29;
-  const int finest = greatest > 0 ? std::ilogb(greatest) + 1 - most_bits : -most_bits;
+  constexpr int max_bits = 29;
+  const int finest = greatest > 0 ? std::ilogb(greatest) + 1 - max_bits : -max_bits;
   const int least = std::max(std::ilogb(typical_extent(boxes)) + 1, finest);
   return {least, longest > 0 ? std::max(std::ilogb(longest) + 1, least) : least};
 }

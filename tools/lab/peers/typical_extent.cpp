@@ -77,9 +77,9 @@ std::array<int, D> axes_by_extent(std::span<const Box<D>> boxes) {
 
 template <int D>
 double typical_extent(std::span<const Box<D>> boxes) {
-  constexpr std::size_t most_samples = 1000;
+  constexpr std::size_t max_samples = 1000;
   std::vector<double> sides;
-  const std::size_t step = boxes.size() / most_samples + 1;
+  const std::size_t step = boxes.size() / max_samples + 1;
   for (std::size_t i = 0; i < boxes.size(); i += step) {
     const double side = is_present(boxes[i]) ? longest_side(boxes[i]) : 0;
     if (is_present(boxes[i]) && std::isfinite(side)) sides.push_back(side);
@@ -94,10 +94,10 @@ double typical_extent(std::span<const Box<D>> boxes) {
 
 template <int D>
 double cell_size(std::span<const Box<D>> boxes, double extents) {
-  constexpr double most_cells = 0x1p20;
-  constexpr double most_references = 8 << D;
-  double cell = std::max(extents * typical_extent(boxes), reach(boxes)[0] / (most_cells / 4));
-  while (cells_touched(boxes, cell) > most_references * static_cast<double>(boxes.size())) cell *= 2;
+  constexpr double max_cells = 0x1p20;
+  constexpr double max_references = 8 << D;
+  double cell = std::max(extents * typical_extent(boxes), reach(boxes)[0] / (max_cells / 4));
+  while (cells_touched(boxes, cell) > max_references * static_cast<double>(boxes.size())) cell *= 2;
   return cell;
 }
 

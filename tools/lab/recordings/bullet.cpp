@@ -155,10 +155,10 @@ class Brownian : public BulletWorld {
   }
 
   void step() {
-    constexpr double kicks_a_step = 0.1;
+    constexpr double kicks_per_step = 0.1;
     constexpr btScalar strength = 3;
     for (const auto& body : moving()) {
-      if (random().chance(kicks_a_step))
+      if (random().chance(kicks_per_step))
         body->applyCentralImpulse(strength * vector(random().direction<3>()));
     }
     BulletWorld::step();

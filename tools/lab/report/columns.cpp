@@ -9,13 +9,13 @@
 
 namespace broadside::lab {
 
-void Columns::add(std::vector<std::string> row) {
+void AlignedColumns::add(std::vector<std::string> row) {
   if (row.size() != alignment_.size())
     throw std::invalid_argument(fmt::format("{} cells; expected {}", row.size(), alignment_.size()));
   rows_.push_back(std::move(row));
 }
 
-std::string Columns::text(std::string_view indent) const {
+std::string AlignedColumns::text(std::string_view indent) const {
   std::vector<std::size_t> widths(alignment_.size(), 0);
   for (const auto& row : rows_) {
     for (std::size_t column = 0; column + 1 < row.size(); ++column)

@@ -8,11 +8,11 @@
 namespace broadside::lab {
 
 /// Cells, row by row; the columns become as wide as their widest cell.
-class Columns {
+class AlignedColumns {
  public:
   /// One character a column: '<' aligns it to the left, '>' to the right. The last column's cells may be as
   /// long as they like and are not filled up.
-  explicit Columns(std::string_view alignment) : alignment_(alignment) {}
+  explicit AlignedColumns(std::string_view alignment) : alignment_(alignment) {}
 
   /// Adds a row of as many cells as there are columns. Throws std::invalid_argument if there are more or
   /// less.

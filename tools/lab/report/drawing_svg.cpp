@@ -16,7 +16,7 @@ constexpr int panel_width = 420;
 constexpr int gap = 20;
 constexpr int title_height = 46;
 constexpr int key_line_height = 16;
-constexpr std::size_t most_columns = 3;
+constexpr std::size_t max_columns = 3;
 
 /// How many characters of a caption go into a panel's width.
 constexpr std::size_t caption_length = 72;
@@ -136,7 +136,7 @@ std::string svg_of(const Drawing& drawing) {
   const auto height_of = [](const Panel& panel) {
     return panel_width * panel.view->height / panel.view->width;
   };
-  const std::size_t columns = std::clamp<std::size_t>(panels.size(), 1, most_columns);
+  const std::size_t columns = std::clamp<std::size_t>(panels.size(), 1, max_columns);
   std::string body;
   int y = gap;
   for (std::size_t first = 0; first < panels.size(); first += columns) {

@@ -90,7 +90,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["agreeing_libraries"] = verified ? Json(evidence->libraries) : Json();
   json["skipped"] = or_null(measurement.reason);
   json["estimated_ms"] = or_null(measurement.estimated_ms);
-  json["rounds"] = samples.size() / measurement.samples_a_round;
+  json["rounds"] = samples.size() / measurement.samples_per_round;
   json["median_ms"] = timed ? Json(time_of(measurement)) : Json();
   json["min_ms"] = timed ? Json(std::ranges::min(samples)) : Json();
   json["p99_ms"] = timed ? Json(percentile(samples, 0.99)) : Json();

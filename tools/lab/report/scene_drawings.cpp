@@ -13,10 +13,10 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::size_t most_bytes = 1'200'000;
+constexpr std::size_t max_bytes = 1'200'000;
 
 /// A scene in 3D is seen from three sides.
-std::size_t boxes_drawn(int dimension) { return dimension == 2 ? most_drawn : most_drawn / 2; }
+std::size_t boxes_drawn(int dimension) { return dimension == 2 ? max_drawn : max_drawn / 2; }
 
 bool is_empty(const DrawingLayer& layer) {
   return layer.active.empty() && std::ranges::all_of(layer.levels, &std::string::empty);
@@ -47,7 +47,7 @@ std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& fi
   });
   std::string text;
   for (const SceneToDraw& scene : scenes) {
-    if (text.size() > most_bytes) break;
+    if (text.size() > max_bytes) break;
     try {
       Drawing drawing =
           draw_scene(find(scene.scene), scene.dimension, scene.boxes, shown, boxes_drawn(scene.dimension));

@@ -134,7 +134,7 @@ std::string summary_of(const Comparison& comparison) {
   std::string text;
   if (comparison.cases.size() > 1) {
     text += fmt::format("All {}\n", counted(comparison.cases.size(), "case", "cases"));
-    Columns columns("<>>><");
+    AlignedColumns columns("<>>><");
     columns.add({"algorithm", "cases", "fastest", "ratio to the fastest, geometric mean", ""});
     for (const Standing& standing : standings(comparison)) {
       if (standing.ratios.empty()) continue;

@@ -156,7 +156,7 @@ std::string still_rows(const CaseResult& result) {
     return scale.unit.text(std::ranges::min(samples)) + ".." + scale.unit.text(std::ranges::max(samples));
   };
   // Where there is no floor, there is no column for it.
-  Columns columns(floor > 0 ? "<>><>>>>><<" : "<>><>>>><<");
+  AlignedColumns columns(floor > 0 ? "<>><>>>>><<" : "<>><>>>><<");
   const auto add = [&](std::vector<std::string> row, const std::string& over_floor) {
     if (floor > 0) row.insert(row.begin() + 4, over_floor);
     columns.add(std::move(row));
@@ -185,7 +185,7 @@ std::string still_rows(const CaseResult& result) {
 std::string moving_rows(const CaseResult& result) {
   const Scale scale(result);
   const double movers = std::max(result.of.moving * scale.boxes, 1.0);
-  Columns columns("<>>>><>>>>>><");
+  AlignedColumns columns("<>>>><>>>>>><");
   columns.add({"algorithm", scale.unit.name + " a frame" + scale.no_mark, "p99", "worst", "ratio",
                "95 % interval", "to a peer", "ns a mover", "first frame", "tests a box", "memory", "peak",
                ""});

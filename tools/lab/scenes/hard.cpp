@@ -10,7 +10,7 @@ namespace broadside::lab::generated {
 namespace {
 
 /// A scene that is an input of the hunt in floats.
-struct Found {
+struct HuntedScene {
   const char* name;
   const char* summary;
   const char* input;  // what the hunt calls it
@@ -18,24 +18,24 @@ struct Found {
 };
 
 constexpr std::array found = {
-    Found{"crossed_plates", "two stacks of parallel plates, the one across the other",
+    HuntedScene{"crossed_plates", "two stacks of parallel plates, the one across the other",
           "plates:neighbours=1:regions=2"},
-    Found{"many_stacks",
+    HuntedScene{"many_stacks",
           "300 stacks of parallel plates in a row, each along another axis than the one before",
           "plates:neighbours=1:regions=300:layout=row:order=shuffled"},
-    Found{"plates_and_lines", "stacks of parallel plates, and long thin boxes through them",
+    HuntedScene{"plates_and_lines", "stacks of parallel plates, and long thin boxes through them",
           "mixture:first=plates:second=lines:order=shuffled"},
-    Found{"wires", "long thin boxes along each axis, in 3D through the whole world",
+    HuntedScene{"wires", "long thin boxes along each axis, in 3D through the whole world",
           "lines:neighbours=1:order=shuffled"},
-    Found{"staircase", "boxes one after the other along the diagonal, in order", "row:overlap=1.5", true},
-    Found{"nested_clusters", "clusters of clusters, six times, each a hundredth of the one around it",
+    HuntedScene{"staircase", "boxes one after the other along the diagonal, in order", "row:overlap=1.5", true},
+    HuntedScene{"nested_clusters", "clusters of clusters, six times, each a hundredth of the one around it",
           "clusters:levels=6:branches=6:shrink=100:order=shuffled"},
-    Found{"cantor_dust", "boxes at the ends of intervals at the ends of intervals",
+    HuntedScene{"cantor_dust", "boxes at the ends of intervals at the ends of intervals",
           "dust:kept=0.1:order=shuffled"},
-    Found{"many_scales", "places of 20 orders of magnitude, boxes as large as their distance allows",
+    HuntedScene{"many_scales", "places of 20 orders of magnitude, boxes as large as their distance allows",
           "magnitudes:decades=20:order=shuffled"},
-    Found{"many_sizes", "sizes of 30 orders of magnitude", "magnitudes:of=sizes:decades=30:order=shuffled"},
-    Found{
+    HuntedScene{"many_sizes", "sizes of 30 orders of magnitude", "magnitudes:of=sizes:decades=30:order=shuffled"},
+    HuntedScene{
         "misleading_sample",
         "even boxes where a sample of the array looks, plates elsewhere; of some thousands of boxes and more",
         "fooled:hidden=plates"},
@@ -55,7 +55,7 @@ MakeBoxes<D> maker(const char* input) {
 
 std::vector<Scene> hard() {
   std::vector<Scene> scenes;
-  for (const Found& input : found) {
+  for (const HuntedScene& input : found) {
     scenes.push_back({.name = input.name,
                       .summary = input.summary,
                       .source = "Broadside's worst-case hunt",

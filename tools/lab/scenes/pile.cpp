@@ -15,8 +15,8 @@ namespace {
 // In boxes, whose bounds have a skin, so that those of neighbours overlap.
 constexpr double next_beside = 1.0033;
 constexpr double next_above = 0.9914;
-constexpr double least_extent = 1.04;
-constexpr double most_extent = 1.056;
+constexpr double min_extent = 1.04;
+constexpr double max_extent = 1.056;
 constexpr double tremble = 1e-4;  // to either side
 
 /// One in this many boxes ends where its neighbour begins, so that trembling parts and joins them.
@@ -96,7 +96,7 @@ class Pile {
       Resting box{{}, {}, static_cast<double>(row) / static_cast<double>(rows_)};
       for (std::size_t axis = 0; axis < D; ++axis) {
         const double tilt = random_.fraction();
-        const double extent = least_extent + (most_extent - least_extent) * tilt * tilt;
+        const double extent = min_extent + (max_extent - min_extent) * tilt * tilt;
         box.min[axis] = centre[axis] - extent / 2;
         box.max[axis] = centre[axis] + extent / 2;
       }

@@ -17,7 +17,7 @@ namespace broadside::lab {
 namespace {
 
 /// The most boxes whose expected pairs are the definition's while a failure is made smaller.
-constexpr std::size_t most_boxes_made_smaller_by_definition = 2'000;
+constexpr std::size_t max_boxes_made_smaller_by_definition = 2'000;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::string fault_on(const History<D, Real>& history, const Entry& entry, std::s
   const Algorithm& algorithm = *entry.algorithm;
   const std::string name = entry.spec.text();
   const auto expected = [&](std::span<const Box<D, Real>> boxes) {
-    const Reference reference(algorithm, known, boxes.size(), most_boxes_made_smaller_by_definition);
+    const Reference reference(algorithm, known, boxes.size(), max_boxes_made_smaller_by_definition);
     return reference.pairs<D, Real>(boxes);
   };
   return fault_of(name, [&]() -> std::string {

@@ -95,28 +95,28 @@ std::vector<Pair> reference_pairs_of(BoxSpan<D, Real> boxes, std::span<const std
   return pairs;
 }
 
-std::optional<Divergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected) {
+std::optional<PairDivergence> compare_pairs(std::vector<Pair> found, std::span<const Pair> expected) {
   std::sort(found.begin(), found.end());
-  const auto diverging = [](Divergence::Kind kind, Pair pair, std::string_view how) {
-    return Divergence{kind, pair, 0,
+  const auto diverging = [](PairDivergence::Kind kind, Pair pair, std::string_view how) {
+    return PairDivergence{kind, pair, 0,
                       fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
   };
   std::size_t at = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (i > 0 && found[i] == found[i - 1])
-      return diverging(Divergence::Kind::repeated, found[i], "is reported more than once; expected once");
+      return diverging(PairDivergence::Kind::repeated, found[i], "is reported more than once; expected once");
     if (at == expected.size() || found[i] < expected[at])
-      return diverging(Divergence::Kind::extra, found[i], "is reported; expected not to be");
+      return diverging(PairDivergence::Kind::extra, found[i], "is reported; expected not to be");
     if (expected[at] < found[i]) break;
     ++at;
   }
   if (at < expected.size())
-    return diverging(Divergence::Kind::missing, expected[at], "is missing; expected to be reported");
+    return diverging(PairDivergence::Kind::missing, expected[at], "is missing; expected to be reported");
   return std::nullopt;
 }
 
 template <int D, typename Real>
-Divergence explained(Divergence divergence, std::string_view name, std::string_view what, std::size_t frame,
+PairDivergence explained(PairDivergence divergence, std::string_view name, std::string_view what, std::size_t frame,
                      BoxSpan<D, Real> boxes) {
   divergence.frame = frame;
   divergence.text = fmt::format("{}: frame {}, {} {}", name, frame, what, divergence.text);
@@ -128,7 +128,7 @@ Divergence explained(Divergence divergence, std::string_view name, std::string_v
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
+std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
                                        const ExpectedPairs<D, Real>& expected, std::size_t frame) {
   std::vector<Pair> found;
   PairCollector collector(found);
@@ -139,7 +139,7 @@ std::optional<Divergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real>
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
+std::optional<PairDivergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
                                        std::span<const Pair> before, std::span<const Pair> now,
                                        std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes) {
   std::vector<Pair> expected_begun;
@@ -152,7 +152,7 @@ std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std
       return explained<D, Real>(*std::move(divergence), name, what, frame, boxes);
     if (!std::ranges::is_sorted(*events)) {
       const auto unsorted = std::ranges::is_sorted_until(*events);
-      return explained<D, Real>({Divergence::Kind::extra, *unsorted, frame, "events are not sorted by id"},
+      return explained<D, Real>({PairDivergence::Kind::extra, *unsorted, frame, "events are not sorted by id"},
                                 name, what, frame, boxes);
     }
   }
@@ -160,7 +160,7 @@ std::optional<Divergence> check_events(const std::vector<Pair>& begun, const std
 }
 
 template <int D, typename Real>
-std::optional<Divergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
+std::optional<PairDivergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
                                         std::string_view name, const ExpectedPairs<D, Real>& expected) {
   std::vector<Box<D, Real>> boxes = history.boxes;
   std::vector<Pair> before;
@@ -183,46 +183,46 @@ std::optional<Divergence> check_tracker(Tracker<D, Real>& tracker, const History
 
 template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs_of<2, float>(BoxSpan<2, float>, std::span<const std::size_t>);
-template Divergence explained<2, float>(Divergence, std::string_view, std::string_view, std::size_t,
+template PairDivergence explained<2, float>(PairDivergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<2, float>);
-template std::optional<Divergence> check_finder(Finder<2, float>&, BoxSpan<2, float>, std::string_view,
+template std::optional<PairDivergence> check_finder(Finder<2, float>&, BoxSpan<2, float>, std::string_view,
                                                 const ExpectedPairs<2, float>&, std::size_t);
-template std::optional<Divergence> check_tracker(Tracker<2, float>&, const History<2, float>&,
+template std::optional<PairDivergence> check_tracker(Tracker<2, float>&, const History<2, float>&,
                                                  std::string_view, const ExpectedPairs<2, float>&);
-template std::optional<Divergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
+template std::optional<PairDivergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                           std::span<const Pair>, std::span<const Pair>,
                                                           std::string_view, std::size_t, BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs_of<2, double>(BoxSpan<2, double>, std::span<const std::size_t>);
-template Divergence explained<2, double>(Divergence, std::string_view, std::string_view, std::size_t,
+template PairDivergence explained<2, double>(PairDivergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<2, double>);
-template std::optional<Divergence> check_finder(Finder<2, double>&, BoxSpan<2, double>, std::string_view,
+template std::optional<PairDivergence> check_finder(Finder<2, double>&, BoxSpan<2, double>, std::string_view,
                                                 const ExpectedPairs<2, double>&, std::size_t);
-template std::optional<Divergence> check_tracker(Tracker<2, double>&, const History<2, double>&,
+template std::optional<PairDivergence> check_tracker(Tracker<2, double>&, const History<2, double>&,
                                                  std::string_view, const ExpectedPairs<2, double>&);
-template std::optional<Divergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
+template std::optional<PairDivergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                            std::span<const Pair>, std::span<const Pair>,
                                                            std::string_view, std::size_t, BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs_of<3, float>(BoxSpan<3, float>, std::span<const std::size_t>);
-template Divergence explained<3, float>(Divergence, std::string_view, std::string_view, std::size_t,
+template PairDivergence explained<3, float>(PairDivergence, std::string_view, std::string_view, std::size_t,
                                         BoxSpan<3, float>);
-template std::optional<Divergence> check_finder(Finder<3, float>&, BoxSpan<3, float>, std::string_view,
+template std::optional<PairDivergence> check_finder(Finder<3, float>&, BoxSpan<3, float>, std::string_view,
                                                 const ExpectedPairs<3, float>&, std::size_t);
-template std::optional<Divergence> check_tracker(Tracker<3, float>&, const History<3, float>&,
+template std::optional<PairDivergence> check_tracker(Tracker<3, float>&, const History<3, float>&,
                                                  std::string_view, const ExpectedPairs<3, float>&);
-template std::optional<Divergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
+template std::optional<PairDivergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                           std::span<const Pair>, std::span<const Pair>,
                                                           std::string_view, std::size_t, BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
 template std::vector<Pair> reference_pairs_of<3, double>(BoxSpan<3, double>, std::span<const std::size_t>);
-template Divergence explained<3, double>(Divergence, std::string_view, std::string_view, std::size_t,
+template PairDivergence explained<3, double>(PairDivergence, std::string_view, std::string_view, std::size_t,
                                          BoxSpan<3, double>);
-template std::optional<Divergence> check_finder(Finder<3, double>&, BoxSpan<3, double>, std::string_view,
+template std::optional<PairDivergence> check_finder(Finder<3, double>&, BoxSpan<3, double>, std::string_view,
                                                 const ExpectedPairs<3, double>&, std::size_t);
-template std::optional<Divergence> check_tracker(Tracker<3, double>&, const History<3, double>&,
+template std::optional<PairDivergence> check_tracker(Tracker<3, double>&, const History<3, double>&,
                                                  std::string_view, const ExpectedPairs<3, double>&);
-template std::optional<Divergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,
+template std::optional<PairDivergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,
                                                            std::span<const Pair>, std::span<const Pair>,
                                                            std::string_view, std::size_t, BoxSpan<3, double>);
 

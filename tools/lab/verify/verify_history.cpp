@@ -20,7 +20,7 @@ namespace broadside::lab {
 namespace {
 
 /// What the definition may take over all frames, in tests of two boxes: some seconds.
-constexpr double most_tests_by_definition = 4e9;
+constexpr double max_tests_by_definition = 4e9;
 
 /// The pairs that are expected of some entries in the frame that is being looked at.
 struct Expectation {
@@ -31,7 +31,7 @@ struct Expectation {
 };
 
 template <int D, typename Real>
-struct Participant {
+struct HistoryParticipant {
   const Entry* entry;
   std::size_t verdict;  // its place in the list
   Expectation* expected;
@@ -55,7 +55,7 @@ class HistoryCheck {
     std::vector<Box<D, Real>> boxes = history_.boxes;
     for (std::size_t frame = 0; frame <= history_.steps.size(); ++frame) {
       if (frame > 0) lab::apply(history_.steps[frame - 1], boxes);
-      if (std::ranges::all_of(participants_, &Participant<D, Real>::done)) break;
+      if (std::ranges::all_of(participants_, &HistoryParticipant<D, Real>::done)) break;
       check_frame(boxes, frame);
     }
     for (const auto& expected : expectations_) {
@@ -88,7 +88,7 @@ class HistoryCheck {
     } else {
       Expectation& expected = expectation_for(*entry.algorithm);
       verdict.verified_by = expected.reference.text();
-      Participant<D, Real> participant{&entry, result_.verdicts.size(), &expected,
+      HistoryParticipant<D, Real> participant{&entry, result_.verdicts.size(), &expected,
                                        Finder<D, Real>(*entry.algorithm, entry.spec)};
       if (!history_.steps.empty()) participant.tracker.emplace(*entry.algorithm, entry.spec);
       participants_.push_back(std::move(participant));
@@ -120,7 +120,7 @@ class HistoryCheck {
 
   Expectation& expectation_for(const Algorithm& algorithm) {
     const Reference reference(algorithm, known_, fullest_.size(),
-                              most_by_definition(history_.steps.size() + 1));
+                              max_by_definition(history_.steps.size() + 1));
     for (const auto& known : expectations_) {
       if (known->reference == reference) return *known;
     }
@@ -136,7 +136,7 @@ class HistoryCheck {
       check_reference(*expected, boxes, frame);
       if (frame == history_.steps.size()) result_.pairs = expected->now.size();
     }
-    for (Participant<D, Real>& participant : participants_) {
+    for (HistoryParticipant<D, Real>& participant : participants_) {
       if (participant.done) continue;
       EntryVerdict& verdict = result_.verdicts[participant.verdict];
       options_.watch.at(fmt::format("{}, frame {}", verdict.algorithm, frame));
@@ -169,7 +169,7 @@ class HistoryCheck {
   }
 
   /// Notes that a reference is wrong.
-  void blame_reference(Expectation& expected, Divergence divergence, std::span<const Box<D, Real>> boxes,
+  void blame_reference(Expectation& expected, PairDivergence divergence, std::span<const Box<D, Real>> boxes,
                        std::size_t frame) {
     const std::string& name = expected.reference.algorithm()->name;
     expected.fault = {.algorithm = name,
@@ -189,7 +189,7 @@ class HistoryCheck {
   }
 
   /// The fault in one frame of a participant.
-  std::string check(Participant<D, Real>& participant, std::span<const Box<D, Real>> boxes,
+  std::string check(HistoryParticipant<D, Real>& participant, std::span<const Box<D, Real>> boxes,
                     std::size_t frame) {
     const std::string name = participant.entry->spec.text();
     Expectation& expected = *participant.expected;
@@ -221,21 +221,21 @@ class HistoryCheck {
   }
 
   /// Whether, by the definition, the participant is right and what was expected of it wrong.
-  static bool is_right_about(const Divergence& divergence, std::span<const Box<D, Real>> boxes) {
+  static bool is_right_about(const PairDivergence& divergence, std::span<const Box<D, Real>> boxes) {
     const std::size_t first = index(divergence.pair.first);
     const std::size_t second = index(divergence.pair.second);
-    if (divergence.kind == Divergence::Kind::repeated || first >= second || second >= boxes.size())
+    if (divergence.kind == PairDivergence::Kind::repeated || first >= second || second >= boxes.size())
       return false;
     const bool is_pair =
         is_present(boxes[first]) && is_present(boxes[second]) && overlap(boxes[first], boxes[second]);
-    return is_pair == (divergence.kind == Divergence::Kind::extra);
+    return is_pair == (divergence.kind == PairDivergence::Kind::extra);
   }
 
   /// The divergence as seen from the other side.
-  static Divergence swapped(const Divergence& divergence) {
+  static PairDivergence swapped(const PairDivergence& divergence) {
     return *compare_pairs(
-        divergence.kind == Divergence::Kind::extra ? std::vector<Pair>() : std::vector<Pair>{divergence.pair},
-        divergence.kind == Divergence::Kind::extra ? std::span(&divergence.pair, 1)
+        divergence.kind == PairDivergence::Kind::extra ? std::vector<Pair>() : std::vector<Pair>{divergence.pair},
+        divergence.kind == PairDivergence::Kind::extra ? std::span(&divergence.pair, 1)
                                                    : std::span<const Pair>());
   }
 
@@ -245,14 +245,14 @@ class HistoryCheck {
   std::vector<Box<D, Real>> fullest_;  // the boxes of the frame with the most places
   Extremes extremes_;
   std::vector<std::unique_ptr<Expectation>> expectations_;
-  std::vector<Participant<D, Real>> participants_;
+  std::vector<HistoryParticipant<D, Real>> participants_;
   HistoryVerdicts result_;
 };
 
 }  // namespace
 
-std::size_t most_by_definition(std::size_t frames) noexcept {
-  const double most = std::sqrt(2 * most_tests_by_definition / static_cast<double>(frames));
+std::size_t max_by_definition(std::size_t frames) noexcept {
+  const double most = std::sqrt(2 * max_tests_by_definition / static_cast<double>(frames));
   return std::min(static_cast<std::size_t>(most), Effort{}.definition_boxes);
 }
 

@@ -19,7 +19,7 @@ namespace broadside::lab {
 inline constexpr std::size_t sampled_frames = 20;
 
 /// The most boxes whose expected pairs are the definition's in each of `frames` frames.
-std::size_t most_by_definition(std::size_t frames) noexcept;
+std::size_t max_by_definition(std::size_t frames) noexcept;
 
 /// The fault of an algorithm on a history; empty if there is none. `known` is where the expected pairs of
 /// many boxes come from.

@@ -25,7 +25,7 @@ namespace {
 using Kind = RecordedFault::Kind;
 
 /// How many faults are told one by one.
-constexpr std::size_t most_told = 20;
+constexpr std::size_t max_told = 20;
 
 /// The box enlarged by the margin, in the precision of the file and rounded outward: the rounding of an
 /// engine that enlarges boxes makes no pair stale.
@@ -78,7 +78,7 @@ class RecordedCheck {
       : recording_(recording),
         options_(options),
         margin_(recording.pairs.front().margin),
-        reference_(named(), known, places_of(recording.history), most_by_definition(recording.pairs.size())) {
+        reference_(named(), known, places_of(recording.history), max_by_definition(recording.pairs.size())) {
   }
 
   RecordedVerdict run() {
@@ -155,7 +155,7 @@ class RecordedCheck {
     const auto known = last_faults_.find({pair, kind});
     if (known != last_faults_.end() && faults_[known->second].last_frame + 1 == frame) {
       faults_[known->second].last_frame = frame;
-    } else if (faults_.size() < most_told) {
+    } else if (faults_.size() < max_told) {
       last_faults_[{pair, kind}] = faults_.size();
       faults_.push_back({kind, pair, frame, frame});
     } else {
@@ -178,7 +178,7 @@ class RecordedCheck {
     } else {
       text += fmt::format(": {} times", playback.pairs().times_reported(pair));
     }
-    return explained<D, Real>({Divergence::Kind::missing, pair, fault.first_frame, text}, recorded_pairs_name,
+    return explained<D, Real>({PairDivergence::Kind::missing, pair, fault.first_frame, text}, recorded_pairs_name,
                               "pair", fault.first_frame, boxes)
         .text;
   }
@@ -206,12 +206,12 @@ class RecordedCheck {
       text += fmt::format("; all name box {}", index(common_.front()));
     if (!stopped_.empty()) text += "; " + stopped_;
     for (const RecordedFault& fault : faults_) text += "\n    " + text_of(fault);
-    if (is_cut_) text += fmt::format("\n    ... only the first {} are listed", most_told);
+    if (is_cut_) text += fmt::format("\n    ... only the first {} are listed", max_told);
     return text;
   }
 
   /// The verdict where the algorithm that finds the overlapping boxes is itself wrong.
-  RecordedVerdict unusable(RecordedVerdict result, Divergence divergence,
+  RecordedVerdict unusable(RecordedVerdict result, PairDivergence divergence,
                            const Playback<D, Real>& playback) const {
     result.verdict.outcome = Outcome::skipped;
     result.verdict.reason = explained<D, Real>(std::move(divergence), reference_.algorithm()->name,

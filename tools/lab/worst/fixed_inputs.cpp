@@ -51,8 +51,8 @@ std::vector<HardInput> fixed_inputs() {
   for (const InputFamily& family : input_families()) {
     for (const int dimension : {2, 3}) {
       for (const bool in_double : {false, true}) {
-        for (const Call call : {Call::find, Call::between, Call::track}) {
-          if (family.two_sets && call != Call::between) continue;
+        for (const HardCall call : {HardCall::find, HardCall::between, HardCall::track}) {
+          if (family.two_sets && call != HardCall::between) continue;
           // Plates and lines have too many pairs with each other in 3D.
           Spec spec{family.name, {}};
           if (family.name == "mixture" && dimension == 3)
@@ -63,7 +63,7 @@ std::vector<HardInput> fixed_inputs() {
                             .call = call,
                             .moving = dimension == 2 ? 0.1 : 0.01,
                             .drift = 0.02,
-                            .order = family.fixed_order || call == Call::track ? "made" : "shuffled"});
+                            .order = family.fixed_order || call == HardCall::track ? "made" : "shuffled"});
         }
       }
     }

@@ -15,7 +15,7 @@
 namespace broadside::lab {
 namespace {
 
-constexpr double most_exponent = 60;
+constexpr double max_exponent = 60;
 
 /// The tunables that every input has.
 const std::vector<Tunable>& common_tunables() {
@@ -42,7 +42,7 @@ const std::vector<Tunable>& common_tunables() {
       number("moving", "0.1", 0, 1),
       number("drift", "0.02", 0, 1e6),
       number("teleport", "0", 0, 1),
-      number("exponent", "0", -most_exponent, most_exponent),
+      number("exponent", "0", -max_exponent, max_exponent),
       number("offset", "0", 0, 1e15),
       choice("order", {"made", "shuffled", "reversed"}),
       {.name = "seed", .summary = {}, .default_value = "1", .type = Tunable::Type::integer, .max = 0x1p53},
@@ -54,8 +54,8 @@ bool is_common(std::string_view name) {
   return std::ranges::find(common_tunables(), name, &Tunable::name) != common_tunables().end();
 }
 
-Call call_of(std::string_view name) {
-  return name == "find" ? Call::find : name == "between" ? Call::between : Call::track;
+HardCall call_of(std::string_view name) {
+  return name == "find" ? HardCall::find : name == "between" ? HardCall::between : HardCall::track;
 }
 
 template <typename Real>
@@ -87,8 +87,8 @@ std::string HardInput::text() const {
   add("dimension", std::to_string(dimension));
   add("real", in_double ? "double" : "float");
   add("call", calls[static_cast<std::size_t>(call)]);
-  if (call == Call::between) add_number("left", left, 0.5);
-  if (call == Call::track) {
+  if (call == HardCall::between) add_number("left", left, 0.5);
+  if (call == HardCall::track) {
     add_number("moving", moving, 0.1);
     add_number("drift", drift, 0.02);
     add_number("teleport", teleport, 0);
@@ -131,8 +131,8 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
   input.family = draw_family(family, random);
   input.dimension = random.chance(0.5) ? 2 : 3;
   input.in_double = random.chance(0.5);
-  const std::array<Call, 5> calls = {Call::find, Call::find, Call::between, Call::track, Call::track};
-  input.call = family.two_sets ? Call::between : one_of(calls, random);
+  const std::array<HardCall, 5> calls = {HardCall::find, HardCall::find, HardCall::between, HardCall::track, HardCall::track};
+  input.call = family.two_sets ? HardCall::between : one_of(calls, random);
   const std::array<double, 4> parts = {0.5, 0.5, 0.02, 0.98};
   input.left = family.two_sets ? 0.5 : one_of(parts, random);
   const auto hundred = static_cast<double>(movers) / static_cast<double>(std::max(boxes, movers));
@@ -143,7 +143,7 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
   const std::array<double, 4> jumps = {0, 0, 0.02, 0.5};
   input.teleport = one_of(jumps, random);
   // Within floats, large boxes squared and small ones both fit.
-  const double most = input.in_double ? most_exponent : 30;
+  const double most = input.in_double ? max_exponent : 30;
   if (random.chance(0.25)) input.exponent = std::round(random.between(-most, most));
   if (random.chance(0.15)) input.offset = power(10, std::round(random.between(0, input.in_double ? 9 : 2)));
   const std::array<std::string, 4> orders = {"made", "shuffled", "shuffled", "reversed"};
@@ -167,7 +167,7 @@ History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size
       result[i].max[axis] = rounded<Real>((made[i].max[axis] + input.offset) * scale);
     }
   }
-  if (input.call != Call::track) return {std::move(result), {}};
+  if (input.call != HardCall::track) return {std::move(result), {}};
   return set_moving(std::move(result),
                     {.boxes = boxes,
                      .seed = input.seed,
@@ -179,7 +179,7 @@ History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size
 }
 
 std::size_t left_count(const HardInput& input, std::size_t boxes) {
-  if (input.call != Call::between) return 0;
+  if (input.call != HardCall::between) return 0;
   const auto count = static_cast<std::size_t>(std::llround(input.left * static_cast<double>(boxes)));
   return std::clamp<std::size_t>(count, 1, boxes);
 }

@@ -17,14 +17,14 @@
 namespace broadside::lab {
 
 /// The call that is made with the boxes.
-enum class Call { find, between, track };
+enum class HardCall { find, between, track };
 
 /// Boxes, and the call that is made with them. Everything but the number of boxes.
 struct HardInput {
   Spec family;  ///< and the values of its own tunables
   int dimension = 2;
   bool in_double = false;  ///< the precision of the boxes
-  Call call = Call::find;
+  HardCall call = HardCall::find;
   double left = 0.5;           ///< of find_across(): the part of the boxes in the left set
   double moving = 0;           ///< of trackers: the fraction that moves
   double drift = 0;            ///< how far a mover goes in a frame, in units of its size

@@ -55,7 +55,7 @@ std::pair<float, float> ends(const GridListing& listing, std::span<const Box2> b
 }
 
 /// Beyond this many cells, an outline has only the cells that hold a box.
-constexpr std::size_t most_drawn = 1 << 16;
+constexpr std::size_t max_drawn = 1 << 16;
 
 /// Every cell or, of very many, the ones that hold a box.
 Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Settings& settings) {
@@ -63,7 +63,7 @@ Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Setti
   listing.initialize(boxes);
   const std::size_t columns = listing.columns();
   const std::size_t rows = listing.rows();
-  const bool all = columns * rows <= most_drawn;
+  const bool all = columns * rows <= max_drawn;
   if (!all) listing.algorithm_3_spanning_add_element(boxes);
   Outline<2> outline;
   outline.kind = "cells";

@@ -12,12 +12,12 @@ namespace broadside::paper {
 namespace {
 
 /// The most that any grid may hold, also one whose cell the user has set.
-double most_cells(double boxes) { return std::clamp<double>(16 * boxes, 1 << 16, 1 << 22); }
-double most_references(double boxes) { return std::max<double>(64 * boxes, 1 << 18); }
+double max_cells(double boxes) { return std::clamp<double>(16 * boxes, 1 << 16, 1 << 22); }
+double max_references(double boxes) { return std::max<double>(64 * boxes, 1 << 18); }
 
 /// The most in a grid that chooses its cell: beyond that, cells and references cost more than they save.
-double most_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22); }
-double most_auto_references(double boxes) { return 16 * boxes; }
+double max_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22); }
+double max_auto_references(double boxes) { return 16 * boxes; }
 
 double count_present(std::span<const Box2> boxes) {
   return static_cast<double>(std::ranges::count_if(boxes, [](const Box2& box) { return is_present(box); }));
@@ -113,14 +113,14 @@ std::size_t GridListing::bytes() const noexcept {
 bool GridListing::may_hold(double references, std::size_t boxes) const {
   if (!is_limited_) return true;
   const auto count = static_cast<double>(boxes);
-  return references <= (cell_ == 0 ? most_auto_references(count) : most_references(count));
+  return references <= (cell_ == 0 ? max_auto_references(count) : max_references(count));
 }
 
 /// Whether the grid of this size has more cells, or would hold more references, than it may.
 bool GridListing::is_too_large(std::span<const Box2> boxes) const {
   if (!is_limited_) return false;
   const double count = count_present(boxes);
-  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? most_auto_cells(count) : most_cells(count)))
+  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? max_auto_cells(count) : max_cells(count)))
     return true;
   double sum = 0;
   for (const Box2& e : boxes) {

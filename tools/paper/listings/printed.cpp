@@ -7,8 +7,8 @@
 namespace broadside::paper::printed {
 namespace {
 
-constexpr std::size_t most_steps = 1'000'000;
-constexpr std::size_t most_depth = 100;
+constexpr std::size_t max_steps = 1'000'000;
+constexpr std::size_t max_depth = 100;
 
 /// Whether "for i = 0 to n" has a round for i.
 bool in_range(std::size_t i, double n, To to) {
@@ -58,8 +58,8 @@ void algorithm_3_spanning_add_element(const Collection& e, To to, float step, Gr
     const Object& object = at(e, i, "Algorithm 3, line 3");
     for (float y = object.box.min[1]; before_end(y, object.box.max[1] + size); y += step) {
       for (float x = object.box.min[0]; before_end(x, object.box.max[0] + size); x += step) {
-        if (++steps > most_steps)
-          throw NeverEnds("Algorithm 3 has taken " + std::to_string(most_steps) +
+        if (++steps > max_steps)
+          throw NeverEnds("Algorithm 3 has taken " + std::to_string(max_steps) +
                           " steps; expected it to end");
         const double row = double{y} / grid.size;
         const double col = double{x} / grid.size;
@@ -115,8 +115,8 @@ void algorithm_7_add_element(QuadTreeNode& node, const Object& e) {
 }
 
 void algorithm_8_split(QuadTreeNode& node, To to) {
-  if (node.depth == most_depth)
-    throw NeverEnds("Algorithm 8 splits a node at depth " + std::to_string(most_depth) +
+  if (node.depth == max_depth)
+    throw NeverEnds("Algorithm 8 splits a node at depth " + std::to_string(max_depth) +
                     "; expected it to end");
   const auto new_quad_tree_node = [&node](double x_origin, double y_origin) {
     return std::make_unique<QuadTreeNode>(QuadTreeNode{x_origin, y_origin, node.count_max, node.depth + 1});

@@ -13,7 +13,7 @@ namespace {
 constexpr int max_depth = 48;
 
 /// The references a box that the leaves may hold on average.
-constexpr double max_references_a_box = 16;
+constexpr double max_references_per_box = 16;
 
 }  // namespace
 
@@ -198,8 +198,8 @@ double references_at(int depth, const Box2& box, const World& world) {
   return spanned(0, world.left, world.width) * spanned(1, world.top, world.height);
 }
 
-double most_references_in_tree(std::size_t boxes) {
-  return max_references_a_box * static_cast<double>(boxes);
+double max_references_in_tree(std::size_t boxes) {
+  return max_references_per_box * static_cast<double>(boxes);
 }
 
 int choose_depth(std::span<const Box2> boxes, const World& world) {
@@ -214,14 +214,14 @@ int choose_depth(std::span<const Box2> boxes, const World& world) {
       ++present;
       references += references_at(depth, box, world);
     }
-    (references <= most_references_in_tree(present) ? fits : beyond) = depth;
+    (references <= max_references_in_tree(present) ? fits : beyond) = depth;
   }
   return fits;
 }
 
 Statistics search_tree(const QuadTree& tree, const QuadTreeNode& root, PairSink& pairs) {
   Statistics statistics{.references = root.references()};
-  auto test_collide = [&](const Region& leaf, BoxId a, BoxId b) {
+  auto test_collide = [&](const HalfOpenRegion& leaf, BoxId a, BoxId b) {
     ++statistics.tests;
     if constexpr (kernels::is_observing) kernels::observe_test(a, b);
     const Box2& first = tree.boxes[index(a)];

@@ -19,7 +19,7 @@
 namespace broadside::paper {
 
 /// The points for which begin <= x < end on both axes; +inf lies in what ends at +inf.
-struct Region {
+struct HalfOpenRegion {
   std::array<double, 2> begin;
   std::array<double, 2> end;
 
@@ -108,7 +108,7 @@ class QuadTreeNode {
   /// The entries in this node's leaves.
   std::size_t references() const;
 
-  const Region& region() const noexcept { return region_; }
+  const HalfOpenRegion& region() const noexcept { return region_; }
   QuadTreeNode* parent() const noexcept { return parent_; }
   bool is_leaf() const noexcept { return qi_ == nullptr; }
 
@@ -124,7 +124,7 @@ class QuadTreeNode {
   QuadTreeNode* parent_ = nullptr;
   std::array<int, 2> sides_{};  // of the parent, -1 or 1 on each axis
   int depth_ = 0;
-  Region region_;
+  HalfOpenRegion region_;
   double x_origin_;
   double y_origin_;
   double half_width_;
@@ -143,7 +143,7 @@ double references_at(int depth, const Box2& box, const World& world);
 
 /// The most references that the leaves may come to hold, whatever the order in which boxes are added (erratum
 /// 7c).
-double most_references_in_tree(std::size_t boxes);
+double max_references_in_tree(std::size_t boxes);
 
 /// The greatest depth at which they cannot hold more. Absent boxes do not count.
 int choose_depth(std::span<const Box2> boxes, const World& world);

@@ -33,7 +33,7 @@ TreeReposition tree_reposition_of(const Settings& settings) {
 
 /// Whether the leaves just beyond a side of a region must hold the box already: its former place met them
 /// wherever its new one does.
-bool has_crossed(const Region& region, const Box2& from, const Box2& to, int axis, int side) {
+bool has_crossed(const HalfOpenRegion& region, const Box2& from, const Box2& to, int axis, int side) {
   const int other = 1 - axis;
   return region.meets(from) && region.is_crossed(from, axis, side) &&
          (from.min[other] <= to.min[other] || from.min[other] <= region.begin[other]) &&
@@ -57,11 +57,11 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
              .checkpoint = &checkpoint()};
     if (knows_leaves()) tree_.leaves.resize(boxes().size());
     root_.emplace(tree_, world_);
-    most_references_ = 0;
+    max_references_ = 0;
     for (std::size_t i = 0; i < boxes().size(); ++i) {
       if (!is_present(boxes()[i])) continue;
       root_->algorithm_7_add_element(BoxId(i));
-      most_references_ += references_at(tree_.depth_max, boxes()[i], world_);
+      max_references_ += references_at(tree_.depth_max, boxes()[i], world_);
     }
     nodes_built_ = tree_.nodes;
     counts().visited += tree_.visits;
@@ -79,9 +79,9 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     for (const BoxId id : movers) {
       const Box2 to = now[index(id)];
       const Box2 from = std::exchange(boxes()[index(id)], to);
-      if (is_present(from)) most_references_ -= references_at(tree_.depth_max, from, world_);
-      if (is_present(to)) most_references_ += references_at(tree_.depth_max, to, world_);
-      if (most_references_ > most_references_in_tree(present())) return false;  // erratum 7c
+      if (is_present(from)) max_references_ -= references_at(tree_.depth_max, from, world_);
+      if (is_present(to)) max_references_ += references_at(tree_.depth_max, to, world_);
+      if (max_references_ > max_references_in_tree(present())) return false;  // erratum 7c
       if (knows_leaves() && is_present(from) && is_present(to)) {
         reposition(id, from, to);
       } else {
@@ -201,7 +201,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
   QuadTree tree_;
   std::optional<QuadTreeNode> root_;
   std::vector<QuadTreeNode*> before_;  // a mover's leaves
-  double most_references_ = 0;         // of a full tree of this depth
+  double max_references_ = 0;         // of a full tree of this depth
   std::size_t nodes_built_ = 0;
 };
 

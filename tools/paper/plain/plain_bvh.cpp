@@ -18,7 +18,7 @@ namespace broadside::plain {
 namespace {
 
 constexpr std::size_t fan_out = 16;
-constexpr std::size_t most_levels = 9;
+constexpr std::size_t max_levels = 9;
 
 /// One level of the tree as boxes.
 template <int D>
@@ -70,10 +70,10 @@ class Tiler {
     if (axis == D - 1) return;
     const auto slabs =
         static_cast<std::size_t>(std::ceil(std::pow(static_cast<double>(leaves), 1.0 / (D - axis))));
-    const std::size_t leaves_a_slab = (leaves + slabs - 1) / slabs;
-    const std::size_t slab = leaves_a_slab * fan_out;
+    const std::size_t leaves_per_slab = (leaves + slabs - 1) / slabs;
+    const std::size_t slab = leaves_per_slab * fan_out;
     for (std::size_t begin = 0; begin < boxes.size(); begin += slab)
-      tile(boxes.subspan(begin, std::min(slab, boxes.size() - begin)), shape, axis + 1, leaves_a_slab);
+      tile(boxes.subspan(begin, std::min(slab, boxes.size() - begin)), shape, axis + 1, leaves_per_slab);
   }
 
  private:
@@ -230,8 +230,8 @@ class PlainBvh final : public Searcher<D> {
   bool branch_free_;
   Tiler<D> tiler_;
   std::vector<PackedBox<D>> packed_;
-  std::array<Level, most_levels> levels_;
-  std::array<std::size_t, most_levels> sizes_{};
+  std::array<Level, max_levels> levels_;
+  std::array<std::size_t, max_levels> sizes_{};
   std::size_t level_count_ = 0;
   std::vector<BoxId> ids_;
   std::vector<std::uint32_t> scratch_;

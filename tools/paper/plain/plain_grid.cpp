@@ -27,10 +27,10 @@ struct Cells {
 
   Cells() : borders{std::numeric_limits<float>::quiet_NaN()} {}
 
-  Cells(int cut_axis, float begin, float end, float least_width, double most) : axis(cut_axis), low(begin) {
+  Cells(int cut_axis, float begin, float end, float min_width, double most) : axis(cut_axis), low(begin) {
     const float length = end - begin;
     if (length > 0 && length <= std::numeric_limits<float>::max()) {
-      const double fitting = least_width > 0 ? static_cast<double>(length) / least_width : most;
+      const double fitting = min_width > 0 ? static_cast<double>(length) / min_width : most;
       count = static_cast<std::size_t>(std::clamp(fitting, 1.0, std::max(1.0, most)));
       per_unit = static_cast<float>(count) / length;
     }
@@ -251,9 +251,9 @@ class PlainGrid final : public Searcher<D> {
       std::size_t end = i + 1;
       while (end < size && boxes.min(end, swept_) <= last) ++end;
       statistics_.tests += end - i - 1;
-      for (std::size_t begin = i + 1; begin < end; begin += most_at_once) {
+      for (std::size_t begin = i + 1; begin < end; begin += max_at_once) {
         const std::size_t count = write_hits(
-            branch_free_, begin, std::min(end, begin + most_at_once), pairs.room(PairSink::max_room),
+            branch_free_, begin, std::min(end, begin + max_at_once), pairs.room(PairSink::max_room),
             [&](std::size_t j) {
               return overlap_at<D>(branch_free_, boxes, i, boxes, j) && (mask & boxes.dedup_mask(j)) == 0;
             },
@@ -265,7 +265,7 @@ class PlainGrid final : public Searcher<D> {
 
   static constexpr std::uint32_t row_bit = 1;
   static constexpr std::uint32_t column_bit = 2;
-  static constexpr std::size_t most_at_once = PairSink::max_room - 1;
+  static constexpr std::size_t max_at_once = PairSink::max_room - 1;
 
   bool samples_;
   bool carries_;

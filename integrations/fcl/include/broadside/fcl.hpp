@@ -88,12 +88,12 @@ class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
   using Pairs = std::vector<detail::DistantPair<S>>;
 
   /// Counts a query while it runs.
-  class Query {
+  class QueryGuard {
    public:
-    explicit Query(const FclCollisionManager& manager) : running_(manager.queries_) { ++running_; }
-    Query(const Query&) = delete;
-    Query& operator=(const Query&) = delete;
-    ~Query() { --running_; }
+    explicit QueryGuard(const FclCollisionManager& manager) : running_(manager.queries_) { ++running_; }
+    QueryGuard(const QueryGuard&) = delete;
+    QueryGuard& operator=(const QueryGuard&) = delete;
+    ~QueryGuard() { --running_; }
 
    private:
     std::atomic<int>& running_;

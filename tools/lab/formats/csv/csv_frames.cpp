@@ -48,16 +48,16 @@ class PlainCsv final : public FrameReader<D, double> {
       if (boxes.size() != sample) continue;
       // Lines that go on as they began; no more than there can be in the bytes that are there.
       const std::size_t left = rows_.lines().bytes_left();
-      const std::size_t bytes_a_row = (before - left) / sample;
-      boxes.reserve(sample + left / bytes_a_row + left / bytes_a_row / 32);
+      const std::size_t bytes_per_row = (before - left) / sample;
+      boxes.reserve(sample + left / bytes_per_row + left / bytes_per_row / 32);
     }
     return boxes;
   }
 
   bool first_piece(std::vector<Box<D, double>>& boxes) override {
-    constexpr std::size_t rows_a_piece = std::size_t{1} << 16;
+    constexpr std::size_t rows_per_piece = std::size_t{1} << 16;
     boxes.clear();
-    while (boxes.size() < rows_a_piece && rows_.next()) take(boxes);
+    while (boxes.size() < rows_per_piece && rows_.next()) take(boxes);
     rows_.release();
     return !boxes.empty();
   }

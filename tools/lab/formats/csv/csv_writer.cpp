@@ -95,8 +95,8 @@ class CsvWriter final : public FrameWriter<D, Real> {
       if (!absent) write_number(static_cast<double>(i < D ? box.min[i] : box.max[i - D]));
       text_ += i + 1 < 2 * D ? ',' : '\n';
     }
-    constexpr std::size_t most_kept = std::size_t{1} << 16;
-    if (text_.size() > most_kept) flush();
+    constexpr std::size_t max_kept = std::size_t{1} << 16;
+    if (text_.size() > max_kept) flush();
   }
 
   void write_row(std::size_t place, const Box<D, Real>& box) {

@@ -22,7 +22,7 @@ constexpr std::string_view kind_list =
     "POINT, LINESTRING, POLYGON, MULTIPOINT, MULTILINESTRING, MULTIPOLYGON, GEOMETRYCOLLECTION or bounds";
 
 /// Lists in lists beyond this are refused: reading them takes the stack.
-constexpr int most_nested = 40;
+constexpr int max_nested = 40;
 
 /// Reads a text from left to right. Each read_...() is false once something is wrong, which `geometry` tells.
 class GeometryText {
@@ -157,7 +157,7 @@ class GeometryText {
   /// "(1 2, 3 4)", "((1 2), EMPTY)" or the geometries of a collection.
   bool read_list(std::size_t numbers, bool is_collection, int nested) {
     if (take_word("EMPTY")) return true;
-    if (nested == most_nested)
+    if (nested == max_nested)
       return fail(fmt::format(", with lists nested more than {} deep", nested), "fewer");
     if (!expect('(')) return false;
     do {

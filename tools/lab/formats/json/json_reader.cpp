@@ -80,7 +80,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
  private:
   /// Deeper values are not kept: what works on them goes down by recursion.
-  static constexpr std::size_t most_open = 100;
+  static constexpr std::size_t max_open = 100;
 
   static bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::ranges::find(names, name) != names.end();
@@ -119,7 +119,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
   bool open(Kind kind) {
-    const bool is_too_deep = open_.size() == most_open;
+    const bool is_too_deep = open_.size() == max_open;
     JsonValue* const value = skipped_ > 0 ? nullptr : place({.kind = is_too_deep ? Kind::too_deep : kind});
     if (value == nullptr || is_too_deep)
       ++skipped_;

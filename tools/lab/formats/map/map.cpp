@@ -226,9 +226,9 @@ class MapReader {
     if (geometry.kind != Kind::object) refuse(geometry.shown(), "a geometry, or null in a feature");
     const std::string& type = text_of(member_of(geometry, "type"), geometry_types);
     if (type == "GeometryCollection") {
-      constexpr int most_collections = 32;
-      if (nested == most_collections)
-        refuse(fmt::format("collections nested more than {} deep", most_collections), "fewer");
+      constexpr int max_collections = 32;
+      if (nested == max_collections)
+        refuse(fmt::format("collections nested more than {} deep", max_collections), "fewer");
       for (const JsonValue& one : elements_of(member_of(geometry, geometries), "an array of geometries"))
         read_geometry(one, nested + 1);
       return;

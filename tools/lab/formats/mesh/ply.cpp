@@ -34,7 +34,7 @@ struct Element {
   std::vector<Property> properties{};
 };
 
-constexpr std::int64_t most_vertices = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t max_vertices = std::numeric_limits<std::uint32_t>::max();
 
 class PlyReader {
  public:
@@ -197,9 +197,9 @@ class PlyReader {
                                     input_.name(), axis));
       if (found->type.kind != 'f' || found->type.bytes != 4) mesh_.precision = Precision::float64;
     }
-    if (element.count > static_cast<std::uint64_t>(most_vertices) - mesh_.vertices.size())
+    if (element.count > static_cast<std::uint64_t>(max_vertices) - mesh_.vertices.size())
       throw FileError(fmt::format("{}: has {} vertices; expected at most {}", input_.name(), element.count,
-                                  most_vertices));
+                                  max_vertices));
     mesh_.vertices.reserve(mesh_.vertices.size() + element.count);
   }
 
@@ -217,7 +217,7 @@ class PlyReader {
     if (length < 3) refuse(fmt::format("face {} has {} corners", mesh_.face_count(), length), "at least 3");
     for (std::uint64_t i = 0; i < length; ++i) {
       const std::int64_t vertex = whole(list.type);
-      if (vertex < 0 || vertex > most_vertices)
+      if (vertex < 0 || vertex > max_vertices)
         refuse(fmt::format("face {} names the vertex {}", mesh_.face_count(), vertex), "one from 0");
       mesh_.corners.push_back(static_cast<std::uint32_t>(vertex));
     }
@@ -226,7 +226,7 @@ class PlyReader {
 
   std::uint64_t length_of(const Property& list) {
     const std::int64_t length = whole(list.count_type);
-    if (length < 0 || length > most_vertices)
+    if (length < 0 || length > max_vertices)
       refuse(fmt::format("a list of {} numbers", length), "from 0 to 4294967295");
     return static_cast<std::uint64_t>(length);
   }

@@ -117,9 +117,9 @@ class NpyFrame final : public FrameReader<D, Real> {
   }
 
   bool first_piece(std::vector<Box<D, Real>>& boxes) override {
-    constexpr std::size_t rows_a_piece = std::size_t{1} << 18;
+    constexpr std::size_t rows_per_piece = std::size_t{1} << 18;
     if (!header_.is_column_major) input_->release(header_.bytes + next_row_ * header_.row_bytes());
-    read(std::min(rows_a_piece, end_row_ - next_row_), boxes);
+    read(std::min(rows_per_piece, end_row_ - next_row_), boxes);
     return !boxes.empty();
   }
 

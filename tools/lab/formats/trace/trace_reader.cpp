@@ -28,8 +28,8 @@ bool TraceReader::next_frame() {
   if (std::exchange(ended_, true)) return false;
   FrameHeader header;
   if (!read_frame_header(header)) return false;
-  const std::uint64_t bytes_a_box = word_bytes + 2 * static_cast<unsigned>(dimension_ * coordinate_bytes_);
-  const std::uint64_t boxes = word_bytes * header.removed + bytes_a_box * header.set;
+  const std::uint64_t bytes_per_box = word_bytes + 2 * static_cast<unsigned>(dimension_ * coordinate_bytes_);
+  const std::uint64_t boxes = word_bytes * header.removed + bytes_per_box * header.set;
   std::uint64_t size = boxes;
   if (has_pairs_) {
     size += trace::filter_bytes * std::uint64_t{header.pairs[0]};
@@ -109,8 +109,8 @@ bool TraceReader::read_frame_header(FrameHeader& header) {
 /// Takes the slots named in a frame, which are in bytes_: those removed and those set, each ascending.
 void TraceReader::take(const FrameHeader& header) {
   const std::size_t set_begin = word_bytes * header.removed;
-  const std::size_t bytes_a_box = word_bytes + 2 * static_cast<std::size_t>(dimension_ * coordinate_bytes_);
-  const std::size_t end = set_begin + bytes_a_box * header.set;
+  const std::size_t bytes_per_box = word_bytes + 2 * static_cast<std::size_t>(dimension_ * coordinate_bytes_);
+  const std::size_t end = set_begin + bytes_per_box * header.set;
   const auto axes = static_cast<std::size_t>(dimension_);
   changed_.clear();
   bounds_.clear();
@@ -135,7 +135,7 @@ void TraceReader::take(const FrameHeader& header) {
       removed += word_bytes;
     } else {
       take_box(slot, at + word_bytes);
-      set += bytes_a_box;
+      set += bytes_per_box;
     }
   }
   if (header.slots > slots_ && header.slots - slots_ != added)

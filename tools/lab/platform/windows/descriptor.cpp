@@ -13,7 +13,7 @@ namespace broadside::lab::platform {
 namespace {
 
 /// A call's count of bytes is an int there.
-constexpr std::size_t most_bytes_a_call = std::size_t{1} << 30;
+constexpr std::size_t max_bytes_per_call = std::size_t{1} << 30;
 
 HANDLE handle_of(int descriptor) { return reinterpret_cast<HANDLE>(_get_osfhandle(descriptor)); }
 
@@ -32,11 +32,11 @@ int duplicate(int descriptor) { return _dup(descriptor); }
 void close(int descriptor) noexcept { _close(descriptor); }
 
 std::int64_t read(int descriptor, char* to, std::size_t most) {
-  return _read(descriptor, to, static_cast<unsigned>(std::min(most, most_bytes_a_call)));
+  return _read(descriptor, to, static_cast<unsigned>(std::min(most, max_bytes_per_call)));
 }
 
 std::int64_t write(int descriptor, const char* from, std::size_t count) noexcept {
-  return _write(descriptor, from, static_cast<unsigned>(std::min(count, most_bytes_a_call)));
+  return _write(descriptor, from, static_cast<unsigned>(std::min(count, max_bytes_per_call)));
 }
 
 std::int64_t seek(int descriptor, std::int64_t offset, int whence) {

@@ -41,7 +41,7 @@ namespace broadside::playground {
 namespace {
 
 /// Where the page puts what a call takes.
-struct Input {
+struct CallInput {
   std::vector<float> boxes;  // minima, then maxima
   std::string text;
 };
@@ -56,7 +56,7 @@ struct Answers {
       numbers;  // statistics and bytes; of an outline the swept axis and the sizes of its levels
 };
 
-Input input;
+CallInput input;
 Answers answers;
 
 template <int D>
@@ -275,7 +275,7 @@ std::string unread(std::string_view beginning, const std::string& name) {
 }
 
 /// Opens a file by its content, as the program does, in the formats whose readers take no other library.
-lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
+lab::AnyFrameReader open_file(std::unique_ptr<lab::CallInput> file) {
   const std::string_view beginning = file->beginning();
   if (const std::string why = unread(beginning, file->name()); !why.empty())
     throw lab::FileError(file->name() + ": " + why);
@@ -287,15 +287,15 @@ lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
 
 /// The boxes of all frames, as floats; their numbers are the dimension and then how many each frame has.
 void read_frames(lab::AnyFrameReader frames, const std::string& name) {
-  constexpr std::size_t most_boxes = 500'000;
-  constexpr std::size_t most_numbers = 60'000'000;
+  constexpr std::size_t max_boxes = 500'000;
+  constexpr std::size_t max_numbers = 60'000'000;
   frames = lab::with_precision(std::move(frames), lab::Precision::float32, name);
   const auto read = [&]<int D, typename Real>(lab::FrameReader<D, Real>& reader) {
     std::vector<Box<D, Real>> boxes = reader.first();
     answers.numbers.push_back(D);
     lab::Step<D, Real> step;
     do {
-      if (boxes.size() > most_boxes || answers.boxes.size() > most_numbers)
+      if (boxes.size() > max_boxes || answers.boxes.size() > max_numbers)
         throw lab::FileError(name + ": " + std::to_string(boxes.size()) + " boxes in frame " +
                              std::to_string(answers.numbers.size() - 1) +
                              "; the playground takes up to 500,000, and 60 million numbers in all "
@@ -419,7 +419,7 @@ BROADSIDE_EXPORT(read_file)()->int {
     const std::size_t end = input.text.find('\n');
     const std::string name = input.text.substr(0, end);
     const std::string_view bytes = std::string_view(input.text).substr(end + 1);
-    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes)), name);
+    read_frames(open_file(std::make_unique<broadside::lab::CallInput>(name, bytes)), name);
   });
 }
 #endif
