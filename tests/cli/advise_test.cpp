@@ -56,7 +56,7 @@ TEST(AdviseVerb, WritesAllOfItAsJson) {
   const Ended ended = run(quickly(boxes_csv(folder), {"--json", folder.file("out.json")}));
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const Json json = Json::parse(text_of(folder.file("out.json")));
-  EXPECT_EQ(json["schema"], "broadside.advice/1");
+  EXPECT_EQ(json["schema"], "broadside.advice/2");
   EXPECT_EQ(json["command"][1], "advise");
   EXPECT_EQ(json["mode"], "find");
   EXPECT_EQ(json["signals"]["boxes"], 3);

@@ -75,7 +75,7 @@ std::vector<std::string> changes_of(const Advice& advice);
 /// The advice as text for people.
 std::string text_of(const Advice& advice);
 
-/// The advice as JSON, by the schema "broadside.advice/1" (docs/benchmarking.md). `command` is the program's
+/// The advice as JSON, by the schema "broadside.advice/2" (docs/benchmarking.md). `command` is the program's
 /// arguments, the program itself first.
 std::string json_of(const Advice& advice, std::span<const std::string> command);
 

@@ -1,4 +1,4 @@
-// Advice as JSON, by the schema "broadside.advice/1".
+// Advice as JSON, by the schema "broadside.advice/2".
 #include <algorithm>
 #include <array>
 
@@ -99,7 +99,7 @@ Json advice_json(const Advice& advice) {
 }  // namespace
 
 std::string json_of(const Advice& advice, std::span<const std::string> command) {
-  std::string text = "{\n\"schema\": \"broadside.advice/1\"";
+  std::string text = "{\n\"schema\": \"broadside.advice/2\"";
   const auto add = [&](std::string_view key, const Json& value) {
     text += fmt::format(",\n\"{}\": {}", key, json_text(value));
   };

@@ -28,7 +28,7 @@ function checker(name: string): (document: unknown) => string {
 }
 
 const faultOfResults = checker("results-2");
-const faultOfAdvice = checker("advice-1");
+const faultOfAdvice = checker("advice-2");
 
 const [first] = comparison.measurements;
 const failed = {
