@@ -147,8 +147,8 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"examples/own_algorithm/main.cpp", "\"lab/catalogue.hpp\""},
       {"examples/own_algorithm/main.cpp", "<box2d/box2d.h>"},
       {"examples/record_box2d/main.cpp", "<broadside/broadside.hpp>"},
-      {"tests/unit/lab/cli_test.cpp", "\"cli/compare.hpp\""},
-      {"tests/unit/lab/engine_test.cpp", "<box2d/box2d.h>"},
+      {"tests/tools/lab/cli_test.cpp", "\"cli/compare.hpp\""},
+      {"tests/tools/lab/engine_test.cpp", "<box2d/box2d.h>"},
       {"tests/laws/oracle_test.cpp", "<embree3/rtcore.h>"},
   };
   for (const auto& [path, include] : wrong) {

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/cli/process.hpp"
+#include "tests/tools/cli/process.hpp"
 #include "tests/support/rng.hpp"
 
 namespace broadside::cli {

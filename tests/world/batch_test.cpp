@@ -10,7 +10,7 @@
 
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
-#include "tests/unit/world/handle_pairs.hpp"
+#include "tests/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {

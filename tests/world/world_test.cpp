@@ -13,7 +13,7 @@
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/searchers.hpp"
-#include "tests/unit/world/handle_pairs.hpp"
+#include "tests/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {

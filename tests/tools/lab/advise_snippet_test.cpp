@@ -12,37 +12,37 @@
 
 // Each as a user pastes it, into a room of its own.
 namespace broadside::find_2d {
-#include "tests/unit/snippets/find_2d.inc"
+#include "tests/tools/lab/snippets/find_2d.inc"
 }
 namespace broadside::find_3d {
-#include "tests/unit/snippets/find_3d.inc"
+#include "tests/tools/lab/snippets/find_3d.inc"
 }
 namespace broadside::find_double_2d {
-#include "tests/unit/snippets/find_double_2d.inc"
+#include "tests/tools/lab/snippets/find_double_2d.inc"
 }
 namespace broadside::track_2d {
-#include "tests/unit/snippets/track_2d.inc"
+#include "tests/tools/lab/snippets/track_2d.inc"
 }
 namespace broadside::track_double_3d {
-#include "tests/unit/snippets/track_double_3d.inc"
+#include "tests/tools/lab/snippets/track_double_3d.inc"
 }
 namespace broadside::track_paper {
-#include "tests/unit/snippets/track_paper.inc"
+#include "tests/tools/lab/snippets/track_paper.inc"
 }
 
 namespace broadside::find_mine {
-#include "tests/unit/snippets/find_mine.inc"
+#include "tests/tools/lab/snippets/find_mine.inc"
 Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
 }  // namespace broadside::find_mine
 namespace broadside::track_mine {
-#include "tests/unit/snippets/track_mine.inc"
+#include "tests/tools/lab/snippets/track_mine.inc"
 Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
 }  // namespace broadside::track_mine
 
 namespace broadside::lab {
 namespace {
 
-std::string pasted(const std::string& name) { return project_text("tests/unit/snippets/" + name + ".inc"); }
+std::string pasted(const std::string& name) { return project_text("tests/tools/lab/snippets/" + name + ".inc"); }
 
 TEST(Snippet, IsWhatIsCompiledHere) {
   constexpr Precision single = Precision::float32;

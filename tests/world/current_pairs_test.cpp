@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/world/random_pair.hpp"
+#include "tests/world/random_pair.hpp"
 
 namespace broadside::world {
 namespace {

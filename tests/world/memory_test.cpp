@@ -15,7 +15,7 @@
 #include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
-#include "tests/unit/world/handle_pairs.hpp"
+#include "tests/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
