@@ -11,7 +11,6 @@
 
 #include "core/float_environment.hpp"
 #include "core/former_names.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/suggestion.hpp"
 
@@ -76,7 +75,7 @@ Settings settings_of(const Algorithm& algorithm, const Spec& spec) {
 }
 
 std::size_t threads_of(const Algorithm& algorithm, const Settings& settings) {
-  if (core::is_lean || !has_threads(algorithm)) return 1;
+  if (!has_threads(algorithm)) return 1;
   return static_cast<std::size_t>(settings.integer("threads"));
 }
 

@@ -6,7 +6,6 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "core/lean.hpp"
 #include "core/number_text.hpp"
 
 namespace broadside::core {
@@ -73,7 +72,7 @@ Spec canonical_spec(const Spec& spec) {
 }
 
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {
-  if (is_lean || !is_ours(algorithm) || tunable != "update" ||
+  if (!is_ours(algorithm) || tunable != "update" ||
       std::ranges::find(former_ways, value) == former_ways.end())
     return {};
   return "; each tracker follows in its one fastest way, and the paper's ways are those of "
@@ -81,7 +80,7 @@ std::string_view former_value(std::string_view algorithm, std::string_view tunab
 }
 
 std::string_view former_tunable(std::string_view algorithm, std::string_view tunable) {
-  if (is_lean || !is_ours(algorithm)) return {};
+  if (!is_ours(algorithm)) return {};
   if (tunable == "way") return "; way=rebuild is update=rebuild now, and way=incremental update=follow";
   if (tunable == "span") return "; cells have levels by the sizes of boxes now, and need no span";
   if (tunable == "margin" || tunable == "budget")

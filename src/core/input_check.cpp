@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/float_environment.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
 
@@ -70,7 +69,7 @@ void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all
     }
     if (index(id) < first && is_invalid(boxes[index(id)])) first = index(id);
   }
-  if (is_lean || bad_input == BadInput::reject) check_boxes(boxes, first);
+  if (bad_input == BadInput::reject) check_boxes(boxes, first);
 }
 
 template std::string text_of(const Box2&);

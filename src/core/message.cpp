@@ -1,14 +1,13 @@
 // Messages of exceptions, put together of texts and numbers.
 #include "core/message.hpp"
 
-#include "core/lean.hpp"
 #include "core/number_text.hpp"
 
 namespace broadside::core {
 
 void MessagePart::append_to(std::string& text) const {
   if (text_ == nullptr)
-    text += is_lean ? text_of(static_cast<double>(value_), 17) : std::to_string(value_);
+    text += std::to_string(value_);
   else
     text.append(text_, value_);
 }

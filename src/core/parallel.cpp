@@ -282,7 +282,6 @@ Parallel::Parallel() = default;
 Parallel::~Parallel() = default;
 
 void Parallel::start(const Workers& workers, std::size_t boxes) {
-  if constexpr (is_lean) return;
   workers_ = 1;
   boxes_ = boxes;
   checkpoint_ = workers.checkpoint;

@@ -12,7 +12,6 @@
 #include "broadside/searcher.hpp"
 
 #include "core/delivery.hpp"
-#include "core/lean.hpp"
 
 namespace broadside::core {
 
@@ -40,24 +39,22 @@ class Parallel {
   /// Sets the number of workers for a search that takes about as long as looking at `boxes` boxes.
   void start(const Workers& workers, std::size_t boxes);
 
-  std::size_t workers() const noexcept { return is_lean ? 1 : workers_; }
+  std::size_t workers() const noexcept { return workers_; }
 
   /// The checkpoint to which a worker reports the pairs it compares. In the caller's thread it calls the
   /// caller's checkpoint. In other threads it ends the work once there is an exception. Null if there is
   /// none.
   Checkpoint* checkpoint(std::size_t worker) noexcept {
-    return is_lean || checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
+    return checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
   }
 
   /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Throws what
   /// a body throws, of several the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
-    if constexpr (!is_lean) {
-      if (workers() > 1)
-        return share_ranges(count,
-                            [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
-    }
+    if (workers() > 1)
+      return share_ranges(count,
+                          [&body](std::size_t, Range range, std::size_t worker) { body(range, worker); });
     body(Range{0, count}, std::size_t{0});
   }
 
@@ -70,9 +67,7 @@ class Parallel {
   /// Calls body(number, range, worker) for each range of a number.
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
-    if constexpr (!is_lean) {
-      if (workers() > 1) return share_ranges(count, std::cref(body));
-    }
+    if (workers() > 1) return share_ranges(count, std::cref(body));
     body(std::size_t{0}, Range{0, count}, std::size_t{0});
   }
 
@@ -85,10 +80,8 @@ class Parallel {
   /// sink. Throws what a search or the sink throws, of several the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
-    if constexpr (!is_lean) {
-      if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
-      if (checkpoint_) return search_by_pieces(parts, pairs, std::cref(search));
-    }
+    if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
+    if (checkpoint_) return search_by_pieces(parts, pairs, std::cref(search));
     return search(Range{0, parts}, std::size_t{0}, pairs);
   }
 

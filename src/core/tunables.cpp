@@ -5,7 +5,7 @@ namespace broadside::core {
 
 Tunable threads_tunable() {
   return {.name = "threads",
-          .summary = unless_lean("maximum number of threads of a search; 0: as many as there are"),
+          .summary = "maximum number of threads of a search; 0: as many as there are",
           .default_value = "1",
           .type = Tunable::Type::integer,
           .min = 0,
@@ -14,8 +14,7 @@ Tunable threads_tunable() {
 
 Tunable update_tunable() {
   return {.name = "update",
-          .summary = unless_lean(
-              "for tracking only: follow the boxes that changed, or find all pairs anew in each frame"),
+          .summary = "for tracking only: follow the boxes that changed, or find all pairs anew in each frame",
           .default_value = "auto",
           .type = Tunable::Type::choice,
           .choices = {"follow", "rebuild"}};

@@ -3,7 +3,7 @@
 
 #include "broadside/algorithm.hpp"
 
-#include "core/lean.hpp"
+#include "core/dimensions.hpp"
 
 namespace broadside::core {
 
@@ -23,15 +23,12 @@ Strategies<D> in_dimension(Strategies<D> (*make)()) {
     return {};
 }
 
-/// Makes an outline by `lay_out` of a searcher of class S; lean builds have none.
+/// Makes an outline by `lay_out` of a searcher of class S.
 template <typename S, int D>
 MakeOutline<D> outline_by(Outline<D, float> (S::*lay_out)(std::span<const Box<D>>, const Workers&)) {
-  if constexpr (is_lean)
-    return {};
-  else
-    return [lay_out](std::span<const Box<D>> boxes, const Workers& workers, const Settings& settings) {
-      return (*make_strategy<S>(settings).*lay_out)(boxes, workers);
-    };
+  return [lay_out](std::span<const Box<D>> boxes, const Workers& workers, const Settings& settings) {
+    return (*make_strategy<S>(settings).*lay_out)(boxes, workers);
+  };
 }
 
 }  // namespace broadside::core

@@ -12,7 +12,6 @@
 #include "algorithms/registry.hpp"
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "find/search.hpp"
 
@@ -162,7 +161,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
 
   /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
   void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
-    if (core::is_lean || bad_input == BadInput::reject) return;
+    if (bad_input == BadInput::reject) return;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
     }

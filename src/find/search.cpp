@@ -10,7 +10,6 @@
 #include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"
 #include "core/input_check.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/pair_set.hpp"
 #include "core/parallel.hpp"
@@ -100,8 +99,7 @@ std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher) {
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings) {
   std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);
-  if (core::is_lean || algorithm.kind != AlgorithmKind::own || algorithm::is_linked(algorithm.name))
-    return searcher;
+  if (algorithm.kind != AlgorithmKind::own || algorithm::is_linked(algorithm.name)) return searcher;
   return checked(std::move(searcher));
 }
 

@@ -6,8 +6,6 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "core/lean.hpp"
-
 namespace broadside::kernels {
 
 /// Set in the second id of a pair, until the last test, where the boxes do no more than touch as floats: in
@@ -37,10 +35,7 @@ struct InDouble {
 /// Calls `body` with the last test by these boxes, or by floats if they are null.
 template <int D, typename Body>
 auto with_last_test(const Box<D, double>* doubles, const Body& body) {
-  if constexpr (core::is_lean)
-    return body(ByFloats{});
-  else
-    return doubles == nullptr ? body(ByFloats{}) : body(InDouble<D>{doubles});
+  return doubles == nullptr ? body(ByFloats{}) : body(InDouble<D>{doubles});
 }
 
 }  // namespace broadside::kernels

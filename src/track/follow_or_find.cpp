@@ -8,7 +8,6 @@
 
 #include "broadside/sinks.hpp"
 
-#include "core/lean.hpp"
 #include "core/sample.hpp"
 
 namespace broadside::track {
@@ -119,7 +118,6 @@ void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const W
 
 template <int D, typename Real>
 std::string FollowOrFind<D, Real>::explanation() const {
-  if constexpr (core::is_lean) return {};
   if (!explains_) return find_anew_ ? find_anew_->explanation() : std::string();
   std::string text;
   if (policy_.are_few()) text = structures_[policy_.current()].name + ", since so few boxes need no cells; ";

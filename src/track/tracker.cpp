@@ -12,7 +12,6 @@
 #include "core/float_environment.hpp"
 #include "core/grow.hpp"
 #include "core/input_check.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sort_pairs.hpp"
 #include "core/tunables.hpp"
@@ -212,7 +211,6 @@ std::string Tracker<D, Real>::explanation() const {
 
 template <int D, typename Real>
 std::size_t Tracker<D, Real>::bytes() const noexcept {
-  if constexpr (core::is_lean) return 0;
   return state_->frames.bytes() + state_->ignored.bytes() + state_->updater.bytes() +
          core::bytes_of(state_->begun, state_->ended, state_->sorting);
 }
@@ -224,7 +222,7 @@ const Workers& Tracker<D, Real>::workers() const noexcept {
 
 template <int D, typename Real>
 void Tracker<D, Real>::set_workers(const Workers& workers) {
-  if constexpr (!core::is_lean) state_->workers = workers;
+  state_->workers = workers;
 }
 
 template class Tracker<2, float>;

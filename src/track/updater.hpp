@@ -11,7 +11,6 @@
 
 #include "broadside/follower.hpp"
 
-#include "core/lean.hpp"
 #include "core/number_text.hpp"
 #include "track/candidate_limit.hpp"
 #include "track/candidate_list.hpp"
@@ -34,8 +33,6 @@ class Updater {
   /// Writes the events of a change, in any order. One may be written more than once. After an exception the
   /// next change must be a rebuild.
   std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-    // Lean builds, which are to be small, do not enlarge boxes.
-    if constexpr (core::is_lean) return pairs_.update(change, begun, ended);
     was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
     if (was_enlarged_) return statistics_;
     update_exactly(change, begun, ended);
@@ -68,8 +65,7 @@ class Updater {
 
   /// Whether boxes may be enlarged: where structures other than one that compares all are followed by choice.
   static bool may_enlarge(const TrackerPlan<D>& plan) {
-    return !core::is_lean && plan.update == Update::automatic &&
-           !std::ranges::all_of(plan.structures, compares_all);
+    return plan.update == Update::automatic && !std::ranges::all_of(plan.structures, compares_all);
   }
 
   /// Returns false if there would be too many candidates. It has then reported no event of this frame, and

@@ -11,7 +11,6 @@
 
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
-#include "core/lean.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
 
@@ -41,7 +40,7 @@ BoxTable<D, Real>::BoxTable(const WorldOptions& options)
                .has_relative = options.relative_margin > 0},
       enlarges_(margins_.any()),
       boxes_make_pairs_(options.events == WorldEvents::exact),
-      quarantines_(!core::is_lean && options.bad_input == BadInput::quarantine) {
+      quarantines_(options.bad_input == BadInput::quarantine) {
   if (!boxes_make_pairs_ && !enlarges_) {
     throw std::invalid_argument(
         "a world is to tell of enlarged boxes and enlarges none; expected a margin, a relative margin or a "

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/grow.hpp"
-#include "core/lean.hpp"
 
 namespace broadside::world {
 namespace {
@@ -65,7 +64,7 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
 void CurrentPairs::take(PairEvents& events, Generations generations,
                         const SlotColumn<std::uint64_t>& user_data) {
   auto& [begun, ended, begun_data, ended_data] = events_;
-  const bool has_user_data = !core::is_lean && user_data.is_used();
+  const bool has_user_data = user_data.is_used();
   begun.reserve(events.begun.size());
   ended.reserve(events.ended.size());
   if (has_user_data) {
@@ -77,7 +76,7 @@ void CurrentPairs::take(PairEvents& events, Generations generations,
   const auto replace = [&](std::vector<HandlePair>& handles, std::vector<UserDataPair>& data,
                            std::span<const Pair> pairs) {
     handles.resize(pairs.size());
-    if (!core::is_lean) data.resize(has_user_data ? pairs.size() : 0);
+    data.resize(has_user_data ? pairs.size() : 0);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const Pair pair = pairs[i];
       handles[i] = handles_of(pair, generations);

@@ -9,7 +9,6 @@
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
-#include "core/lean.hpp"
 #include "world/box_table.hpp"
 #include "world/pair_events.hpp"
 #include "world/pair_graph.hpp"
@@ -47,7 +46,7 @@ class PairRefiner {
 
   const RefinerState& state() const noexcept { return state_; }
   bool is_refining() const noexcept { return state_.is_refining; }
-  bool has_predicate() const noexcept { return !core::is_lean && predicate_; }
+  bool has_predicate() const noexcept { return predicate_; }
 
   /// Whether the predicate is to be asked about all pairs of the slot again.
   bool asks_about(std::uint32_t slot) const noexcept {

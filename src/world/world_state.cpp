@@ -6,7 +6,6 @@
 #include <functional>
 #include <utility>
 
-#include "core/lean.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "world/snapshot_codec.hpp"
 
@@ -48,7 +47,7 @@ void WorldState<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
   bool has_user_data = false;
   for (const BoxOptions& its : options) {
     has_filters |= its.filter != Filter{};
-    has_user_data |= !core::is_lean && its.user_data != 0;
+    has_user_data |= its.user_data != 0;
   }
   // Where the boxes given are the world's own, they move when its arrays grow.
   std::vector<Box<D, Real>> copies;

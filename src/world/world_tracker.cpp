@@ -12,7 +12,7 @@ namespace broadside::world {
 template <int D, typename Real>
 WorldTracker<D, Real>::WorldTracker(const WorldOptions& options)
     : is_own_(true), spec_(options.algorithm), tracker_(make(spec_, options.shadow)) {
-  if constexpr (!core::is_lean) spec_ = core::canonical_spec(spec_);
+  spec_ = core::canonical_spec(spec_);
 }
 
 template <int D, typename Real>
@@ -21,7 +21,7 @@ WorldTracker<D, Real>::WorldTracker(Tracker<D, Real> tracker, const WorldOptions
 
 template <int D, typename Real>
 void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& events) {
-  if constexpr (!core::is_lean) lead_back();
+  lead_back();
   const std::size_t begun_before = events.begun.size();
   const std::size_t ended_before = events.ended.size();
   try {

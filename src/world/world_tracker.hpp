@@ -20,7 +20,6 @@
 #include "broadside/tracker.hpp"
 #include "broadside/world.hpp"
 
-#include "core/lean.hpp"
 #include "world/pair_events.hpp"
 
 namespace broadside::world {
@@ -82,7 +81,7 @@ class WorldTracker {
 
   /// Its own index, if it has one of the boxes that it took last and is not on a way back.
   const BoxIndex<D, Real>* box_index() const noexcept {
-    return !core::is_lean && way_back_ != nullptr ? nullptr : tracker().box_index();
+    return way_back_ != nullptr ? nullptr : tracker().box_index();
   }
 
   /// What the last update did.
@@ -97,20 +96,16 @@ class WorldTracker {
   using Plain = Tracker<D, Real>;
   using Shadowed = ShadowTracker<D, Real>;
   /// Lean builds have no shadows.
-  using Either = std::conditional_t<core::is_lean, std::variant<Plain>, std::variant<Plain, Shadowed>>;
+  using Either = std::variant<Plain, Shadowed>;
 
   template <typename Source>
   static Either make(Source&& source, bool is_shadowed) {
-    if constexpr (!core::is_lean) {
-      if (is_shadowed) return Shadowed(std::forward<Source>(source));
-    }
+    if (is_shadowed) return Shadowed(std::forward<Source>(source));
     return Plain(std::forward<Source>(source));
   }
 
   const Plain& tracker() const noexcept {
-    if constexpr (!core::is_lean) {
-      if (const auto* const shadowed = std::get_if<Shadowed>(&tracker_)) return shadowed->tracker();
-    }
+    if (const auto* const shadowed = std::get_if<Shadowed>(&tracker_)) return shadowed->tracker();
     return *std::get_if<Plain>(&tracker_);
   }
   Plain& tracker() noexcept { return const_cast<Plain&>(std::as_const(*this).tracker()); }

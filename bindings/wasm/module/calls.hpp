@@ -14,7 +14,7 @@
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 
-#include "core/lean.hpp"
+#include "core/dimensions.hpp"
 #include "module/export.hpp"
 
 namespace broadside::wasm {

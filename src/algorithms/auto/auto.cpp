@@ -20,7 +20,6 @@
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"
-#include "core/lean.hpp"
 #include "core/number_text.hpp"
 #include "core/sample.hpp"
 #include "core/tunables.hpp"
@@ -114,7 +113,6 @@ class AutoSearcher final : public Searcher<D> {
   }
 
   std::string explanation() const override {
-    if constexpr (core::is_lean) return {};
     std::string text = reason();
     if (has_handed_over_)
       text +=
@@ -271,9 +269,9 @@ Strategies<D> automatic_strategies() {
 Algorithm automatic() {
   return {
       .name = "auto",
-      .summary = core::unless_lean(
-          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame"),
-      .source = core::unless_lean("Broadside's measurements"),
+      .summary =
+          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
+      .source = "Broadside's measurements",
       .tunables = {core::threads_tunable(), core::update_tunable()},
       .in_2d = core::in_dimension(automatic_strategies<2>),
       .in_3d = core::in_dimension(automatic_strategies<3>),

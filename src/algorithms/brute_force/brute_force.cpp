@@ -6,7 +6,6 @@
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/followers.hpp"
 #include "algorithms/registry.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
 #include "kernels/sweep.hpp"
@@ -71,8 +70,8 @@ Strategies<D> brute_force_strategies() {
 Algorithm brute_force() {
   return {
       .name = "brute_force",
-      .summary = core::unless_lean("every box against every other, over a structure of arrays"),
-      .source = core::unless_lean("paper.md, sections II and VI-A"),
+      .summary = "every box against every other, over a structure of arrays",
+      .source = "paper.md, sections II and VI-A",
       .tunables = {core::update_tunable(), core::threads_tunable()},
       .in_2d = core::in_dimension(brute_force_strategies<2>),
       .in_3d = core::in_dimension(brute_force_strategies<3>),

@@ -17,7 +17,6 @@
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/waste.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
 #include "kernels/bvh_join.hpp"
@@ -169,10 +168,8 @@ Strategies<D> bvh_strategies() {
 Algorithm bvh() {
   return {
       .name = "bvh",
-      .summary =
-          core::unless_lean("a tree of bounds, sixteen to a node, packed by slabs and joined with itself"),
-      .source = core::unless_lean(
-          "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing"),
+      .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
+      .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
       .tunables = {core::threads_tunable(), core::update_tunable()},
       .in_2d = core::in_dimension(bvh_strategies<2>),
       .in_3d = core::in_dimension(bvh_strategies<3>),

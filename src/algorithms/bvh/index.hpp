@@ -14,7 +14,6 @@
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/dynamic_bvh.hpp"
 #include "core/grow.hpp"
-#include "core/lean.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
@@ -68,7 +67,6 @@ class BvhIndex {
                     Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const;
 
   std::size_t bytes() const noexcept {
-    if constexpr (core::is_lean) return 0;
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
   }
 

@@ -25,7 +25,6 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/waste.hpp"
 #include "core/large_array.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
@@ -243,17 +242,16 @@ Strategies<D> grid_strategies() {
 Algorithm grid() {
   return {
       .name = "grid",
-      .summary = core::unless_lean(
+      .summary =
           "cells over all axes but one, a sweep along that one in each; boxes that move are followed in "
           "levels "
-          "of cells, one for each size of boxes"),
-      .source = core::unless_lean(
+          "of cells, one for each size of boxes",
+      .source =
           "paper.md, sections III and VI-B; report-once rule: Tsitsigkos et al., arXiv 2307.09256; levels: "
-          "C. Ericson, Real-Time Collision Detection (2005), 7.2"),
+          "C. Ericson, Real-Time Collision Detection (2005), 7.2",
       .tunables = {{.name = "cell",
-                    .summary = core::unless_lean(
-                        "size of a cell, in the boxes' unit; made larger where there would be over 4 "
-                        "cells a box; in tracking, the size of the smallest cells"),
+                    .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 "
+                               "cells a box; in tracking, the size of the smallest cells",
                     .default_value = "auto",
                     .min = std::numeric_limits<float>::min()},
                    core::update_tunable(),

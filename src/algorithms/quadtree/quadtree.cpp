@@ -26,7 +26,6 @@
 #include "algorithms/outline_text.hpp"
 #include "algorithms/quadtree/split.hpp"
 #include "algorithms/registry.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
@@ -278,11 +277,10 @@ Strategies<D> quadtree_strategies() {
 Algorithm quadtree() {
   return {
       .name = "quadtree",
-      .summary = core::unless_lean(
-          "nodes split at medians until they hold few boxes, which are swept; an octree in 3D"),
-      .source = core::unless_lean("paper.md, section V"),
+      .summary = "nodes split at medians until they hold few boxes, which are swept; an octree in 3D",
+      .source = "paper.md, section V",
       .tunables = {{.name = "capacity",
-                    .summary = core::unless_lean("most boxes in a leaf that could be split"),
+                    .summary = "most boxes in a leaf that could be split",
                     .default_value = "auto",
                     .type = Tunable::Type::integer,
                     .min = 1,

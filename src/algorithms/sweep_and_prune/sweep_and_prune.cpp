@@ -22,7 +22,6 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/waste.hpp"
 #include "core/large_array.hpp"
-#include "core/lean.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sample.hpp"
@@ -210,17 +209,17 @@ Strategies<D> sweep_and_prune_strategies() {
 Algorithm sweep_and_prune() {
   return {
       .name = "sweep_and_prune",
-      .summary = core::unless_lean(
+      .summary =
           "a sorted sweep along the axis that separates the boxes best, in stripes of a second axis where "
-          "that pays"),
-      .source = core::unless_lean("paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited"),
+          "that pays",
+      .source = "paper.md, sections IV and VI-C; P. Terdiman, Box pruning revisited",
       .tunables = {{.name = "axis",
-                    .summary = core::unless_lean("the axis to sweep along"),
+                    .summary = "the axis to sweep along",
                     .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"x", "y", "z"}},
                    {.name = "axes",
-                    .summary = core::unless_lean("how many axes are used: 1, or 2 for stripes"),
+                    .summary = "how many axes are used: 1, or 2 for stripes",
                     .default_value = "auto",
                     .type = Tunable::Type::choice,
                     .choices = {"1", "2"}},
