@@ -140,6 +140,14 @@ struct WorldOptions {
   bool shadow = false;
 };
 
+/// The options of a world but for its algorithm: name, summary, default value and range of each. Bindings and
+/// programs offer these.
+[[nodiscard]] BROADSIDE_PUBLIC std::span<const Tunable> world_tunables();
+
+/// The options that a text names, such as "world:margin=0.1:events=enlarged"; the others have their default
+/// values. Throws InvalidSpec for an unknown name or a value out of range.
+[[nodiscard]] BROADSIDE_PUBLIC WorldOptions world_options(const Spec& spec);
+
 /// Whether two boxes that overlap, and accept each other by their filters, count as a pair;
 /// first.slot < second.slot.
 using PairPredicate = std::function<bool(Handle first, Handle second)>;
