@@ -1,5 +1,5 @@
 // Algorithm: the description of a broad-phase algorithm, from which Finder, Tracker and World make its
-// searcher and its followers; and the list of all algorithms, to which you can add your own.
+// searcher and its followers. Also the list of all algorithms, to which you can add your own.
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,12 @@ struct Tunable {
   std::string summary;        ///< one line, with the unit
   std::string default_value;  ///< "auto" if the algorithm then chooses a value itself
   Type type = Type::number;
-  double min = 0;  ///< of a number or an integer: the range of values allowed, both ends included
+  double min = 0;  ///< for numbers and integers: the allowed range, both ends included
   double max = std::numeric_limits<double>::max();
-  detail::Vector<std::string> choices{};  ///< of a choice: the values allowed
+  detail::Vector<std::string> choices{};  ///< for choices: the allowed values
 };
 
-/// The values of an algorithm's tunables, checked: those that a spec gives, and the default values of the
-/// others.
+/// The checked values of an algorithm's tunables: those that a spec gives, and defaults for the others.
 class BROADSIDE_PUBLIC Settings {
  public:
   /// Throws InvalidSpec if `spec` names an unknown tunable or gives a value of the wrong type or out of
@@ -70,7 +69,7 @@ enum class AlgorithmKind { own, paper, literature, peer };
 
 /// The cost of finding all pairs anew, in nanoseconds of one machine: only ratios matter.
 struct FindCosts {
-  double box = 40;                ///< per box: with 64 tests and 4 references, without its pairs
+  double box = 40;                ///< per box, with 64 tests and 4 references; without its pairs
   double further_test = 0.5;      ///< each further test of a box
   double further_reference = 30;  ///< each further reference to a box
   double pair = 7;
@@ -79,7 +78,7 @@ struct FindCosts {
 /// The cost of following boxes in a structure, in the same unit.
 struct FollowCosts {
   double start = 100;        ///< per box, to build the structure
-  double mover = 160;        ///< per mover, with its tests, before any was followed
+  double mover = 160;        ///< per mover, with its tests: the estimate before any is followed
   double mover_alone = 140;  ///< per mover, without its tests
   double test = 1;           ///< each of a mover's first 64 tests
   double further_test = 1;   ///< each further one
@@ -90,8 +89,8 @@ using MakeSearcher = std::function<std::unique_ptr<Searcher<D>>(const Settings&)
 template <int D>
 using MakeFollower = std::function<std::unique_ptr<Follower<D>>(const Settings&)>;
 
-/// Makes a searcher or a follower of class T, by T(settings) or by T(). Use it as `.searcher =
-/// make_strategy<MySearcher<2>>`.
+/// Makes a searcher or a follower of class T, with T(settings) or T():
+/// `.searcher = make_strategy<MySearcher<2>>`.
 template <typename T>
 std::unique_ptr<T> make_strategy([[maybe_unused]] const Settings& settings) {
   if constexpr (std::is_constructible_v<T, const Settings&>)
@@ -100,7 +99,7 @@ std::unique_ptr<T> make_strategy([[maybe_unused]] const Settings& settings) {
     return std::make_unique<T>();
 }
 
-/// Makes the outline of a search with these settings, to be drawn: see debug/outline.hpp. All boxes are
+/// Makes an outline of a search with these settings, to be drawn: see debug/outline.hpp. All boxes are
 /// present, and there is at least one. The parts of the outline may be infinite.
 template <int D>
 using MakeOutline = std::function<Outline<D, float>(std::span<const Box<D>> boxes, const Workers& workers,
@@ -113,9 +112,9 @@ struct FollowerChoice {
   MakeFollower<D> make;
   FollowCosts costs{};
 
-  /// Not 0 if the follower compares each changed box with all others, so that its cost is known beforehand.
-  /// It is used for up to this number of boxes whatever the others cost, and for more if they make about as
-  /// many tests.
+  /// Not 0 if the follower compares each changed box with all others, so that its cost is known in advance.
+  /// It is always used for up to this number of boxes, and for more if the other followers make about as many
+  /// tests.
   std::size_t max_boxes = 0;
 };
 
@@ -124,18 +123,18 @@ template <int D>
 struct Strategies {
   MakeSearcher<D> searcher{};  ///< empty if the algorithm does not support D dimensions
 
-  /// The structures in which it follows moving boxes. Without any, a Tracker finds all pairs anew in each
-  /// frame. With some, it follows by the first. If the algorithm has a tunable `update` with the choice
-  /// "follow", as the library's have, a Tracker compares FollowCosts and FindCosts in each frame, and then
-  /// follows by the follower that costs least, or finds all pairs anew.
+  /// The structures in which it follows moving boxes. If there are none, a Tracker finds all pairs anew in
+  /// each frame; otherwise it follows with the first. If the algorithm also has a tunable `update` with the
+  /// choice "follow", as the library's have, a Tracker compares FollowCosts and FindCosts in each frame, and
+  /// uses the cheapest follower or finds all pairs anew.
   detail::Vector<FollowerChoice<D>> followers{};
   FindCosts find_costs{};
 
   MakeOutline<D> outline{};  ///< empty if there is nothing to draw
 };
 
-/// The input that an algorithm declares to support. The lab does not give it any other; the library does not
-/// check it.
+/// The input that an algorithm claims to support. The lab gives it no other input; the library does not
+/// check.
 struct InputLimits {
   bool infinite_boxes = true;                                  ///< whether boxes may have infinite extents
   double max_coordinate = std::numeric_limits<double>::max();  ///< greatest magnitude of a finite coordinate
@@ -149,7 +148,7 @@ struct Algorithm {
   std::string summary;  ///< one line
   std::string source;   ///< the paper, book or program it is from
   AlgorithmKind kind = AlgorithmKind::own;
-  std::string version{};  ///< of the library behind it; empty for what is part of Broadside
+  std::string version{};  ///< of the library behind it; empty for Broadside's own algorithms
   detail::Vector<Tunable> tunables{};
 
   Strategies<2> in_2d{};
@@ -177,25 +176,24 @@ struct Algorithm {
   }
 };
 
-/// Whether it can use several threads: it then has the tunable `threads`, a whole number, from which Finder
-/// and Tracker set the number of threads of their Workers.
+/// Whether it can use several threads: it then has an integer tunable `threads`, which sets the number of
+/// threads in the Workers of Finder and Tracker.
 [[nodiscard]] BROADSIDE_PUBLIC bool has_threads(const Algorithm& algorithm);
 
-/// The algorithms that have a name: the library's, in a fixed order (all, unless it was built with a shorter
-/// BROADSIDE_ALGORITHMS), then those registered, in the order of registration. Thread-safe.
+/// The algorithms that a spec can name: the library's, in a fixed order (all, unless it was built with a
+/// shorter BROADSIDE_ALGORITHMS), then registered ones in the order of registration. Thread-safe.
 [[nodiscard]] BROADSIDE_PUBLIC std::span<const Algorithm> algorithms();
 
-/// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by its name.
-/// Throws InvalidSpec if the name is taken, or has characters other than lower-case letters, digits and
-/// underscores.
+/// Adds an algorithm of your own, so that find_pairs(), Finder, Tracker and World know it by its name. Throws
+/// InvalidSpec if the name is taken, or has characters other than lower-case letters, digits and underscores.
 ///
-/// Call it before anything is made by name: it must not run at the same time as anything that looks up a
-/// name. Spans and references that algorithms() and find_algorithm() have returned stay valid; the spans do
-/// not grow. Cost: a copy of the list, once for each algorithm.
+/// Call it before anything is made by name: it must not run while another thread looks up a name. Spans and
+/// references that algorithms() and find_algorithm() have returned stay valid; the spans do not grow. Cost:
+/// one copy of the list.
 BROADSIDE_PUBLIC void register_algorithm(Algorithm algorithm);
 
-/// The algorithm called `name` among `among`, or a null pointer. The former name of an algorithm finds the
-/// one that replaced it: `hierarchical_grid` is `grid`.
+/// The algorithm called `name` among `among`, or null. A former name finds the algorithm that replaced it:
+/// `hierarchical_grid` finds `grid`.
 [[nodiscard]] BROADSIDE_PUBLIC const Algorithm* find_algorithm(
     std::string_view name, std::span<const Algorithm> among = algorithms());
 

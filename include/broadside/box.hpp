@@ -1,5 +1,4 @@
-// Box: axis-aligned boxes (AABBs), and what "overlap" and "absent" mean for every algorithm. BoxView: boxes
-// in the caller's memory.
+// Box: axis-aligned boxes (AABBs), and what "overlap" and "absent" mean for every algorithm.
 #pragma once
 
 #include <array>
@@ -32,11 +31,11 @@ struct SupportedBox {
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
-/// Boxes are closed: two boxes that only touch overlap, and a degenerate box (min = max) is a point and
-/// counts. Coordinates are in the caller's unit, float or double. Infinite coordinates are allowed and have
-/// their usual meaning.
+/// Boxes are closed: two boxes that only touch overlap, and a degenerate box (min = max) is valid.
+/// Coordinates are in the caller's unit, float or double. Infinite coordinates are allowed and have their
+/// usual meaning.
 ///
-/// Coordinates are compared by value, also denormal ones. The calling thread's rounding mode, flushing of
+/// Coordinates, denormals included, are compared by value. The calling thread's rounding mode, flushing of
 /// denormals (FTZ, DAZ) and traps have no effect: the library computes in the default floating-point
 /// environment. It restores the caller's environment before it returns, throws, or calls a sink, a visitor, a
 /// predicate or an executor. Inline functions in these headers, such as overlap(), compute in the caller's

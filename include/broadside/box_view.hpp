@@ -23,7 +23,7 @@ concept ArrayOfBoxes =
 }  // namespace detail
 
 /// A range of boxes in the caller's memory: an array of boxes, or structs that contain boxes, one every
-/// `stride` bytes. Nothing is copied, and the memory must outlive the view. Its elements are Boxes by value.
+/// `stride` bytes. Nothing is copied, and the memory must outlive the view. Elements are returned by value.
 template <int D, typename Real>
 class BoxView {
  public:
@@ -37,8 +37,8 @@ class BoxView {
   constexpr BoxView(const Boxes& boxes) : BoxView(std::span<const Box<D, Real>>(boxes)) {}
   constexpr BoxView(std::span<const Box<D, Real>> boxes) : boxes_(boxes.data()), size_(boxes.size()) {}
 
-  /// `count` boxes: one at `first`, and each of the others `stride` bytes after the one before. A box is its
-  /// D minima followed by its D maxima, as in Box, and need not be aligned.
+  /// `count` boxes: the first at `first`, and each further one `stride` bytes after the previous one. A box
+  /// is its D minima followed by its D maxima, as in Box, and need not be aligned.
   BoxView(const void* first, std::size_t count, std::size_t stride)
       : first_(static_cast<const std::byte*>(first)), stride_(stride), size_(count) {}
 
@@ -72,7 +72,7 @@ class BoxView {
   std::size_t size_ = 0;
 };
 
-/// A random access iterator over the boxes of a view, which need not outlive it.
+/// A random access iterator over the boxes of a view. It may outlive the view.
 template <int D, typename Real>
 class BoxView<D, Real>::Iterator {
  public:

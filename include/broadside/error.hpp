@@ -24,8 +24,8 @@ class BROADSIDE_PUBLIC InvalidInput : public std::invalid_argument {
   std::size_t index_;
 };
 
-/// Arguments that contradict each other: too many boxes, a number of filters that is not that of the boxes,
-/// an id in `changed` that is out of range, a change that is not listed. Thrown before anything has changed.
+/// Arguments that contradict each other: too many boxes, a different number of filters than of boxes, an id
+/// in `changed` that is out of range, a change that is not listed. Thrown before anything has changed.
 class BROADSIDE_PUBLIC InvalidFrame : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -41,12 +41,12 @@ class BROADSIDE_PUBLIC InvalidSpec : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// A handle of no box in this world: never issued, removed, or from another world.
+/// A handle that names no box of this world: never issued, removed, or from another world.
 class BROADSIDE_PUBLIC InvalidHandle : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Bytes that are not a snapshot of a world, or of a world of another kind.
+/// Bytes that are no snapshot, or the snapshot of another kind of world.
 class BROADSIDE_PUBLIC InvalidSnapshot : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -27,13 +27,15 @@ class BROADSIDE_PUBLIC Executor {
 
   /// Calls task(i) exactly once for each i < count, and returns when all these calls have returned.
   ///
-  /// run() is called by the thread that called find(), several times per search. It may call `task` in any
-  /// thread and in any order, one call after another, at the same time or nested: no call waits for another.
-  /// The search is faster if the calling thread takes part, because only it can deliver pairs while other
-  /// threads search. The library's tasks do not throw: find() throws the exception of the first task, in
-  /// order of the search, that failed. run() may throw anything before its tasks or between them, but not
-  /// while a task is running. find() lets the exception through and can be called again. So can an update of
-  /// a World, which keeps its memory if it was only about to release some.
+  /// The thread that called find() calls run(), several times per search. run() may call `task` in any thread
+  /// and in any order, one call after another, at the same time or nested: no call waits for another. The
+  /// search is faster if the calling thread takes part, because only it can deliver pairs while other threads
+  /// search.
+  ///
+  /// The library's tasks do not throw: find() throws the exception of the first task, in order of the search,
+  /// that failed. run() may throw anything before its tasks or between them, but not while a task is running.
+  /// find() lets the exception through and can be called again. The same holds for a World's update, except
+  /// while it releases memory: it then ignores the exception and keeps the memory.
   virtual void run(std::size_t count, const std::function<void(std::size_t)>& task) = 0;
 
  protected:
@@ -76,7 +78,8 @@ inline const Workers default_workers{};
 /// few million. Each thread needs its own.
 class BROADSIDE_PUBLIC Checkpoint {
  public:
-  /// The maximum number of comparisons between two calls, plus those of a few boxes with all others.
+  /// The maximum number of comparisons between two calls, not counting those of the last few boxes with all
+  /// others.
   static constexpr std::uint64_t max_tests = std::uint64_t{1} << 22;
 
   /// `call` may be empty, and must outlive the Checkpoint.

@@ -60,7 +60,7 @@ class BROADSIDE_PUBLIC IgnoredPairs {
   IgnoredPairs& operator=(IgnoredPairs other) noexcept;
   ~IgnoredPairs();
 
-  /// Returns whether the pair is new. A box and itself are no pair: nothing is inserted.
+  /// Returns whether the pair is new. Does not insert a pair of a box with itself.
   bool insert(Pair pair);
 
   /// Returns whether the pair was in the set.

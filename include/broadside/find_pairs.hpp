@@ -33,7 +33,7 @@ struct BROADSIDE_CALLERS_VECTOR FindOptions {
 
 namespace detail {
 
-/// Searches with a finder and filters as the options say.
+/// Calls `search` with a finder and filters made from the options.
 template <int D, typename Real, typename Search>
 void find_with(const FindOptions& options, const Search& search) {
   Finder<D, Real> finder(options.algorithm);
@@ -63,7 +63,7 @@ void find_pairs(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs, 
 template <typename>
 inline constexpr bool never = false;
 
-/// Rejects arguments that find_pairs() does not take, by a message of one sentence.
+/// Rejects an argument that find_pairs() does not take, with a compile error of one sentence.
 template <typename Boxes>
 void refuse_boxes() {
   static_assert(never<Boxes>,
@@ -82,15 +82,15 @@ void refuse_argument() {
 template <typename T>
 concept NoOptions = !std::is_same_v<std::remove_cvref_t<T>, FindOptions>;
 
-/// A second argument that must be boxes, since it is neither options nor where pairs go.
+/// A second argument that must be boxes, since it is neither options nor a target of pairs.
 template <typename T>
 concept OtherBoxes = NoOptions<T> && !PairTarget<T>;
 
 }  // namespace detail
 
-/// Writes each pair of overlapping boxes once, as indexes of `boxes`, and flushes. `pairs` is a PairSink, or
-/// a function of a Pair or of a std::span<const Pair>. An exception from it ends the search. The spec and the
-/// boxes determine the order of pairs.
+/// Writes each pair of overlapping boxes once, as indexes into `boxes`, and flushes. `pairs` is a PairSink,
+/// or a function of a Pair or of a std::span<const Pair>. An exception from it ends the search. The spec and
+/// the boxes determine the order of pairs.
 ///
 /// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput, naming the
 /// first box with a NaN or with min > max; InvalidFrame if there are filters, but not one for each box; and
@@ -112,8 +112,8 @@ template <typename Boxes>
   return pairs;
 }
 
-/// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's first is
-/// an index of `left` and its second is an index of `right`. Otherwise as for one set of boxes.
+/// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's `first`
+/// is an index into `left`, its `second` an index into `right`. Otherwise as for one set of boxes.
 template <typename Left, typename Right, detail::NoOptions Target>
 void find_pairs(const Left& left, const Right& right, Target&& pairs, const FindOptions& options = {}) {
   if constexpr (!BoxRange<Left>) {
@@ -138,8 +138,8 @@ template <typename Left, detail::OtherBoxes Right>
   return pairs;
 }
 
-/// The boxes of things, in order: `box_of` is a function of a thing or a pointer to a member. Boxes that lie
-/// in an array of structs need not be copied: see BoxView.
+/// Copies the boxes of things, in order: `box_of` is a function of a thing or a pointer to a member. For
+/// boxes in an array of structs, a BoxView needs no copy.
 ///
 ///     find_pairs(boxes_of(bodies, &Body::box));
 template <typename Things, typename Projection>

@@ -1,4 +1,4 @@
-// Finder: finds all pairs in an array of boxes, from nothing, at each call.
+// Finder: finds all pairs in an array of boxes, from scratch at each call.
 #pragma once
 
 #include <cstddef>
@@ -22,54 +22,55 @@ namespace broadside {
 
 struct Algorithm;
 
-/// Finds every overlapping pair in an array of boxes, from nothing, at each call.
+/// Finds every overlapping pair in an array of boxes, from scratch at each call.
 ///
-/// A finder keeps its scratch memory between calls, and nothing else that can be observed. Call it from one
-/// thread at a time; it may itself use several, which changes nothing but the time. A finder that was moved
-/// from may only be assigned to or destroyed.
+/// Between calls, a finder keeps scratch memory and nothing else that affects results. Call it from one
+/// thread at a time; it may itself use several, which affects only the time. A finder that was moved from may
+/// only be assigned to or destroyed.
 ///
-/// Algorithms work on floats. A finder of boxes of doubles rounds them to floats in the same order, about an
-/// origin and at a scale of their own, and tests in double where floats cannot tell: its pairs are exact.
+/// Algorithms work on floats. A finder of double boxes first rounds them to floats, about an origin and at a
+/// scale that suit them. Rounding keeps the order of coordinates, and pairs that floats cannot decide are
+/// tested in double, so the pairs are exact.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC Finder final {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A finder by one of algorithms(), from a spec such as "grid:cell=2.5" or GridOptions{.cell = 2.5}. Throws
-  /// InvalidSpec if the spec is wrong. If there is no algorithm of its name, the message lists the algorithms
-  /// that there are.
+  /// A finder that uses one of algorithms(), from a spec such as "grid:cell=2.5" or GridOptions{.cell = 2.5}.
+  /// Throws InvalidSpec if the spec is wrong. If the name is unknown, the message lists all algorithms.
   explicit Finder(const Spec& spec = {});
 
-  /// A finder by `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws InvalidSpec if
-  /// a value is wrong or the algorithm does not support D dimensions.
+  /// A finder that uses `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws
+  /// InvalidSpec if a value is wrong or the algorithm does not support D dimensions.
   Finder(const Algorithm& algorithm, const Spec& spec);
 
-  /// A finder by a searcher of your own, which compares floats alone; pairs of boxes of doubles are tested
-  /// afterwards. Throws std::invalid_argument if it is null.
+  /// A finder that uses your own searcher. The searcher compares floats; pairs of double boxes are tested in
+  /// double afterwards. Throws std::invalid_argument if it is null.
   explicit Finder(std::unique_ptr<Searcher<D>> searcher);
 
   Finder(Finder&& other) noexcept;
   Finder& operator=(Finder&& other) noexcept;
   ~Finder();
 
-  /// Writes each pair of overlapping boxes to `pairs` once, as places in `boxes`, and flushes it. The order
-  /// depends on the algorithm, the boxes and the filters, not on the workers. Absent boxes pair with nothing.
-  /// Returns what the search did, or nothing if the algorithm does not count.
+  /// Writes each pair of overlapping boxes to `pairs` once, as indexes into `boxes`, and flushes it. The
+  /// order depends on the algorithm, the boxes and the filters, not on the workers. Absent boxes form no
+  /// pairs. With `filters`, leaves out the pairs that they reject. Returns what the search did, or nothing if
+  /// the algorithm does not count. A view with a stride is first copied into an array.
   ///
   /// Throws InvalidInput, naming index and values, before anything is written if a box has a NaN, or min >
-  /// max without being absent, unless bad_input() says otherwise; and what the sink throws. Boxes that are no
-  /// array are gathered first. With `filters`, pairs that they reject are not written; throws InvalidFrame if
-  /// there are filters, but not one for each box.
+  /// max without being absent, unless bad_input() says otherwise. Throws InvalidFrame if there are filters,
+  /// but not one for each box. Exceptions from the sink pass through.
   std::optional<Statistics> find(BoxView<D, Real> boxes, PairSink& pairs, const PairFilters& filters = {});
 
-  /// Writes each pair of a box of `left` and an overlapping one of `right` once, and flushes. A pair's first
-  /// is a place in `left` and its second one in `right`, so the two may be equal. No pair within a set is
-  /// ever written; the library's own algorithms do not even look for one. Throws as find() does.
+  /// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's
+  /// `first` is an index into `left` and its `second` an index into `right`, so the two may be equal. Pairs
+  /// within a set are never written; the library's own algorithms do not even look for them. Throws as find()
+  /// does.
   std::optional<Statistics> find_between(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs,
                                          const PairFilters& filters = {});
 
   /// find_between() for two sets in one array: the first `left_count` <= boxes.size() boxes are the left set.
-  /// If none is absent, this saves copying them.
+  /// If none is absent, they are not copied.
   std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                         PairSink& pairs);
 
@@ -87,13 +88,12 @@ class BROADSIDE_PUBLIC Finder final {
     return find_between(left, right, static_cast<PairSink&>(pairs), filters);
   }
 
-  /// What find() and find_between() do about invalid boxes: they throw, unless set_bad_input() says
-  /// otherwise.
+  /// What find() and find_between() do with invalid boxes: they throw, unless set_bad_input() says otherwise.
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
-  /// The places of the last call's invalid boxes, ascending, where they are quarantined; those of a right set
-  /// are counted on from the end of the left set. Valid until the next call.
+  /// The indexes of the last call's quarantined boxes, ascending. Those of a right set count on from the end
+  /// of the left set. Valid until the next call.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
   /// The threads to search with: one, unless the spec or set_workers() says otherwise. An algorithm without

@@ -1,5 +1,5 @@
-// Follower: the interface of an algorithm that follows boxes frame after frame in a structure that stays. A
-// Tracker is what users call.
+// Follower: the interface of an algorithm that follows boxes from frame to frame in a persistent structure.
+// Users call a Tracker.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct Change {
   std::span<const Box<D, Real>> before;
   std::span<const Box<D, Real>> now;
 
-  /// The places at which boxes or filters may have changed, each once. flags[i] is 1 if place i is among
+  /// The indexes at which boxes or filters may have changed, each once. flags[i] is 1 if index i is among
   /// them, and otherwise 0.
   std::span<const BoxId> changed;
   std::span<const std::uint8_t> flags;
@@ -34,12 +34,12 @@ struct Change {
   /// `before`.
   bool rebuild = false;
 
-  /// The filters of both frames, by place; empty if there are none.
+  /// The filters of both frames, by index; empty if there are none.
   std::span<const Filter> filters_before{};
   std::span<const Filter> filters_now{};
 
   /// Whether to write candidates instead of events: the pairs of each changed box with every other box that
-  /// overlaps it as it was or as it is now. Only set for an algorithm with Algorithm::gives_candidates.
+  /// it overlapped before or overlaps now. Only set for an algorithm with Algorithm::gives_candidates.
   bool wants_candidates = false;
 
   /// The threads to use and the checkpoint to call, as in SearchInput.
@@ -70,10 +70,10 @@ template <int D, typename Real>
 class BoxIndex;
 
 /// The part of a Tracker that you write for an algorithm of your own: it follows moving boxes in a structure
-/// that stays from frame to frame.
+/// that persists from frame to frame.
 ///
-/// Tracker does the rest: it checks the frame, keeps both states of each box, takes care of quarantined boxes
-/// and ignored pairs, sorts the events and delivers each once. Only one thread at a time calls a follower.
+/// Tracker does the rest: it checks the frame, keeps both states of each box, handles quarantined boxes and
+/// ignored pairs, sorts the events and delivers each once. Only one thread at a time calls a follower.
 template <int D>
 class BROADSIDE_PUBLIC Follower {
  public:
@@ -88,8 +88,8 @@ class BROADSIDE_PUBLIC Follower {
   /// change.wants_candidates, writes all candidates to `begun`. Returns what it did, or nothing if it does
   /// not count. After an exception, the next change has `rebuild`.
   ///
-  /// Ids must be below change.now.size(); otherwise the behaviour is undefined. Tracker passes missing and
-  /// wrong events on: ShadowTracker and WorldOptions::shadow find such faults.
+  /// Ids must be below change.now.size(); otherwise the behaviour is undefined. Tracker does not notice
+  /// missing or wrong events: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> follow(const Change<D>& change, PairSink& begun, PairSink& ended) = 0;
 
   /// An index of the last frame's boxes for queries (see index.hpp), if the follower keeps one anyway.

@@ -68,11 +68,11 @@ inline void sort_pairs(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 /// sort. Exceptions from it pass through; the order is then unspecified.
 BROADSIDE_PUBLIC void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint);
 
-/// Receives pairs. add() writes a pair to a small buffer; consume() is called for each full chunk of pairs.
+/// Receives pairs. add() writes a pair to a small buffer, and a full buffer is passed to consume().
 ///
-/// Finder and Tracker flush the sink before they return. A sink is used by one thread at a time: a search by
-/// several threads collects the pairs and calls consume() in the thread that called find(), with the pairs in
-/// the same order as by one thread. Sinks that can be cloned are an exception: see empty_clone().
+/// Finder and Tracker flush the sink before they return. Only one thread at a time uses a sink: a search by
+/// several threads collects the pairs and calls consume() in the thread that called find(), in the order of a
+/// search by one thread. Sinks that can be cloned are an exception: see empty_clone().
 class BROADSIDE_PUBLIC PairSink {
  public:
   /// The maximum of room().

@@ -1,5 +1,5 @@
-// Queries: what a BoxIndex or a World is asked and what it answers, with the definitions that every answer
-// equals.
+// Queries: what a BoxIndex or a World can be asked, what it answers, and the functions that define the
+// answers.
 #pragma once
 
 #include <concepts>
@@ -16,8 +16,8 @@
 
 namespace broadside {
 
-/// The points origin + t * direction with 0 <= t <= t_max. The direction may have any length; t counts in
-/// units of it. With a direction of zeros, the ray is a point.
+/// The points origin + t * direction with 0 <= t <= t_max. The direction may have any length, which is the
+/// unit of t. A ray with a direction of zeros is a point.
 template <int D, typename Real = float>
 struct Ray {
   Point<D, Real> origin;     ///< finite
@@ -25,7 +25,7 @@ struct Ray {
   Real t_max = std::numeric_limits<Real>::infinity();
 };
 
-/// A box that moves along a direction: at t it is `box` + t * direction, 0 <= t <= t_max.
+/// A box that moves along a direction: at t it is `box` + t * direction, with 0 <= t <= t_max.
 template <int D, typename Real = float>
 struct BoxCast {
   Box<D, Real> box;          ///< finite, min <= max
@@ -37,8 +37,8 @@ struct BoxCast {
 /// not touch up to `t_max`.
 ///
 /// Boxes are closed. The t of each bound is (bound - position) / direction, rounded twice. If the differences
-/// of coordinates are exact, as with whole numbers, a cast that grazes a face, an edge or a corner hits it.
-/// A box at infinity is hit at infinity.
+/// of coordinates are exact, as with whole numbers, a cast that grazes a face, an edge or a corner hits it. A
+/// box at infinity is hit at infinity.
 template <int D, typename Real>
 [[nodiscard]] constexpr std::optional<Real> t_enter(const BoxCast<D, Real>& cast,
                                                     const Box<D, Real>& box) noexcept {
@@ -114,8 +114,8 @@ struct NearestOptions {
   std::optional<Id> except{};
 
   /// Boxes that are farther away are not found. At least 0, and may be infinite. A box is near enough if
-  /// distance_squared() <= max_distance * max_distance, with the product rounded to Real. So a box is found
-  /// if its distance is max_distance along one axis. With 0, only boxes that contain the point are found.
+  /// distance_squared() <= max_distance * max_distance, with the product rounded to Real. So a box at exactly
+  /// max_distance along one axis is found. With 0, only boxes that contain the point are found.
   Real max_distance = std::numeric_limits<Real>::infinity();
 };
 

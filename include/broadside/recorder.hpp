@@ -1,6 +1,6 @@
-// Recorder: writes an engine's boxes, frame after frame, to a trace that Broadside reads, and the pairs that
-// the engine's own broad phase reports, for Broadside to check. One header that needs C++11 and its standard
-// library alone: copy it into the engine. The bytes are described in docs/trace-format.md.
+// Recorder: writes an engine's boxes, frame by frame, to a trace that Broadside reads. It can also write the
+// pairs that the engine's own broad phase reports, for Broadside to check. This header needs only C++11 and
+// its standard library: copy it into the engine. docs/trace-format.md describes the bytes.
 #pragma once
 
 #include <algorithm>
@@ -33,11 +33,11 @@ namespace trace {
 
 constexpr std::array<unsigned char, 8> magic = {{0x89, 'B', 'T', 'R', '\r', '\n', 0x1a, '\n'}};
 constexpr std::uint32_t version = 1;              // of a trace of boxes alone
-constexpr std::uint32_t pairs_version = 2;        // of one that holds an engine's pairs as well
+constexpr std::uint32_t pairs_version = 2;        // of a trace that also holds an engine's pairs
 constexpr std::uint32_t frame_mark = 0x4d415246;  // "FRAM"
-constexpr std::size_t header_bytes = 20;          // of the file, and as many of a frame
-constexpr std::size_t margin_bytes = 8;           // by which the file's header is longer with pairs
-constexpr std::size_t pair_count_bytes = 20;      // by which a frame's header is
+constexpr std::size_t header_bytes = 20;          // the file's header, and each frame's
+constexpr std::size_t margin_bytes = 8;           // added to the file's header if there are pairs
+constexpr std::size_t pair_count_bytes = 20;      // added to each frame's header if there are pairs
 constexpr std::size_t filter_bytes = 28;
 constexpr std::size_t pair_bytes = 8;
 constexpr std::size_t checksum_bytes = 4;
@@ -97,13 +97,13 @@ class Checksum {
 ///     }
 ///     if (!recorder.close()) std::puts(recorder.error().c_str());
 ///
-/// A slot is a box's place in an array: the caller's choice, small numbers, each used again as it becomes
-/// free. Boxes are closed; infinite extents are allowed.
+/// A slot is a box's place in an array. The caller chooses it; use small numbers, and reuse free ones. Boxes
+/// are closed; infinite extents are allowed.
 ///
 /// A trace opened with a margin also holds the pairs that the engine's own broad phase reports, which
 /// `broadside verify` then checks. In each frame, the engine promises to report
 ///
-/// - every two boxes that overlap, but for those whose filters reject each other and for ignored pairs;
+/// - every two boxes that overlap, except ignored pairs and pairs whose filters reject each other;
 /// - no pair whose boxes, each enlarged by the margin on every side, do not overlap;
 /// - no pair twice.
 ///
@@ -119,14 +119,15 @@ class Checksum {
 ///       recorder.end_frame();
 ///     }
 ///
-/// Errors: a call that fails returns false, and error() says why: the text of the first failure since open().
-/// A call refused for its arguments changes nothing, and recording goes on; after a failed write nothing more
-/// is written. Nothing here throws but the standard library when memory runs out, so it works with exceptions
-/// switched off.
+/// Errors: a call that fails returns false, and error() returns the text of the first failure since open(). A
+/// call that is refused for its arguments changes nothing, and recording goes on. After a failed write,
+/// nothing more is written. Only the standard library throws, and only if memory runs out, so the recorder
+/// works with exceptions switched off.
 ///
-/// A frame has left the process when end_frame() returns: a crash of the process loses at most the frame
-/// under way. Time a frame: that of the slots named since the last one, and of sorting the pairs; memory: two
-/// boxes a slot and two numbers a pair, with pairs also two filters a slot. One thread at a time.
+/// When end_frame() returns, the frame has left the process: a crash of the process loses at most the current
+/// frame. Time of a frame: proportional to the slots named since the last frame, plus sorting the pairs.
+/// Memory: two boxes per slot and two numbers per pair; with pairs, also two filters per slot. One thread at
+/// a time.
 template <int D, typename Real = float>
 class BROADSIDE_RECORDER_ABI Recorder {
   static_assert(D == 2 || D == 3, "a trace has two or three dimensions");
@@ -134,47 +135,47 @@ class BROADSIDE_RECORDER_ABI Recorder {
                 "a trace holds float or double of IEC 559");
 
  public:
-  /// Takes the next bytes of a trace; returns whether they were taken.
+  /// Takes the next bytes of a trace; returns whether it could take them.
   using Write = std::function<bool(const void* bytes, std::size_t count)>;
 
   Recorder() = default;
-  /// Does what close() does, but for telling what failed.
+  /// Closes the trace as close() does, but reports no failure.
   ~Recorder() {
     if (file_ != nullptr) std::fclose(file_);
   }
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Begins a trace in a file, which is created, or emptied. The trace that was open before is closed.
+  /// Begins a trace in a file, which is created or emptied. Closes the trace that was open before.
   bool open(const std::string& path) {
     close();
     return open_file(path, false, 0);
   }
 
-  /// Likewise, a trace that also holds the engine's pairs, which it promises within this margin (see above).
-  /// Refused where the margin is negative, infinite or a NaN: then there is no file.
+  /// The same for a trace that also holds the engine's pairs, which it promises within this margin (see
+  /// above). Refused if the margin is negative, infinite or NaN; no file is then created.
   bool open(const std::string& path, double margin) {
     close();
     return is_margin(path, margin) && open_file(path, true, margin);
   }
 
-  /// Begins a trace that goes wherever `write` puts it, some 64 KiB or less a call.
+  /// Begins a trace that is passed to `write`, up to 64 KiB per call.
   bool open_with(Write write) {
     close();
     path_ = "recorder";
     return begin(std::move(write), false, 0);
   }
 
-  /// Likewise, with pairs.
+  /// The same with pairs.
   bool open_with(Write write, double margin) {
     close();
     path_ = "recorder";
     return is_margin(path_, margin) && begin(std::move(write), true, margin);
   }
 
-  /// Puts the box with corners min[0 .. D-1] and max[0 .. D-1] in a slot; min = +inf and max = -inf on every
-  /// axis empties it. Refused where a coordinate is a NaN or min > max. Slots between the last one so far and
-  /// this one are empty.
+  /// Puts the box with corners min[0 .. D-1] and max[0 .. D-1] into a slot; min = +inf and max = -inf on
+  /// every axis empties it. Refused if a coordinate is NaN or min > max. Adds empty slots between the last
+  /// slot so far and this one.
   bool set(std::uint32_t slot, const Real* min, const Real* max) {
     if (!is_open("set")) return false;
     if (slot == std::numeric_limits<std::uint32_t>::max())
@@ -186,15 +187,16 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Empties a slot; harmless where it is empty.
+  /// Empties a slot; harmless if it is empty.
   bool remove(std::uint32_t slot) {
     if (!is_open("remove")) return false;
     if (slot < now_.size()) store(slot, absent_box());
     return true;
   }
 
-  /// The whole array at once: box i, from 2 D coordinates each (min, then max), in slot i, and no slots
-  /// beyond. Refused altogether where a box would be. Finds what changed by comparing: O(count).
+  /// Replaces all boxes: slot i gets box i, of 2 D coordinates (min, then max), and there are no further
+  /// slots. Refused as a whole if set() would refuse a box. Compares all boxes to find what changed:
+  /// O(count).
   bool set_boxes(const Real* boxes, std::size_t count) {
     if (!is_open("set_boxes")) return false;
     if (count > std::numeric_limits<std::uint32_t>::max())
@@ -211,7 +213,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Cuts the array off after `count` slots, or extends it by empty ones.
+  /// Removes the slots from `count` on, or adds empty ones up to that number.
   bool resize(std::size_t count) {
     if (!is_open("resize")) return false;
     if (count > std::numeric_limits<std::uint32_t>::max())
@@ -225,10 +227,11 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Says which pairs of this box count, as most engines do: two boxes need to be reported if each one's mask
-  /// has a bit of the other one's category, or, where they are of the same group other than 0, if that is
-  /// positive; and never if both are static. Holds until the slot is emptied; a new box has category 1 and
-  /// all masks. Refused where the slot is empty, and in a trace without pairs.
+  /// Sets which pairs of this box must be reported, by the usual rules of engines: two boxes form a pair if
+  /// each one's mask has a bit of the other one's category. If both have the same group, not 0, they
+  /// do if it is positive, and do not if it is negative. Two static boxes never do. Holds until the slot is
+  /// emptied; a new box has category 1 and a mask of all bits. Refused if the slot is empty, and in a trace
+  /// without pairs.
   bool set_filter(std::uint32_t slot, std::uint64_t category, std::uint64_t mask, std::int32_t group = 0,
                   bool is_static = false) {
     if (!takes_pairs("set_filter")) return false;
@@ -239,9 +242,10 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Adds a pair that the engine's broad phase reports in this frame: each one that it holds, in any order
-  /// and with either slot first; one that it reports twice, twice. The next frame begins without pairs.
-  /// Refused where both slots are the same or one is empty, and in a trace without pairs.
+  /// Adds a pair that the engine's broad phase reports in this frame. Call it for each pair that the engine
+  /// holds, in any order and with either slot first, and twice for a pair that it reports twice. The next
+  /// frame begins without pairs. Refused if both slots are the same or one is empty, and in a trace without
+  /// pairs.
   bool add_pair(std::uint32_t first, std::uint32_t second) {
     return put_pair("add_pair", first, second, pairs_now_);
   }
@@ -252,8 +256,8 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return put_pair("ignore_pair", first, second, ignored_now_);
   }
 
-  /// Writes what has changed since the last frame; the first frame is all change. Returns false also where a
-  /// slot of an added pair has been emptied since: the frame is then written without that pair.
+  /// Writes what has changed since the last frame; in the first frame, everything has. Returns false also if
+  /// a slot of an added pair has since been emptied: the frame is then written without that pair.
   bool end_frame() {
     if (!is_open("end_frame")) return false;
     const bool pairs_are_right = !has_pairs_ || settle_pairs();
@@ -300,11 +304,11 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return error_.empty();
   }
 
-  /// What failed first since open(), and empty if nothing did.
+  /// The first failure since open(); empty if there was none.
   const std::string& error() const noexcept { return error_; }
 
  private:
-  // Boxes are kept, compared and tested for NaNs as bits, so that -0.0 is not 0.0, and so that it all works
+  // Boxes are kept, compared and tested for NaNs as bits: -0.0 then differs from 0.0, and the recorder works
   // in engines compiled with -ffast-math.
   using Bits = typename std::conditional<sizeof(Real) == 4, std::uint32_t, std::uint64_t>::type;
   using Box = std::array<Bits, 2 * std::size_t{D}>;  // min, then max
@@ -325,9 +329,9 @@ class BROADSIDE_RECORDER_ABI Recorder {
              is_static == other.is_static;
     }
   };
-  using Pairs = std::vector<std::uint64_t>;  // the lesser slot in the upper half
+  using Pairs = std::vector<std::uint64_t>;  // the smaller slot in the upper half
 
-  /// What differs between the pairs of two frames.
+  /// The difference between the pairs of two frames.
   struct PairChanges {
     Pairs ended;
     Pairs begun;
@@ -360,7 +364,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
       error_.clear();
       return fail(path + ": cannot be created: " + std::strerror(errno));
     }
-    // What is written leaves the process at once; it is collected here.
+    // The recorder has its own buffer, so bytes written leave the process at once.
     std::setvbuf(file_, nullptr, _IONBF, 0);
     std::FILE* const file = file_;
     return begin(
@@ -388,7 +392,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     if (has_pairs) {
       std::uint64_t bits;
       std::memcpy(&bits, &margin, sizeof bits);
-      put(bits << 1 == 0 ? std::uint64_t{0} : bits);  // -0.0 is no negative margin, and no other one than 0
+      put(bits << 1 == 0 ? std::uint64_t{0} : bits);  // -0.0 counts as a margin of 0
     }
     put_checksum();
     return flush();
@@ -427,8 +431,8 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Sorts the frame's pairs, and drops those with a slot that has become empty; returns whether there were
-  /// none such.
+  /// Sorts the frame's pairs and drops pairs with a slot that has become empty. Returns whether there were
+  /// none.
   bool settle_pairs() {
     bool are_right = true;
     const auto is_gone = [&](std::uint64_t pair) {
@@ -449,7 +453,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     pair_changes_.take(pairs_before_, pairs_now_);
     ignored_changes_.take(ignored_before_, ignored_now_);
 
-    // A reader knows by itself that a slot without a box has the standard filter.
+    // Readers know that a slot without a box has the default filter.
     written_filters_.resize(now_.size(), standard_filter());
     refiltered_.clear();
     for (const std::uint32_t slot : touched_) {
@@ -531,7 +535,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return box;
   }
 
-  /// A whole number that orders as the coordinates do, the infinities included, and is 0 for -0.0.
+  /// An integer that orders as the coordinates do, including infinities, and is 0 for -0.0.
   static std::int64_t order(Bits coordinate) noexcept {
     const std::int64_t size = static_cast<std::int64_t>(coordinate & ~sign);
     return (coordinate & sign) != 0 ? -size : size;
@@ -573,7 +577,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     summed_ = used_;
   }
 
-  /// A checksum does not count in those after it.
+  /// Later checksums leave out the bytes of earlier ones.
   void put_checksum() {
     sum();
     put(checksum_.value());
@@ -595,23 +599,23 @@ class BROADSIDE_RECORDER_ABI Recorder {
   std::string path_;
   std::string error_;
   std::FILE* file_ = nullptr;
-  Write write_;  // empty where no trace is open, or writing has failed
+  Write write_;  // empty if no trace is open or writing has failed
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;    // bytes in the buffer ...
-  std::size_t summed_ = 0;  // ... and those of them that the checksum has seen
+  std::size_t summed_ = 0;  // ... and how many of them the checksum has seen
   trace::Checksum checksum_;
   std::vector<Box> now_;                   // the boxes as they are now
-  std::vector<Box> written_;               // as they were in the last frame
+  std::vector<Box> written_;               // the boxes of the last frame
   std::vector<std::uint32_t> touched_;     // slots that may have changed since then, each once
-  std::vector<unsigned char> is_touched_;  // for each slot, of now or then
+  std::vector<unsigned char> is_touched_;  // for each slot, before or now
 
-  // Of a trace with pairs alone.
+  // Only for traces with pairs.
   bool has_pairs_ = false;
-  std::vector<SlotFilter> filters_;          // for each slot; the standard one where it is empty
-  std::vector<SlotFilter> written_filters_;  // as they were in the last frame
+  std::vector<SlotFilter> filters_;          // for each slot; the default one if it is empty
+  std::vector<SlotFilter> written_filters_;  // the filters of the last frame
   std::vector<std::uint32_t> refiltered_;    // slots whose filters this frame changes
-  Pairs pairs_now_;                          // those of the frame under way
-  Pairs pairs_before_;                       // those of the last frame, sorted
+  Pairs pairs_now_;                          // of the current frame
+  Pairs pairs_before_;                       // of the last frame, sorted
   Pairs ignored_now_;
   Pairs ignored_before_;
   PairChanges pair_changes_;

@@ -1,5 +1,5 @@
-// Searcher: the interface of an algorithm that finds overlapping pairs from nothing, and what a search
-// reports about itself. A Finder is what users call.
+// Searcher: the interface of an algorithm that finds overlapping pairs from scratch, and the statistics of a
+// search. Users call a Finder.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@
 
 namespace broadside {
 
-/// What one search or one update did, in the paper's units of cost; 0 where an algorithm does not count it.
+/// What one search or one update did, in the paper's units of cost; 0 if an algorithm does not count it.
 struct Statistics {
   std::uint64_t tests = 0;       ///< pairs of boxes compared
   std::uint64_t references = 0;  ///< entries of boxes in cells, leaves or lists
   std::uint64_t cells = 0;       ///< cells or nodes of the structure
-  std::uint64_t hits = 0;  ///< of the tests, those of boxes that overlap; the others are false positives
+  std::uint64_t hits = 0;        ///< tests of boxes that overlap; the other tests are false positives
 };
 
 /// Takes over from a search that gives up.
@@ -50,21 +50,21 @@ struct SearchInput {
   /// cause an access out of bounds.
   std::span<const Box<D>> boxes;
 
-  /// If not 0, the boxes before this place are one set and the others another one, and only pairs across the
-  /// sets are asked for. Pairs within a set need not be written; they are dropped.
+  /// If not 0, the boxes before this index are the left set and the others the right set, and only pairs
+  /// across the sets count. Pairs within a set may be written, but are dropped.
   std::size_t left_count = 0;
 
-  /// The same boxes as doubles, if these decide: write only pairs that overlap as doubles. Boxes that do also
-  /// overlap as floats, since rounding keeps their order. Null if `boxes` decide, and for an algorithm
+  /// The same boxes as doubles, if these decide: write only pairs that overlap as doubles. They also overlap
+  /// as floats, since rounding keeps the order of coordinates. Null if `boxes` decide, and for an algorithm
   /// without Algorithm::tests_doubles.
   const Box<D, double>* doubles = nullptr;
 
-  /// Not null if the search may give up when it makes far more tests than its boxes and pairs account for.
-  /// If it does, it calls finish() at its end. Whether and where it gives up must depend on the boxes alone.
-  /// You can ignore it.
+  /// Not null if the search may give up when it makes far more tests than its boxes and pairs account for. A
+  /// search that gives up calls finish() at its end. Whether and where it gives up must depend on the boxes
+  /// alone. You can ignore it.
   Successor<D>* successor = nullptr;
 
-  /// The threads to use, and the checkpoint to call by a Checkpoint, so that a long search can be cancelled.
+  /// The threads to use, and the checkpoint, which a Checkpoint calls so that a long search can be cancelled.
   /// An algorithm without the tunable `threads` uses the calling thread alone.
   const Workers& workers = default_workers;
 };
@@ -75,6 +75,7 @@ struct SearchInput {
 /// Finder does the rest: it checks the boxes, drops absent ones, rounds doubles, applies filters and flushes
 /// the sink. A searcher may keep memory between calls, but must find the same pairs as without it. Only one
 /// thread at a time calls it.
+/// thread at a time calls it.
 template <int D>
 class BROADSIDE_PUBLIC Searcher {
  public:
@@ -83,13 +84,13 @@ class BROADSIDE_PUBLIC Searcher {
   Searcher& operator=(const Searcher&) = delete;
   virtual ~Searcher() = default;
 
-  /// Writes each pair of overlapping boxes once, as places in `input.boxes`. The order of the pairs must
-  /// depend on the boxes alone. Returns what the search did, or nothing if it does not count. Lets the
-  /// exceptions of the sink and of the checkpoint pass.
+  /// Writes each pair of overlapping boxes once, as indexes into `input.boxes`. The order of the pairs must
+  /// depend on the boxes alone. Returns what the search did, or nothing if it does not count. Exceptions from
+  /// the sink and the checkpoint must pass through.
   ///
-  /// Finder refuses, by std::logic_error, a pair with an id that is not below boxes.size() and a pair of a
-  /// box with itself. A pair that is missing, repeated or wrong makes a Finder, a Tracker or a World report
-  /// wrong pairs, and nothing worse: ShadowTracker and WorldOptions::shadow find such faults.
+  /// Finder throws std::logic_error for a pair with an id that is not below boxes.size() and for a pair of a
+  /// box with itself. A missing, repeated or wrong pair makes a Finder, a Tracker or a World report wrong
+  /// pairs, and does no other harm: ShadowTracker and WorldOptions::shadow find such faults.
   virtual std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) = 0;
 
   /// If the algorithm chooses among others: what it chose for the last search and why, in one sentence.

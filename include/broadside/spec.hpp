@@ -23,11 +23,11 @@ class BROADSIDE_PUBLIC SpecValue {
   SpecValue(const char* text) : text_(text) {}
   SpecValue(double number);
 
-  /// The text; of a number, the shortest one that reads back to it.
+  /// The text. For a number, the shortest text that reads back to it.
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
   operator const std::string&() const noexcept { return text_; }
 
-  /// The number; empty if the value is a text, which Settings reads.
+  /// The number; empty if the value is a text, which Settings will parse.
   [[nodiscard]] const std::optional<double>& number() const noexcept { return number_; }
 
   friend bool operator==(const SpecValue& a, const SpecValue& b) noexcept { return a.text_ == b.text_; }
@@ -65,18 +65,17 @@ struct BROADSIDE_PUBLIC Spec {
   detail::Vector<std::pair<std::string, SpecValue>> values;
 };
 
-/// How a Tracker brings its pairs up to date: by whichever costs less in each frame, by following the boxes
-/// that changed, or by finding all pairs anew.
+/// How a Tracker updates its pairs: `follow` follows the boxes that changed, `rebuild` finds all pairs anew,
+/// and `automatic` does whichever costs less in each frame.
 enum class Update : std::uint8_t { automatic, follow, rebuild };
 
 enum class Axis : std::uint8_t { x, y, z };
 
-// Options of the library's algorithms. Each converts to a Spec; a value that is out of range is refused, by
-// InvalidSpec, where the Spec is used. If a value is empty, the algorithm chooses it. `threads` is the
-// maximum number of threads of a search, 0 to 1024; 0: as many as the executor has. `update` is for trackers
-// and worlds alone.
+// Options of the library's algorithms. Each converts to a Spec; using a Spec with a value out of range throws
+// InvalidSpec. If a value is empty, the algorithm chooses it. `threads` is the maximum number of threads of a
+// search, up to 1024; 0 means as many as the executor has. `update` matters only to trackers and worlds.
 
-/// Chooses among the other algorithms by a sample of the boxes; where boxes move, in each frame.
+/// Chooses among the other algorithms from a sample of the boxes; in trackers, in each frame.
 struct BROADSIDE_PUBLIC AutoOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;
@@ -84,7 +83,7 @@ struct BROADSIDE_PUBLIC AutoOptions {
   operator Spec() const;
 };
 
-/// Every box against every other.
+/// Tests every box against every other.
 struct BROADSIDE_PUBLIC BruteForceOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;
@@ -92,9 +91,9 @@ struct BROADSIDE_PUBLIC BruteForceOptions {
   operator Spec() const;
 };
 
-/// Cells over all axes but one, and a sweep along that one in each.
+/// A uniform grid over all axes but one; the boxes of each cell are swept along that axis.
 struct BROADSIDE_PUBLIC GridOptions {
-  /// The size of a cell in the boxes' unit, above 0; made larger if there would be over 4 cells per box. In
+  /// The size of a cell in the boxes' unit, above 0; larger if there would be more than 4 cells per box. In
   /// trackers, the size of the smallest cells.
   std::optional<double> cell{};
   std::size_t threads = 1;
@@ -113,16 +112,16 @@ struct BROADSIDE_PUBLIC SweepAndPruneOptions {
   operator Spec() const;
 };
 
-/// Nodes split at medians until they hold few boxes; an octree in 3D.
+/// A quadtree, in 3D an octree. Nodes are split at medians until they hold few boxes.
 struct BROADSIDE_PUBLIC QuadtreeOptions {
-  std::optional<std::size_t> capacity{};  ///< a node of up to this number of boxes is not split; from 1
+  std::optional<std::size_t> capacity{};  ///< a node with at most this number of boxes is not split; from 1
   std::size_t threads = 1;
   Update update = Update::automatic;
 
   operator Spec() const;
 };
 
-/// A tree of bounds, sixteen to a node, joined with itself.
+/// A bounding volume hierarchy (AABB tree) with sixteen children per node, joined with itself.
 struct BROADSIDE_PUBLIC BvhOptions {
   std::size_t threads = 1;
   Update update = Update::automatic;

@@ -25,16 +25,15 @@ namespace broadside {
 /// The boxes of one frame, and what changed since the frame before.
 template <int D, typename Real = float>
 struct Frame {
-  /// All boxes. A box is added, moved or removed by changing its place in the array (an absent box is no
-  /// box). An array longer than before adds boxes, which need not be listed; a shorter one makes the missing
-  /// ones absent.
+  /// All boxes. To add, move or remove a box, change its element of the array; an absent box means no box. An
+  /// array longer than before adds boxes, which need not be listed; a shorter one removes boxes.
   std::span<const Box<D, Real>> boxes;
 
-  /// The places whose boxes or filters may differ from the frame before, in any order; one listed twice is
-  /// harmless. A change that is not listed is not seen. In a tracker's first frame everything has changed.
+  /// The indexes at which boxes or filters may differ from the frame before, in any order; repetitions are
+  /// harmless. The tracker does not see unlisted changes. In its first frame everything has changed.
   std::span<const BoxId> changed{};
 
-  /// A filter for each box, or none at all: then every box has the standard one.
+  /// One filter for each box; or none, and every box has the default filter.
   std::span<const Filter> filters{};
 
   /// The pairs that do not count, or null for none.
@@ -52,34 +51,34 @@ class WorldTracker;
 
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
-/// A tracker brings the pairs up to date in one of four ways: it compares all boxes where they are few; it
-/// follows what changed in a structure that stays; it tests the kept pairs of enlarged boxes; or it finds all
-/// pairs anew and tells the difference. It chooses by counts alone, so that the same history always goes the
-/// same way.
+/// A tracker updates the pairs in one of four ways: it compares the changed boxes with all others, if there
+/// are few boxes; it follows the changes in a persistent structure; it tests the kept pairs of enlarged
+/// boxes; or it finds all pairs anew and reports the differences. Its choice depends on counts alone, so the
+/// same history always leads to the same choices.
 ///
 /// One thread at a time. Memory: two copies of the boxes and what the algorithm keeps. Cost of an update
-/// besides the algorithm's: O(changed), whatever the number of boxes. A tracker that was moved from may only
-/// be assigned to or destroyed.
+/// besides the algorithm's: O(changed), independent of the number of boxes. A tracker that was moved from may
+/// only be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC Tracker final {
   static_assert(detail::SupportedBox<D, Real>::value);
 
  public:
-  /// A tracker by one of algorithms(), from a spec such as "grid:update=follow" or
-  /// GridOptions{.update = Update::follow}. Throws InvalidSpec, which names all algorithms if there is none
-  /// of that name.
+  /// A tracker that uses one of algorithms(), from a spec such as "grid:update=follow" or
+  /// GridOptions{.update = Update::follow}. Throws InvalidSpec if the spec is wrong. If the name is unknown,
+  /// the message lists all algorithms.
   explicit Tracker(const Spec& spec = {});
 
-  /// A tracker by `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws InvalidSpec if
-  /// a value is wrong or the algorithm does not support D dimensions.
+  /// A tracker that uses `algorithm` with the values in `spec`; the name in `spec` is ignored. Throws
+  /// InvalidSpec if a value is wrong or the algorithm does not support D dimensions.
   Tracker(const Algorithm& algorithm, const Spec& spec);
 
-  /// A tracker by a searcher of your own, which finds all pairs anew in each frame. Cost of a frame: one
-  /// search and one pass over the pairs of both frames; the pairs are stored. Throws std::invalid_argument if
-  /// it is null.
+  /// A tracker that uses your own searcher to find all pairs anew in each frame. Cost of a frame: one search
+  /// and one pass over the pairs of both frames; the pairs are stored. Throws std::invalid_argument if it is
+  /// null.
   explicit Tracker(std::unique_ptr<Searcher<D>> searcher);
 
-  /// A tracker by a follower of your own, which gets every frame. For boxes of floats only. Throws
+  /// A tracker that passes every frame to your own follower. For boxes of floats only. Throws
   /// std::invalid_argument if it is null.
   explicit Tracker(std::unique_ptr<Follower<D>> follower) requires std::is_same_v<Real, float>;
 
@@ -87,14 +86,14 @@ class BROADSIDE_PUBLIC Tracker final {
   Tracker& operator=(Tracker&& other) noexcept;
   ~Tracker();
 
-  /// Takes the next frame; writes to `begun` the pairs that hold now and did not before, to `ended` those
-  /// that did and do not now, each sorted by id, each once; flushes both. The two may be the same sink.
-  /// Returns what the update did; nothing if the algorithm does not count.
+  /// Takes the next frame. Writes to `begun` the pairs that hold now and did not before, and to `ended` the
+  /// pairs that held before and do not now, each once, sorted by id. Flushes both, which may be the same
+  /// sink. Returns what the update did, or nothing if the algorithm does not count.
   ///
   /// Throws before anything has changed: InvalidInput if a changed box is invalid (unless bad_input() says
   /// otherwise); InvalidFrame if an id in `changed` lies beyond both this frame's array and the last one's,
-  /// or if there are filters and not one for each box. If a sink throws or memory runs out, the frame counts
-  /// as not taken: the next update rebuilds, takes every box as changed and delivers the events since the
+  /// or if there are filters, but not one for each box. If a sink throws or memory runs out, the frame counts
+  /// as not taken: the next update rebuilds, treats every box as changed and delivers the events since the
   /// last whole update.
   std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
@@ -106,21 +105,21 @@ class BROADSIDE_PUBLIC Tracker final {
     return update(frame, static_cast<PairSink&>(begun_sink), static_cast<PairSink&>(ended_sink));
   }
 
-  /// What update() does about changed boxes that are invalid: it throws, unless set_bad_input() says
+  /// What update() does with changed boxes that are invalid: it throws, unless set_bad_input() says
   /// otherwise.
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
-  /// The places whose boxes have been invalid since they last changed, ascending, and so count as absent.
+  /// The indexes, ascending, of the boxes that were invalid when they last changed. They count as absent.
   /// Valid until the next update.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
-  /// The frame that the last whole update() took, with nothing listed: what the next one's events start from.
-  /// Without boxes before the first. Valid until the next update().
+  /// The frame that the last whole update() took, with empty lists of changes. The next update's events start
+  /// from it. It has no boxes before the first update. Valid until the next update().
   [[nodiscard]] Frame<D, Real> last_frame() const noexcept;
 
-  /// The boxes of the last whole update() for queries (see queries.hpp), where the algorithm keeps such an
-  /// index anyway; else null. Valid until the next update().
+  /// An index of the boxes of the last whole update() for queries (see queries.hpp), if the algorithm keeps
+  /// one anyway; else null. Valid until the next update().
   [[nodiscard]] const BoxIndex<D, Real>* box_index() const noexcept;
 
   /// In one sentence, how the last update() was done and, if the algorithm chooses among others, what it
@@ -138,7 +137,7 @@ class BROADSIDE_PUBLIC Tracker final {
   template <int, typename>
   friend class world::WorldTracker;
 
-  /// For worlds, as update(): each box that `changed` lists is listed once, and is valid or absent.
+  /// update() for worlds, without checks: `changed` lists each box once, and these are valid or absent.
   std::optional<Statistics> update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
   class State;

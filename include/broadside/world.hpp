@@ -26,8 +26,8 @@
 
 namespace broadside {
 
-/// Names one box of a world, as long as it lives. A slot is used again under a new generation, until its
-/// generations are used up: no handle ever names a second box.
+/// Identifies a box of a world for as long as the box exists. A reused slot gets a new generation and is
+/// retired when its generations are used up, so no handle ever identifies a second box.
 struct Handle {
   std::uint32_t slot = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t generation = 0;
@@ -56,14 +56,14 @@ struct Events {
   std::span<const HandlePair> begun;
   std::span<const HandlePair> ended;
 
-  /// The user data of the boxes, for each pair; empty if no box of the world ever had any.
+  /// The user data of each pair's boxes; empty if no box of the world ever had any.
   std::span<const UserDataPair> begun_data{};
   std::span<const UserDataPair> ended_data{};
 };
 
 namespace detail {
-/// Mixed, since the low bits would be the slot's alone, whatever the generation. `seed` sets what is hashed
-/// before the handle.
+/// Mixes the bits, since otherwise the low ones would depend on the slot alone. `seed` is the hash of what
+/// comes before the handle.
 constexpr std::uint64_t hash(const Handle& handle, std::uint64_t seed = 0) noexcept {
   return mixed(seed ^ (std::uint64_t{handle.generation} << 32 | handle.slot));
 }
@@ -95,7 +95,7 @@ struct BoxOptions {
   std::uint64_t user_data = 0;  ///< yours; the world only keeps it
 };
 
-/// Which boxes make the pairs of a world: the boxes themselves, or the enlarged ones around them.
+/// Which boxes form the pairs of a world: the boxes themselves, or the enlarged boxes around them.
 enum class WorldEvents : std::uint8_t { exact, enlarged };
 
 /// Settings of a world.
@@ -104,39 +104,39 @@ struct WorldOptions {
   Spec algorithm{};
 
   /// Whether the world keeps its current pairs, for pairs() and persisting(). Without them it saves 16 bytes
-  /// a pair and some ten nanoseconds an event, and a predicate can only be set before the first update.
+  /// per pair and some ten nanoseconds per event, and a predicate can only be set before the first update.
   bool keep_pairs = true;
 
   /// How far a box is enlarged on each side: by `margin`, by `relative_margin` times its longest side, or by
-  /// the smaller of the two if both are above 0. If one of them or `predicted_frames` is, the tracker sees
-  /// enlarged boxes. A box gets a new one only when it has left the old one or become far smaller. Enlarged
-  /// boxes are part of the world and of its snapshots.
+  /// the smaller of the two if both are above 0. If either of them or `predicted_frames` is above 0, the
+  /// tracker sees enlarged boxes. An enlarged box is replaced only when its box has left it or become far
+  /// smaller. Enlarged boxes are part of the world and of its snapshots.
   double margin = 0;
   double relative_margin = 0;
 
   /// The number of frames of motion that an enlarged box covers if move() is given a velocity.
   double predicted_frames = 0;
 
-  /// Which boxes make the pairs of update() and pairs(), which a predicate is asked about.
+  /// Which boxes form the pairs that update() and pairs() report and that a predicate decides.
   ///
   /// `exact`: a pair begins and ends in the update in which the boxes themselves meet and part, whatever the
   /// margin. Each pair of enlarged boxes takes some 50 bytes, and is tested when one of its boxes moves.
   ///
-  /// `enlarged`: a pair begins when the enlarged boxes meet, and ends when they part. Engines test the pairs
-  /// closely anyway. Pairs of bodies that tremble do not begin and end again and again, and a move within the
-  /// enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
+  /// `enlarged`: a pair begins when the enlarged boxes meet, and ends when they part. This suits engines,
+  /// which test the pairs closely anyway. Pairs of jittering bodies do not begin and end again and again, and
+  /// a move within the enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
   WorldEvents events = WorldEvents::exact;
 
   /// The generation of the first handles. Worlds with first generations far apart refuse each other's
   /// handles.
   std::uint32_t first_generation = 0;
 
-  /// What add() and move() do with invalid boxes: refuse them, or take them as absent boxes, which are in no
-  /// pair until they are moved to valid ones. quarantined() lists these.
+  /// Whether add() and move() reject invalid boxes or quarantine them. A quarantined box counts as absent
+  /// until it is moved to a valid box; quarantined() lists these boxes.
   BadInput bad_input = BadInput::reject;
 
-  /// Whether brute force checks the tracker: update() throws a DivergenceOf<D, Real> when the two first
-  /// differ. For debugging; n^2 / 2 tests an update. See ShadowTracker.
+  /// Whether brute force checks the tracker: update() throws a DivergenceOf<D, Real> when their events first
+  /// differ. For debugging; n^2 / 2 tests per update. See ShadowTracker.
   bool shadow = false;
 };
 
@@ -148,7 +148,7 @@ struct WorldOptions {
 /// values. Throws InvalidSpec for an unknown name or a value out of range.
 [[nodiscard]] BROADSIDE_PUBLIC WorldOptions world_options(const Spec& spec);
 
-/// Whether two boxes that overlap, and accept each other by their filters, count as a pair;
+/// Whether two boxes count as a pair. They overlap, their filters accept each other, and
 /// first.slot < second.slot.
 using PairPredicate = std::function<bool(Handle first, Handle second)>;
 
@@ -173,7 +173,7 @@ struct WorldStatistics {
   std::size_t pairs = 0;           ///< that hold since the last update
   std::size_t begun = 0;           ///< events of the last update
   std::size_t ended = 0;           ///< likewise
-  std::size_t enlarged_pairs = 0;  ///< pairs of enlarged boxes, which boxes or a predicate decide about
+  std::size_t enlarged_pairs = 0;  ///< pairs of enlarged boxes; the boxes or a predicate decide about them
   std::size_t ignored_pairs = 0;   ///< by ignore()
 
   /// What the tracker counted in the last update, if it counts: tests, hits (the other tests are false
@@ -186,7 +186,7 @@ struct WorldStatistics {
   WorldBytes bytes;
 };
 
-/// A box that a ray or a cast box hits, and the parameter at which it does so first.
+/// A box that a ray or a cast box hits, and the t of the first contact.
 template <typename Real>
 struct HandleHit {
   Handle handle;
@@ -195,7 +195,7 @@ struct HandleHit {
   friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
 };
 
-/// A box, and the square of its distance from a point.
+/// A box and its squared distance from a point.
 template <typename Real>
 struct HandleNeighbour {
   Handle handle;
@@ -207,8 +207,8 @@ struct HandleNeighbour {
 /// A set of boxes that changes, and its overlapping pairs. Coordinates are floats or doubles.
 ///
 /// Changes of boxes and filters take effect on the pairs at the next update(). Use a world from one thread at
-/// a time; between changes, several may call const members. A call that throws has changed nothing, and a
-/// failed update can be tried again. A world that was moved from may only be assigned to or destroyed.
+/// a time; between changes, several threads may call const members. A call that throws has changed nothing,
+/// and a failed update can be tried again. A world that was moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC World {
   static_assert(detail::SupportedBox<D, Real>::value);
@@ -220,7 +220,7 @@ class BROADSIDE_PUBLIC World {
   explicit World(const Spec& spec = {});
   explicit World(const WorldOptions& options);
 
-  /// A world over a tracker of yours that has taken no frame yet. options.algorithm is not used.
+  /// A world that uses your own tracker, which must not have taken a frame yet. Ignores options.algorithm.
   explicit World(Tracker<D, Real> tracker, const WorldOptions& options = {});
 
   World(World&& other) noexcept;
@@ -244,8 +244,8 @@ class BROADSIDE_PUBLIC World {
   void remove(Handle handle) { remove(std::span<const Handle>(&handle, 1)); }
 
   /// The same for many boxes: for all of them or, if one is refused, for none. `handles` receives the handles
-  /// of the boxes; `options` and `velocities` have one element for each box, or none. A million boxes added
-  /// to an empty world are one build at the next update. If a handle is given twice, its last move counts,
+  /// of the boxes; `options` and `velocities` have one element for each box, or none. Adding a million boxes
+  /// to an empty world costs one build at the next update. If a handle is given twice, its last move counts,
   /// and its second removal is refused. Throws std::invalid_argument if the lengths differ.
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options = {});
   void move(std::span<const Handle> handles, BoxView<D, Real> boxes,
@@ -257,22 +257,22 @@ class BROADSIDE_PUBLIC World {
   /// `origin` is not finite.
   void shift_origin(const Point<D, Real>& origin);
 
-  /// Replaces a box's filter. O(1). A world's first filter other than the standard one makes the next update
-  /// treat all boxes as changed. Throws InvalidHandle.
+  /// Replaces a box's filter. O(1). A world's first filter other than the default makes the next update treat
+  /// all boxes as changed. Throws InvalidHandle.
   void set_filter(Handle handle, const Filter& filter);
 
   /// Ignores a pair, such as two bodies that a joint connects: it does not count until unignore() is called
-  /// or one of its boxes is removed. O(1), some 100 bytes a pair. Throws InvalidHandle, and
+  /// or one of its boxes is removed. O(1), some 100 bytes per pair. Throws InvalidHandle, and
   /// std::invalid_argument for a box with itself.
   void ignore(Handle a, Handle b);
   void unignore(Handle a, Handle b);
   [[nodiscard]] bool is_ignored(Handle a, Handle b) const;
 
-  /// Makes update() ask `predicate` about each pair before it begins: in the order of the slots, and in the
+  /// Makes update() ask `predicate` about each pair before it begins, in the order of slots and in the
   /// calling thread. The next update also asks about all current pairs. The predicate may read the world and
-  /// must not change it; update() throws what it throws. An empty predicate accepts all pairs. Takes some 50
-  /// bytes for each pair of boxes that overlap. Throws std::logic_error after the first update of a world
-  /// without `keep_pairs`.
+  /// must not change it; update() lets its exceptions through. An empty predicate accepts all pairs. Takes
+  /// some 50 bytes for each pair of boxes that overlap. Throws std::logic_error after the first update of a
+  /// world without `keep_pairs`.
   void set_predicate(PairPredicate predicate);
 
   /// Makes the next update ask the predicate again, about the pairs of one box or about all. No effect
@@ -280,24 +280,24 @@ class BROADSIDE_PUBLIC World {
   void refilter(Handle handle);
   void refilter();
 
-  /// Brings the pairs up to date. Cost: the tracker's, O(changed boxes), and some ten nanoseconds an event.
-  /// It is never O(boxes) or O(pairs), except when memory that is no longer needed is given back.
+  /// Brings the pairs up to date. Cost: the tracker's, O(changed boxes), and some ten nanoseconds per event.
+  /// It is never O(boxes) or O(pairs), except when it releases memory that is no longer needed.
   Events update();
 
-  /// The pairs that hold since the last update, sorted by slots; and those of them that did not begin in it.
-  /// Valid until the next update. O(events since the last call), and one pass over the pairs if there were
-  /// any. Throws std::logic_error in a world without `keep_pairs`.
+  /// pairs() returns the pairs that hold since the last update, sorted by slots; persisting() leaves out
+  /// those that began in it. Valid until the next update. O(events since the last call), and one pass over
+  /// the pairs if there were any. Throws std::logic_error in a world without `keep_pairs`.
   [[nodiscard]] std::span<const HandlePair> pairs() const;
   [[nodiscard]] std::span<const HandlePair> persisting() const;
 
   /// Sets each flag to 1 if both boxes of the pair are in the world and overlap as they are now, else to 0.
-  /// Filters and ignored pairs play no part. Some nanoseconds a pair. Throws std::invalid_argument if the
+  /// Filters and ignored pairs have no effect. Some nanoseconds per pair. Throws std::invalid_argument if the
   /// lengths differ.
   void overlaps(std::span<const HandlePair> pairs, std::span<std::uint8_t> flags) const;
 
-  /// Finds the pairs of a box of this world and a box of `other` that overlap as they are now and accept each
-  /// other by their filters, sorted by slots. Margins and predicates play no part. Uses the world's
-  /// algorithm, or the standard one if the tracker is yours. Cost: one search between two sets; its memory is
+  /// Finds the pairs of a box of this world and a box of `other` that overlap as they are now and whose
+  /// filters accept each other, sorted by slots. Margins and predicates have no effect. Uses the world's
+  /// algorithm, or the default one if the tracker is yours. Cost: one search between two sets; its memory is
   /// kept for the next join.
   BROADSIDE_HIDDEN void join(const World& other, std::vector<HandlePair>& pairs) const {
     detail::OutputTo output(pairs);
@@ -308,9 +308,9 @@ class BROADSIDE_PUBLIC World {
   using NearestOptions = broadside::NearestOptions<Handle, Real>;
 
   /// Queries about the boxes as they are now, with the costs and exceptions of BoxIndex. Margins, ignored
-  /// pairs and predicates play no part. `function` takes a Handle, or a Handle and its t_enter, and ends the
-  /// search by returning false. `except` has no effect if it is not in the world. Rays and cast boxes are Ray
-  /// and BoxCast.
+  /// pairs and predicates have no effect. `function` takes a Handle, or a Handle and its t_enter, and ends
+  /// the search by returning false. `except` has no effect if it is not in the world. Rays and cast boxes are
+  /// Ray and BoxCast.
   ///
   /// If the algorithm has an index of these boxes, as `bvh` has after an update of boxes that are not
   /// enlarged, queries use it. Otherwise the first query builds one, and each later query updates it with the
@@ -364,8 +364,8 @@ class BROADSIDE_PUBLIC World {
   /// Whether the box is in the world.
   [[nodiscard]] bool contains(Handle handle) const noexcept;
 
-  /// The box as it was last set. A removed box, its filter and its user data can be read until the update
-  /// after the one that reports its removal, by code that handles its ended pairs. The reference is valid
+  /// The box as it was last set. A removed box, its filter and its user data stay readable until the update
+  /// after the one that reports its removal, for code that handles its ended pairs. The reference is valid
   /// until the next add(), remove() or update(). Throws InvalidHandle.
   [[nodiscard]] const Box<D, Real>& box(Handle handle) const;
 
@@ -376,8 +376,8 @@ class BROADSIDE_PUBLIC World {
   [[nodiscard]] std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);
 
-  /// The boxes that were invalid when they were last set, by slot, if WorldOptions::bad_input is to
-  /// quarantine them. box() gives the absent box for them. O(slots).
+  /// The quarantined boxes (see WorldOptions::bad_input), sorted by slot. box() returns the absent box for
+  /// them. O(slots).
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
     std::vector<Handle> handles;
     detail::OutputTo output(handles);
@@ -388,20 +388,20 @@ class BROADSIDE_PUBLIC World {
   /// The number of boxes in the world.
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /// The number of slots, used and free; the size for arrays of yours by slot.
+  /// The number of slots, used and free; the size for your own arrays by slot.
   [[nodiscard]] std::size_t slots() const noexcept;
 
   /// What the world holds, and what the last update did. O(1), except for the tracker's explanation.
   [[nodiscard]] WorldStatistics statistics() const;
 
-  /// Gives back memory that the boxes in the world do not need. Costs one build. update() does it by itself
-  /// when some three quarters of the slots are gone. A tracker of yours keeps what it has.
+  /// Releases memory that the boxes in the world do not need. Costs one build. update() does so by itself
+  /// when some three quarters of the slots are gone. Your own tracker keeps its memory.
   void shrink_to_fit();
 
-  /// The world as bytes, at any time, also between changes and their update. They hold all that its future
-  /// depends on, except the predicate, the workers, a tracker of yours, and the options bad_input, shadow and
-  /// first_generation: a world that restores them keeps its own. O(slots + pairs). The bytes are the same on
-  /// every machine: see docs/snapshot-format.md.
+  /// The world as bytes; may be called at any time, also between changes and their update. The bytes hold all
+  /// that the world's future depends on, except the predicate, the workers, your own tracker, and the options
+  /// bad_input, shadow and first_generation: a world that restores them keeps its own. O(slots + pairs). The
+  /// bytes are the same on every machine: see docs/snapshot-format.md.
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
     std::vector<std::byte> bytes;
     detail::OutputTo output(bytes);
@@ -428,7 +428,7 @@ class BROADSIDE_PUBLIC World {
   void list_quarantined(detail::Output<Handle>& handles) const;
   void write_snapshot(detail::Output<std::byte>& bytes) const;
 
-  /// The slot of a box that is in the world.
+  /// The slot; nothing if the box is not in the world.
   std::optional<BoxId> slot_of(const std::optional<Handle>& handle) const noexcept {
     return handle && contains(*handle) ? std::optional(BoxId{handle->slot}) : std::nullopt;
   }

@@ -28,9 +28,8 @@ BROADSIDE_PUBLIC std::size_t minimise(std::span<Box<D, Real>> boxes, const Boxes
 }  // namespace detail
 
 /// Removes boxes while the others still fail: first halves, then ever smaller parts, down to single boxes.
-/// Without any one of the boxes that are left, the others no longer fail. `boxes` must fail. Calls `fails`
-/// about m log n times, for m boxes left of n. If `stop` is given, the search ends early when it returns
-/// true.
+/// Each remaining box was needed when its removal was tried. `boxes` must fail. Calls `fails` about m log n
+/// times, for m boxes left of n. If `stop` is given, the search ends early when it returns true.
 template <int D, typename Real>
 void minimise(std::vector<Box<D, Real>>& boxes, const BoxesFail<D, Real>& fails,
               const std::function<bool()>& stop = {}) {

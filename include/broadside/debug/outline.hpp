@@ -24,7 +24,7 @@ struct Outline {
   detail::Vector<detail::Vector<Box<D, Real>>> levels;
 };
 
-/// What Finder::find() by this algorithm would lay over the boxes. Empty for an algorithm without outlines,
+/// What Finder::find() with this algorithm would lay over the boxes. Empty for an algorithm without outlines,
 /// or if no box is present. Cost: that of building the structure. Throws as Finder::find() does, and
 /// InvalidSpec. Boxes of doubles are laid out as floats.
 template <int D, typename Real>

@@ -1,4 +1,4 @@
-// ShadowTracker: any tracker with brute force beside it, which says where the two first differ.
+// ShadowTracker: runs a tracker and brute force side by side, and reports where they first differ.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +42,7 @@ class BROADSIDE_PUBLIC Divergence : public std::logic_error {
   bool holds_;
 };
 
-/// A Divergence with its history, which tracks wrongly in its last frame.
+/// A Divergence with a history whose last frame shows the fault.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
  public:
@@ -51,8 +51,8 @@ class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
         history_(std::make_shared<const History<D, Real>>(std::move(history))),
         reproduced_(reproduced) {}
 
-  /// If reproduced(): the smallest history found on which a new tracker fails. Boxes are counted anew.
-  /// Otherwise what the two boxes of the pair, now 0 and 1, did in the frames that were kept.
+  /// If reproduced(): the smallest history found on which a new tracker fails, with boxes renumbered.
+  /// Otherwise what the pair's two boxes, now 0 and 1, did in the frames that were kept.
   [[nodiscard]] const History<D, Real>& history() const noexcept { return *history_; }
 
   [[nodiscard]] bool reproduced() const noexcept { return reproduced_; }
@@ -62,20 +62,19 @@ class BROADSIDE_PUBLIC DivergenceOf final : public Divergence {
   bool reproduced_;
 };
 
-/// What a ShadowTracker spends.
+/// Limits of a ShadowTracker's memory and time.
 struct ShadowOptions {
-  /// How many frames back it can show how a fault came about; fewer, but at least one, if their changes take
-  /// more than `bytes`.
+  /// The number of earlier frames it keeps to show how a fault came about. It keeps fewer, but at least one,
+  /// if their changes take more than `bytes`.
   std::size_t frames = 256;
   std::size_t bytes = std::size_t{64} << 20;
 
-  /// About how many pairs of boxes are compared to make a history small.
+  /// The approximate number of box tests spent on minimising a history.
   std::uint64_t tests = 2'000'000'000;
 };
 
-/// Runs a tracker and compares its events with those of brute force, by the definition, in every frame; the
-/// first difference is thrown as a DivergenceOf<D, Real>. For looking for faults, in the algorithm and in the
-/// caller's list of what changed.
+/// Runs a tracker, compares its events with brute force in every frame, and throws the first difference as a
+/// DivergenceOf<D, Real>. Use it to look for faults in an algorithm or in your list of changes.
 ///
 /// Cost of a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
 /// frames of ShadowOptions.
@@ -84,24 +83,24 @@ class BROADSIDE_PUBLIC ShadowTracker final {
  public:
   using Make = std::function<Tracker<D, Real>()>;
 
-  /// Shadows a tracker of the library's. Throws InvalidSpec.
+  /// Shadows a tracker of the library. Throws InvalidSpec.
   explicit ShadowTracker(const Spec& spec, const ShadowOptions& options = {});
 
-  /// Shadows what `make` makes; it is called again to make a history small.
+  /// Shadows a tracker from `make`, which is called again to minimise a history.
   explicit ShadowTracker(Make make, const ShadowOptions& options = {});
 
-  /// Shadows the one tracker that there is: a history is not made small.
+  /// Shadows this tracker. Without a way to make others, it does not minimise histories.
   explicit ShadowTracker(Tracker<D, Real> tracker, const ShadowOptions& options = {});
 
   ShadowTracker(ShadowTracker&& other) noexcept;
   ShadowTracker& operator=(ShadowTracker&& other) noexcept;
   ~ShadowTracker();
 
-  /// As Tracker::update(). Throws, besides: DivergenceOf, and from then on the same each time; InvalidFrame,
-  /// before the tracker is asked, if a box, a filter or an ignored pair has changed and is not listed.
+  /// As Tracker::update(). Also throws DivergenceOf, and then the same one at every call; and InvalidFrame,
+  /// before the tracker is called, if a changed box, filter or ignored pair is not listed.
   std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);
 
-  /// The tracker that is shadowed: for its explanation, its bytes, its workers.
+  /// The tracker that is shadowed: for its explanation, its bytes and its workers.
   [[nodiscard]] const Tracker<D, Real>& tracker() const noexcept;
   Tracker<D, Real>& tracker() noexcept;
 
