@@ -1,4 +1,4 @@
-// DoubleSearch: boxes of doubles, searched as floats and tested again in double where floats cannot tell.
+// DoubleSearch: searches double boxes as floats, and retests in double the pairs that floats cannot decide.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +21,20 @@
 
 namespace broadside::find {
 
-/// Finds pairs of boxes of doubles exactly, through any search of floats.
+/// Finds pairs of double boxes exactly, through any search of floats.
 ///
-/// Rounding never puts two coordinates into the wrong order; at worst it makes them equal. So boxes that
-/// overlap in double overlap in float as well; and boxes that overlap in float by more than touching overlap
-/// in double. So only the search's pairs that touch need a test in double, and none if rounding has lost
-/// nothing. That costs much only where rounding makes many separate boxes touch; there coordinates are
-/// rounded by their quantiles, which distinguish more of them than one scale does.
+/// Rounding never reverses the order of two coordinates; at worst it makes them equal. So boxes that overlap
+/// in double overlap in float as well, and boxes that overlap in float by more than touching overlap in
+/// double. Only pairs that touch in float need a test in double, and none do if rounding has lost nothing.
+/// These tests cost much only if rounding makes many separate boxes touch. Coordinates are then rounded by
+/// their quantiles, which keep more of them apart than one scale does.
 template <int D>
 class DoubleSearch {
  public:
-  /// `tests_doubles`: whether searches heed SearchInput::doubles.
+  /// `tests_doubles`: whether searches use SearchInput::doubles.
   explicit DoubleSearch(bool tests_doubles) : tests_doubles_(tests_doubles) {}
 
-  /// Returns search_floats(input, sink), which is as Searcher::search(). The boxes are all present.
+  /// Returns search_floats(input, sink), which works as Searcher::search() does. All boxes must be present.
   template <typename SearchFloats>
   std::optional<Statistics> search(std::span<const Box<D, double>> boxes, std::size_t left_count,
                                    Successor<D>* successor, const Workers& workers, PairSink& pairs,
@@ -49,13 +49,13 @@ class DoubleSearch {
   }
 
  private:
-  /// Up to this many boxes have few pairs, false ones included.
+  /// Up to this number of boxes, pairs are few, false ones included.
   static constexpr std::size_t few_boxes = 256;
 
-  /// Boxes that are rounded, looked at and hashed while a core's cache holds them.
+  /// Boxes that are rounded, checked and hashed at a time, while they are in a core's cache.
   static constexpr std::size_t boxes_at_once = 256;
 
-  /// Passes on the pairs that overlap in double, for searches that do not test doubles. The order stays.
+  /// Passes on the pairs that overlap in double, in the same order. For searches that do not test doubles.
   class ExactSink final : public core::FilterSink {
    public:
     ExactSink(std::span<const Box<D, double>> boxes, PairSink& target) : FilterSink(target), boxes_(boxes) {}
@@ -82,7 +82,7 @@ class DoubleSearch {
     std::span<const Box<D, double>> boxes_;
   };
 
-  /// Sets floats_. Returns whether coordinates that differ do so as floats.
+  /// Sets floats_. Returns whether all coordinates that differ as doubles also differ as floats.
   bool round(std::span<const Box<D, double>> boxes, std::size_t left_count, const Workers& workers) {
     const std::array<core::LinearRounding, D> fit = core::fit_linear<D>(boxes);
     core::renew(floats_, boxes.size());

@@ -15,12 +15,12 @@ namespace broadside::find {
 /// The filters of a search's boxes, by the boxes' places in the search.
 class BoxFilters {
  public:
-  /// Of one set. Box i has the filter ids[i], or i if there are no ids.
+  /// For one set. Box i has the filter ids[i], or i if there are no ids.
   explicit BoxFilters(std::span<const Filter> filters, std::span<const BoxId> ids = {})
       : left_(filters), ids_(ids) {}
 
-  /// Of two sets: the first `left_count` boxes are the left one. Ids count from 0 in each set. All boxes of a
-  /// set without filters have the default one.
+  /// For two sets: the first `left_count` boxes are the left set. Ids count from 0 in each set. All boxes of
+  /// a set without filters have the default one.
   BoxFilters(std::span<const Filter> left, std::span<const Filter> right, std::size_t left_count,
              std::span<const BoxId> ids = {})
       : left_(left), right_(right), left_count_(left_count), ids_(ids) {}
@@ -36,7 +36,7 @@ class BoxFilters {
     return filters[is_left ? place : place - left_count_];
   }
 
-  /// The filters of all boxes one after another, if they are given as such; else null.
+  /// The filters of all boxes, if they are given as one array; else null.
   const Filter* array() const noexcept {
     return left_count_ == one_set && ids_.empty() && !left_.empty() ? left_.data() : nullptr;
   }
@@ -54,18 +54,18 @@ class BoxFilters {
 /// Boxes of one set that have equal filters.
 struct FilterGroup {
   Filter filter;
-  bool is_right;        ///< of two sets: which one
-  std::uint32_t begin;  ///< of its boxes among the places of all groups
+  bool is_right;        ///< whether they are in the right one of two sets
+  std::uint32_t begin;  ///< the place of its first box in places_
   std::uint32_t size;
 };
 
-/// Groups are in the order of their first boxes. A hash table with open addressing and linear probing (Knuth,
-/// TAOCP 3, 6.4). Keeps its memory.
+/// Groups boxes by filter, with a hash table with linear probing (Knuth, TAOCP 3, 6.4). Groups are in the
+/// order of their first boxes. Keeps its memory.
 class FilterGroups {
  public:
   /// Groups the first `boxes` places. If `left_count` is not 0, the places before it are the left set, and no
-  /// group has boxes of both. Returns false, and has no groups, if there are nearly as many filters as boxes:
-  /// it gives up after `boxes` / 4 groups. O(boxes).
+  /// group has boxes of both. Returns false, and has no groups, if there would be more than `boxes` / 4
+  /// groups. O(boxes).
   bool build(const BoxFilters& filters, std::size_t boxes, std::size_t left_count);
 
   std::span<const FilterGroup> groups() const noexcept { return groups_; }
@@ -83,7 +83,7 @@ class FilterGroups {
   void grow();
 
   std::vector<FilterGroup> groups_;
-  std::vector<std::uint32_t> table_;  // groups by hash; size is a power of two
+  std::vector<std::uint32_t> table_;  // hash table of groups; its size is a power of two
   std::vector<std::uint32_t> group_of_;
   std::vector<BoxId> places_;
 };

@@ -1,4 +1,4 @@
-// FilterPlan: the searches that find every pair which filters let count, and few others.
+// FilterPlan: plans searches that find every pair that filters accept, and few others.
 #include "find/filter_plan.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ bool FilterPlan::make(std::span<const FilterGroup> groups, bool are_two_sets,
   members_.clear();
   double boxes = 0;
   for (const FilterGroup& group : groups) boxes += group.size;
-  // So that planning costs no more than looking at each box.
+  // Planning then costs no more than a look at each box.
   const auto nodes = std::min(max_nodes, static_cast<std::size_t>(std::sqrt(boxes)));
   const bool by_negative_group = make_nodes(groups, nodes, true);
   if (!by_negative_group && !make_nodes(groups, nodes, false)) return false;
@@ -38,8 +38,8 @@ bool FilterPlan::make(std::span<const FilterGroup> groups, bool are_two_sets,
   return true;
 }
 
-/// Returns false if there are more than `nodes`. Negative groups may be nodes of their own; where they are
-/// too many, each pair of them is tested.
+/// Returns false if there are more than `nodes`. Negative groups can be nodes of their own; if that makes too
+/// many nodes, their pairs are tested instead.
 bool FilterPlan::make_nodes(std::span<const FilterGroup> groups, std::size_t nodes, bool by_negative_group) {
   nodes_.clear();
   node_of_.resize(groups.size());
@@ -117,7 +117,7 @@ void FilterPlan::plan_positive_groups(std::span<const FilterGroup> groups,
   }
 }
 
-/// Plans the pairs of one positive group, each of whose filters is a node.
+/// Plans the searches within one positive group. Each of its filters is a node.
 void FilterPlan::plan_group(std::span<const FilterGroup> groups, std::span<const std::uint32_t> same,
                             std::span<const GroupPair> rejected) {
   nodes_.clear();
@@ -144,7 +144,7 @@ void FilterPlan::plan_group(std::span<const FilterGroup> groups, std::span<const
   plan_nodes(FilterTest::by_group);
 }
 
-/// Merges nodes that meet and reject the same others and, if they meet each other, themselves.
+/// Merges nodes that meet and reject the same other nodes, and that relate to each other as to themselves.
 void FilterPlan::merge_twins() {
   target_of_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -234,7 +234,7 @@ void FilterPlan::plan_nodes(FilterTest test) {
   }
 }
 
-/// What it saves to search for the pairs of a node apart from the others of `remaining`.
+/// The cost saved by searching for a node's pairs apart from the others of `remaining`.
 double FilterPlan::gain(Nodes remaining, std::size_t node) const {
   const Nodes rest = remaining & ~bit(node);
   const Nodes others = nodes_[node].meets & rest;
@@ -256,7 +256,7 @@ double FilterPlan::gain(Nodes remaining, std::size_t node) const {
   return saved;
 }
 
-/// Those of some nodes that meet any of them, be it themselves.
+/// The nodes of `nodes` that meet another one of these or themselves.
 FilterPlan::Nodes FilterPlan::without_lonely(Nodes nodes) const {
   Nodes meeting = 0;
   for (Nodes left = nodes; left != 0;) {
@@ -272,7 +272,7 @@ double FilterPlan::boxes_of(Nodes nodes) const {
   return boxes;
 }
 
-/// Adds a search between the two or, if there are none in `right`, within `left`.
+/// Adds a search between `left` and `right`, or within `left` if `right` is empty.
 void FilterPlan::add(Nodes left, Nodes right, FilterTest test) {
   const std::size_t begin = members_.size();
   bool has_rejects = false;

@@ -1,4 +1,4 @@
-// FilterPlan: the searches that find every pair which filters let count, and few others.
+// FilterPlan: plans searches that find every pair that filters accept, and few others.
 #pragma once
 
 #include <array>
@@ -12,31 +12,32 @@
 
 namespace broadside::find {
 
-/// What a search behind which pairs are tested lets pass. A pair that bits accept is found by a search for
-/// such pairs; one that only shares a positive group, by a search in that group.
+/// How a search tests its pairs. A search `by_bits` passes on the pairs that bits accept; a search `by_group`
+/// passes on the pairs that only a common positive group accepts.
 enum class FilterTest { none, by_bits, by_group };
 
-/// Costs of a plan, in the cost of a pair that is found and rejected. Only ratios matter.
+/// The costs of a plan. The unit is the cost of finding and rejecting a pair.
 struct PlanCosts {
-  static constexpr double box = 10;      ///< a box in a search
-  static constexpr double search = 120;  ///< a search without its boxes
+  static constexpr double box = 10;      ///< per box in a search
+  static constexpr double search = 120;  ///< per search, without its boxes
 };
 
-/// One search: within the boxes of some groups, or between these and those of others.
+/// One search: within the boxes of some groups, or between these and the boxes of other groups.
 struct PlannedSearch {
-  std::size_t begin;   // of the groups in FilterPlan's list
-  std::size_t middle;  // of the second ones
+  std::size_t begin;   // where its groups begin in FilterPlan::members_
+  std::size_t middle;  // where the other groups begin
   std::size_t end;
   FilterTest test;
 };
 
 /// Plans the searches of grouped boxes.
 ///
-/// Boxes meet by their bits or by a positive group. Groups with the same bits are a *node*; there are few of
-/// them. The plan starts with one search of all nodes that meet any. While that saves more rejected pairs
-/// than it costs boxes, a node leaves it: it is then searched by itself, and against the nodes it meets. What
-/// is left falls into parts that never meet. Pairs of a positive group that their bits do not accept are
-/// searched group by group, in the same way.
+/// Boxes meet by their bits or by a positive group. Groups with the same bits are a *node*; there are few
+/// nodes. The plan starts with one search of all nodes that meet any. It then takes nodes out of this search,
+/// as long as that saves more rejected pairs than it costs boxes. Each of these nodes is searched by itself
+/// and against the nodes it meets. The remaining nodes fall into parts that never meet, with a search for
+/// each. Pairs of a positive group that their bits do not accept are searched group by group, in the same
+/// way.
 ///
 /// Depends on the groups and the sampled pairs alone. Keeps its memory.
 class FilterPlan {
@@ -44,13 +45,13 @@ class FilterPlan {
   using GroupPair = std::pair<std::uint32_t, std::uint32_t>;
 
   /// Returns false, and has no plan, if there are too many nodes. `rejected` are the groups of sampled pairs
-  /// of boxes that overlap and do not accept each other; each stands for `weight` pairs.
+  /// of boxes that overlap but do not accept each other; each stands for `weight` pairs.
   bool make(std::span<const FilterGroup> groups, bool are_two_sets, std::span<const GroupPair> rejected,
             double weight);
 
   std::span<const PlannedSearch> searches() const noexcept { return searches_; }
 
-  /// The groups of a search, and those that these are searched against; none if it is a search within.
+  /// The groups of a search; and those they are searched against, none for a search within groups().
   std::span<const std::uint32_t> groups(const PlannedSearch& search) const {
     return std::span(members_).subspan(search.begin, search.middle - search.begin);
   }
@@ -70,15 +71,15 @@ class FilterPlan {
   /// Groups that accept the same others.
   struct Node {
     Filter filter;              // of its first group
-    bool is_right = false;      // of two sets: which one
+    bool is_right = false;      // whether it is in the right one of two sets
     bool has_negative = false;  // whether some of its groups are negative
-    Nodes meets = 0;            // nodes that have boxes which accept some of its own
-    Nodes rejects = 0;          // nodes that have boxes which do not; of two sets, none of its own set
+    Nodes meets = 0;            // nodes with boxes that accept boxes of this one
+    Nodes rejects = 0;          // nodes with boxes that do not; of two sets, none of its own set
     Nodes merged = 0;           // itself and the nodes merged into it
     double boxes = 0;
   };
 
-  /// A node's search against others.
+  /// A search of nodes, taken out of the common search, against others.
   struct Star {
     Nodes nodes;
     Nodes others;
@@ -106,12 +107,12 @@ class FilterPlan {
   double cost_ = 0;
   std::vector<Node> nodes_;
   std::vector<std::uint8_t> node_of_;             // by group
-  std::vector<std::uint8_t> target_of_;           // by node, the one that it was merged into
+  std::vector<std::uint8_t> target_of_;           // by node, the node that it was merged into
   std::vector<std::uint32_t> ordered_;            // groups by node
-  std::array<std::size_t, max_nodes + 1> begin_;  // of each node's groups in ordered_
+  std::array<std::size_t, max_nodes + 1> begin_;  // where each node's groups begin in ordered_
   std::array<std::array<double, max_nodes>, max_nodes> rejected_;
   std::vector<Star> stars_;
-  std::vector<std::uint32_t> positive_;  // groups whose group is positive, by that
+  std::vector<std::uint32_t> positive_;  // groups with a positive Filter::group, sorted by it
   std::vector<GroupPair> rejected_in_positive_;
   std::vector<PlannedSearch> searches_;
   std::vector<std::uint32_t> members_;

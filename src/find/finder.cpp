@@ -1,4 +1,4 @@
-// Finder: checks boxes before anything is searched, and delivers the pairs.
+// Finder: checks boxes before it searches, and delivers the pairs.
 #include "broadside/finder.hpp"
 
 #include <array>
@@ -31,7 +31,7 @@ void check_filters(const PairFilters& filters, std::size_t left, std::size_t rig
   check_filters(filters.right_filters, right, " right");
 }
 
-/// Stands between a search and its caller's sink, which no filter may look through.
+/// Calls the caller's sink in the caller's environment. It is no FilterSink, so searches cannot bypass it.
 class CallersSink final : public PairSink {
  public:
   explicit CallersSink(PairSink& target) : target_(&target) {}
@@ -58,8 +58,8 @@ class CallersSink final : public PairSink {
   std::unique_ptr<PairSink> owned_;
 };
 
-/// Delivers the pairs of search(sink) to the caller's sink, in the caller's environment, and flushes it. What
-/// a failed search has left there is forgotten. Returns what the search returns.
+/// Delivers the pairs of search(sink) to the caller's sink, in the caller's environment, and flushes it.
+/// Discards what a failed search has left in its buffer. Returns what the search returns.
 template <typename Search>
 auto deliver(const core::DefaultEnvironment& environment, PairSink& pairs, const Search& search) {
   try {
@@ -159,7 +159,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     return absent_left + absent_right;
   }
 
-  /// Appends the places of the invalid ones of `boxes` to quarantined_, counted on from `first`.
+  /// Appends the places of invalid boxes to quarantined_, counted on from `first`.
   void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
     if (bad_input == BadInput::reject) return;
     for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -1,4 +1,4 @@
-// GroupedSearch: finds the pairs that filters let count, by searches of boxes that accept each other.
+// GroupedSearch: finds the pairs that filters accept, in groups of boxes that accept each other.
 #include "find/grouped_search.hpp"
 
 #include <algorithm>
@@ -15,30 +15,30 @@
 namespace broadside::find {
 namespace {
 
-/// Up to this many boxes have too few pairs for filters to matter.
+/// Up to this number of boxes, there are too few pairs for filters to matter.
 constexpr std::size_t max_ungrouped_boxes = 128;
 
 constexpr std::size_t max_sample = 1024;
 
-/// Boxes are grouped if filters reject at least this number of overlapping pairs per box. A sample of
-/// sqrt(n) of n boxes then has about as many in all, which is enough to tell them from chance.
+/// Boxes are grouped if filters reject at least this number of overlapping pairs per box. A sample of sqrt(n)
+/// of n boxes then has about this number in all, enough to rule out chance.
 constexpr double rejected_per_box = 8;
 
-/// Boxes are also grouped if at least one of this number can accept no other one.
+/// Boxes are also grouped if at least one in this number accepts no other box.
 constexpr std::size_t boxes_per_lonely_box = 8;
 
-/// Several searches must promise to cost this many times less than one: boxes that are searched several times
-/// cost more where they overlap many others, which PlanCosts does not know.
+/// Several searches must promise to cost this many times less than one. PlanCosts does not know that a box
+/// with many overlaps costs more in each search.
 constexpr double min_gain = 2;
 
-/// All pairs of boxes are compared where they are no more than this number per box: any structure costs more.
+/// Up to this number of pairs of boxes per box, comparing them all costs less than any structure.
 constexpr std::size_t compared_per_box = 128;
 
 bool is_lonely(const Filter& filter) {
   return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
 }
 
-/// Passes on the pairs that filters let count. `Filters` has a filter at each box's place.
+/// Passes on the pairs that filters accept. `Filters` is indexed by the place of a box.
 template <typename Filters>
 struct PassAccepted {
   bool operator()(Pair pair, Pair& to) const {
@@ -49,7 +49,7 @@ struct PassAccepted {
   Filters filters;
 };
 
-/// Passes on the pairs of one search under the ids of its boxes, if the test lets them.
+/// Passes on the pairs of one search that its test accepts, with the boxes' ids.
 struct PassOfGroups {
   bool operator()(Pair pair, Pair& to) const {
     const BoxId a = ids[index(pair.first)];
@@ -82,7 +82,7 @@ std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const 
   Checkpoint checkpoint(input.workers.checkpoint);
   for (const PlannedSearch& planned : plan_.searches()) {
     const std::optional<Statistics> some = run(planned, searcher, input, filters, pairs);
-    // A search counts anew for its own checkpoint, which many small ones never reach.
+    // Each search counts for a checkpoint of its own, which many small searches never reach.
     checkpoint.count(boxes_.size() + (some ? some->tests : 0));
     if (!some || !sum) {
       sum.reset();
@@ -111,8 +111,8 @@ bool GroupedSearch<D>::is_grouped(const SearchInput<D>& input, const BoxFilters&
          plan_.cost() < cost_of_all / (plan_.searches().size() > 1 ? min_gain : 1);
 }
 
-/// Compares a sample of the boxes with each other, in about half a test for each box there is. Sets what is
-/// known of rejected pairs, and returns whether grouping may pay.
+/// Compares a sample of the n boxes with each other, in at most n / 2 tests. Sets rejected_ and weight_, and
+/// returns whether grouping may pay.
 template <int D>
 bool GroupedSearch<D>::sample(const SearchInput<D>& input, const BoxFilters& filters) {
   const std::size_t boxes = input.boxes.size();
@@ -184,7 +184,7 @@ void GroupedSearch<D>::gather(const SearchInput<D>& input, std::span<const std::
   }
 }
 
-/// Whether the gathered boxes are searched by brute force, which is then at hand.
+/// Whether to search the gathered boxes by brute force. If so, brute_force_ is set.
 template <int D>
 bool GroupedSearch<D>::compares_all(std::size_t left_count) {
   const std::uint64_t boxes = boxes_.size();

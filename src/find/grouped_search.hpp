@@ -1,4 +1,4 @@
-// GroupedSearch: finds the pairs that filters let count, by searches of boxes that accept each other.
+// GroupedSearch: finds the pairs that filters accept, in groups of boxes that accept each other.
 #pragma once
 
 #include <cstddef>
@@ -20,26 +20,27 @@
 
 namespace broadside::find {
 
-/// Where filters reject few pairs, a pair is found and then tested. A sample of the boxes tells how many
-/// overlapping pairs they reject. Where these are many, boxes are grouped by filter, and FilterPlan says
-/// which groups are searched together. Those with so few pairs of boxes that any structure costs more are
-/// searched by brute force, whichever algorithm was asked for.
+/// If filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells how many
+/// overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and FilterPlan
+/// decides which groups are searched together. Searches too small for any structure use brute force,
+/// whichever algorithm was asked for.
 ///
 /// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
 template <int D>
 class GroupedSearch {
  public:
   /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
-  /// sets, pairs within a set may be written too. Returns the sum of what the searches did; nothing if one of
-  /// them did not count. A search that gives up calls the successor of `input`, which can only end the whole:
-  /// places then mean boxes of one group. Throws what the searcher and the sink throw.
+  /// sets, pairs within a set may be written too. Returns the sum of what the searches did, or nothing if one
+  /// of them did not count. A search that gives up calls the successor of `input`. The successor must end the
+  /// whole search, since ids then refer to the boxes of one group. Throws what the searcher and the sink
+  /// throw.
   std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
                                    const BoxFilters& filters, PairSink& pairs);
 
-  /// How many searches the last one took.
+  /// The number of searches that the last search() made.
   std::size_t searches() const noexcept { return searches_; }
 
-  /// As Searcher::explanation(), for the last search of `searcher`. Of several, that of the last one.
+  /// As Searcher::explanation(); if there were several searches, for the last one.
   std::string explanation(const Searcher<D>& searcher) const;
 
  private:
@@ -62,11 +63,11 @@ class GroupedSearch {
   FilterPlan plan_;
   std::unique_ptr<Searcher<D>> brute_force_;  // null until it is needed, and in a build without it
   std::size_t searches_ = 0;
-  bool has_compared_all_ = false;  // whether the last one of several searches was brute force's
+  bool has_compared_all_ = false;  // whether the last of several searches used brute force
   std::vector<SampledBox> sample_;
   std::vector<std::pair<std::size_t, std::size_t>> rejected_;  // places of sampled boxes
   std::vector<FilterPlan::GroupPair> rejected_groups_;
-  double weight_ = 0;               // the pairs of boxes that a pair of the sample stands for
+  double weight_ = 0;               // the number of pairs of boxes that a pair of the sample stands for
   core::LargeArray<Box<D>> boxes_;  // of one search
   core::LargeArray<Box<D, double>> doubles_;
   core::LargeArray<BoxId> ids_;

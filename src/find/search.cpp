@@ -18,8 +18,8 @@
 namespace broadside::find {
 namespace {
 
-/// Passes pairs on under other ids; between two sets, only pairs of a box of each. Within a set the ids
-/// ascend with the places they stand for, so that its pairs stay ordered.
+/// Renames pairs and, between two sets, drops pairs within a set. Within a set, ids ascend with places, so
+/// the first id of a pair stays the lower one.
 struct Rename {
   bool operator()(Pair pair, Pair& to) const {
     to = {ids[index(pair.first)], ids[index(pair.second)]};
@@ -30,7 +30,7 @@ struct Rename {
   std::size_t left_count;
 };
 
-/// Passes on pairs between the boxes before place `left_count` and the others, as places in those two sets.
+/// Passes on pairs between the first `left_count` boxes and the others, as places in these two sets.
 struct PassBetween {
   bool operator()(Pair pair, Pair& to) const {
     to = {pair.first, BoxId{index(pair.second) - left_count}};
@@ -50,7 +50,7 @@ struct PassNotIgnored {
   const core::PairSet* ignored;
 };
 
-/// Passes pairs of two boxes below `boxes` on, and throws for the first other one.
+/// Passes on pairs of two different boxes below `boxes`; throws for any other pair.
 class IdCheck final : public core::FilterSink {
  public:
   IdCheck(std::size_t boxes, PairSink& target) : FilterSink(target), boxes_(boxes) {}
@@ -214,7 +214,7 @@ std::optional<Statistics> Search<D, Real>::search_in_groups(const SearchInput<D>
   return groups_->search(*searcher_, input, filters, pairs);
 }
 
-/// Appends the present ones of `boxes` to present_ and their places to ids_.
+/// Appends the present boxes to present_ and their places to ids_.
 template <int D, typename Real>
 void Search<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
   present_.reserve(present_.size() + boxes.size());

@@ -1,4 +1,4 @@
-// Search: a Searcher and what surrounds it except the check of the input: absent boxes, doubles, filters.
+// Search: a Searcher and what surrounds it, except input checks: absent boxes, doubles, filters.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@
 
 namespace broadside::find {
 
-/// A searcher of the user's that throws std::logic_error for the first pair with an id out of range:
-/// everything behind a searcher reads arrays by the ids that it writes.
+/// Makes a user's searcher throw std::logic_error for a pair with an id out of range, since later stages
+/// index arrays by the ids.
 template <int D>
 std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher);
 
-/// The searcher of an algorithm by its settings, checked if a user registered the algorithm. The library's
-/// own ones and the peers of the comparison are tested, and not slowed down.
+/// Makes the searcher of an algorithm, checked if a user registered the algorithm. The library's algorithms
+/// and the peers of the comparison are tested, so they need no check that would slow them down.
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings);
 
-/// How one search is made.
+/// Options of one search.
 template <int D>
 struct SearchOptions {
   PairFilters filters{};
@@ -43,16 +43,16 @@ struct SearchOptions {
   std::optional<std::size_t> absent{};
 };
 
-/// Finds pairs of boxes of which some may be absent. Boxes that are not present pair with nothing. Filters
-/// are one for each box, or none. Flushes no sink of the caller's. Keeps its memory.
+/// Finds pairs of boxes, some of which may be absent. Boxes that are not present form no pairs. There is one
+/// filter for each box, or none. Flushes no sink of the caller. Keeps its memory.
 template <int D, typename Real>
 class Search {
  public:
   /// `tests_doubles`: as in Algorithm.
   Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles);
 
-  /// Checks boxes as core::check_boxes() does, and returns how many are absent or quarantined. Of several
-  /// workers, each names the first box at fault of its range, and the first such exception is thrown.
+  /// Checks boxes as core::check_boxes() does, and returns how many are absent or quarantined. With several
+  /// workers, each checks a range, and the exception of the first range with an invalid box is thrown.
   static std::size_t count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
                                   BadInput bad_input, const char* which = "");
 
@@ -60,7 +60,7 @@ class Search {
   std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,
                                  PairSink& pairs);
 
-  /// Every pair of a box of `left` and one of `right`, as places in the two.
+  /// Every pair of a box of `left` and a box of `right`, as places in the two.
   std::optional<Statistics> find_between(std::span<const Box<D, Real>> left,
                                          std::span<const Box<D, Real>> right, const SearchOptions<D>& options,
                                          PairSink& pairs);
@@ -69,7 +69,7 @@ class Search {
   std::optional<Statistics> find_across(std::span<const Box<D, Real>> boxes, std::size_t left_count,
                                         const SearchOptions<D>& options, PairSink& pairs);
 
-  /// As Searcher::explanation(). Of several searches of boxes in groups, that of the last one.
+  /// As Searcher::explanation(); if there were several searches of groups, for the last one.
   std::string explanation() const;
 
  private:
