@@ -24,15 +24,15 @@ namespace broadside::track {
 /// Thrown from a search that would exceed its limit of pairs or tests.
 struct LimitPassed {};
 
-/// Ends a search that gives up, as if it had passed a limit of tests.
+/// Throws LimitPassed when a search gives up because it makes too many tests.
 template <int D>
 class LimitedTests final : public Successor<D> {
  public:
   void finish(const typename Successor<D>::IsMissing& /*is_missing*/) override { throw LimitPassed(); }
 };
 
-/// Appends candidates to a vector, and throws before there are more than `max`, plus `max_per_holding` for
-/// each that holds: its boxes in `boxes` overlap.
+/// Appends candidates to a vector. Throws LimitPassed before there are more than `max`, plus
+/// `max_per_holding` for each candidate whose boxes in `boxes` overlap.
 template <int D, typename Real>
 class CandidateCollector final : public PairSink {
  public:
@@ -57,13 +57,13 @@ class CandidateCollector final : public PairSink {
   }
 
   const std::vector<Pair>& candidates_;
-  PairCollector collector_;  // because it asks for large pages
+  PairCollector collector_;  // requests large pages
   std::size_t max_;
   std::size_t max_per_holding_;
   std::span<const Box<D, Real>> boxes_;
 };
 
-/// Passes pairs on, and throws when all threads together have passed more than `max_pairs`.
+/// Passes pairs on. Throws LimitPassed before all threads together pass more than `max_pairs`.
 class LimitSink final : public core::FilterSink {
  public:
   LimitSink(std::size_t max_pairs, PairSink& target)

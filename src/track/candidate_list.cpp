@@ -1,4 +1,4 @@
-// CandidateList.
+// CandidateList: chooses margins, and keeps and tests the pairs of enlarged boxes.
 #include "track/candidate_list.hpp"
 
 #include <algorithm>
@@ -29,9 +29,9 @@ constexpr std::size_t max_candidates_per_box = 16;
 /// Boxes are enlarged up to this displacement in a frame, as a fraction of their shortest side.
 constexpr double max_displacement = 0.0125;
 
-/// A margin divided by that displacement: about the minimum number of frames for which boxes stay within it.
-/// Then the limits of a margin, as fractions of a box's shortest side: a large margin makes far more
-/// candidates than pairs.
+/// A margin divided by the displacement in a frame: about the minimum number of frames for which boxes stay
+/// within it. Then the limits of a margin, as fractions of a box's shortest side: a large margin makes far
+/// more candidates than pairs.
 constexpr double frames_within_margin = 48;
 constexpr double min_margin = 0.01;
 constexpr double max_margin = 0.2;
@@ -150,13 +150,12 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
   return statistics;
 }
 
-/// The maximum number of candidates.
 template <int D, typename Real>
 std::size_t CandidateList<D, Real>::max_candidates() const noexcept {
   return max_candidates_per_box * now_.size() + max_candidates_per_pair * holding_;
 }
 
-/// Sets begun_ and ended_. Throws LimitPassed.
+/// Sets begun_ and ended_ to the candidates that began and ended. Throws LimitPassed.
 template <int D, typename Real>
 Statistics CandidateList<D, Real>::find_candidates(const Change<D, Real>& change,
                                                    FollowOrFind<D, Real>& pairs) {
@@ -188,7 +187,7 @@ Statistics CandidateList<D, Real>::find_candidates(const Change<D, Real>& change
   return statistics.value_or(Statistics{});
 }
 
-/// Sets left_ and flags_, and enlarges the boxes that are in left_.
+/// Sets left_ and flags_, and enlarges the boxes in left_.
 template <int D, typename Real>
 void CandidateList<D, Real>::enlarge_anew(const Change<D, Real>& change) {
   const std::size_t size = change.now.size();
@@ -212,7 +211,7 @@ void CandidateList<D, Real>::enlarge_anew(const Change<D, Real>& change) {
   }
 }
 
-/// Takes out the candidates that ended, whose pairs ended if they held, and puts in those that began.
+/// Removes the candidates that ended, with an event if they held, and inserts those that began.
 template <int D, typename Real>
 void CandidateList<D, Real>::change_candidates(PairSink& ended) {
   if (begun_.empty() && ended_.empty()) return;
@@ -253,7 +252,7 @@ void CandidateList<D, Real>::test_candidates(std::span<const Box<D, Real>> boxes
   });
 }
 
-/// Tests the candidates, and reports those that hold now and did not, or the other way round.
+/// Tests the candidates, and reports those that began or ceased to hold.
 template <int D, typename Real>
 void CandidateList<D, Real>::report(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
   std::swap(held_, holds_);
@@ -264,7 +263,7 @@ void CandidateList<D, Real>::report(const Change<D, Real>& change, PairSink& beg
     holding_ += holds_[i];
     holding_ -= held_[i];
   };
-  // Nearly all are as they were.
+  // Nearly all candidates are unchanged.
   constexpr std::size_t at_once = sizeof(std::uint64_t);
   std::size_t i = 0;
   for (; i + at_once <= candidates_.size(); i += at_once) {

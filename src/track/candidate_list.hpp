@@ -1,4 +1,4 @@
-// CandidateList: the pairs of enlarged boxes, of which each frame tests all.
+// CandidateList: the pairs of enlarged boxes, all of which are tested in each frame.
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,20 @@
 
 namespace broadside::track {
 
-/// A Verlet list (L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). Enlarged boxes change
-/// only where a box has left its own; a FollowOrFind brings their pairs, the candidates, up to date. The
+/// A Verlet list (L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). An enlarged box changes
+/// only when its box leaves it; a FollowOrFind then updates the pairs of enlarged boxes, the candidates. The
 /// events are those of the boxes themselves.
 ///
-/// Cost of a frame: a comparison a changed box, a test a candidate, and what FollowOrFind takes for the boxes
-/// that left theirs. The number of candidates, and of tests to find them, is limited by the numbers of boxes
-/// and pairs. The limit is checked during the search.
+/// Cost of a frame: a comparison per changed box, a test per candidate, and the cost of FollowOrFind for the
+/// boxes that left their enlarged boxes. The numbers of boxes and pairs limit the number of candidates, and
+/// of tests to find them; the limit is checked during the search.
 template <int D, typename Real>
 class CandidateList {
  public:
-  /// The margins for boxes, from a sample of the changed ones, if many boxes moved and hardly any moved far.
-  /// Otherwise nothing.
+  /// Margins that suit a sample of the changed boxes; nothing if these moved too far or not at all.
   static std::optional<core::Margins<D, Real>> margins_for(const Change<D, Real>& change);
 
-  /// Enlarges all boxes of a frame, whose events are already reported, and finds the candidates. Returns the
+  /// Enlarges all boxes of a frame whose events have been reported, and finds the candidates. Returns the
   /// number of tests. Throws LimitPassed, and whatever else ends a search. `changes_pairs` is set as soon as
   /// `pairs` no longer knows the boxes themselves.
   std::uint64_t start(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
@@ -41,16 +40,15 @@ class CandidateList {
   Statistics update(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs, PairSink& begun,
                     PairSink& ended);
 
-  /// The last update.
+  /// Counts of the last update.
   const EnlargedFrame& last() const noexcept { return last_; }
 
-  /// Whether there are more candidates than are allowed now that pairs have ended.
+  /// Whether there are too many candidates for the pairs that are left.
   bool exceeds_limit() const noexcept { return candidates_.size() > max_candidates(); }
 
   const core::Margins<D, Real>& margins() const noexcept { return margins_; }
   std::size_t candidate_count() const noexcept { return candidates_.size(); }
 
-  /// Releases the memory.
   void release() noexcept {
     core::give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
   }
@@ -69,7 +67,7 @@ class CandidateList {
 
   core::Margins<D, Real> margins_{};
   EnlargedFrame last_;
-  std::vector<Box<D, Real>> before_;  // enlarged, of the frame before
+  std::vector<Box<D, Real>> before_;  // enlarged boxes of the frame before
   std::vector<Box<D, Real>> now_;
   std::vector<BoxId> left_;          // boxes that left their enlarged ones, or whose filter changed
   std::vector<std::uint8_t> flags_;  // for each box, 1 if it is in left_; all 0 between updates
@@ -77,7 +75,7 @@ class CandidateList {
   std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap
   std::vector<std::uint8_t> held_;   // likewise, in the frame before
   std::size_t holding_ = 0;          // candidates that hold
-  std::vector<Pair> begun_;          // candidates
+  std::vector<Pair> begun_;          // candidates that began
   std::vector<Pair> ended_;
   std::vector<Pair> spare_;
   core::Parallel parallel_;

@@ -1,5 +1,5 @@
-// DoubleFollower: follows boxes of doubles by their floats. A structure tells which pairs may have changed,
-// and a last test in double whether they did.
+// DoubleFollower: follows double boxes as floats. A structure of floats tells which pairs may have changed,
+// and a test in double decides.
 #pragma once
 
 #include <array>
@@ -19,20 +19,19 @@
 
 namespace broadside::track {
 
-/// Rounding keeps order, as in find::DoubleSearch: boxes that overlap in double do in float. So every pair
-/// that began or ended is of a changed box and one that it overlaps, or did, as floats. How coordinates are
-/// rounded is chosen by the boxes of the frame in which it starts, and anew when boxes have moved to where
-/// that makes too many false candidates. Cost: that of the floats, and a test in double for each candidate.
+/// Rounding keeps order, as in find::DoubleSearch, so boxes that overlap in double overlap in float. So every
+/// pair that began or ended is of a changed box and a box that it overlaps, or overlapped, in float. The
+/// rounding is chosen for the boxes of the first frame, and again when boxes have moved to where it makes too
+/// many false candidates. Cost: that of the floats, and a test in double for each candidate.
 template <int D>
 class DoubleFollower {
  public:
-  /// `floats` heeds Change::wants_candidates.
+  /// `floats` must support Change::wants_candidates.
   explicit DoubleFollower(std::unique_ptr<Follower<D>> floats) : floats_(std::move(floats)) {}
 
-  /// As Follower::follow(). Statistics::hits are the candidates.
-  /// Boxes that rounding makes equal cause false candidates. If there are too many, even in the middle of a
-  /// frame, all boxes are rounded anew. Events that were already written are harmless: an event may be
-  /// written more than once.
+  /// As Follower::follow(). Statistics::hits are the candidates. Boxes that rounding makes equal cause false
+  /// candidates. If there are too many, even in the middle of a frame, all boxes are rounded anew. Events may
+  /// then be written twice, which is harmless.
   std::optional<Statistics> follow(const Change<D, double>& change, PairSink& begun, PairSink& ended) {
     const std::uint64_t max_false = max_false_candidates * change.now.size();
     if (!change.rebuild && false_candidates_ <= max_false) {
@@ -52,7 +51,7 @@ class DoubleFollower {
   }
 
  private:
-  /// False candidates a box that cost about what rounding all boxes anew does.
+  /// The number of false candidates per box that costs about as much as rounding all boxes anew.
   static constexpr std::uint64_t max_false_candidates = 32;
 
   struct TooManyFalse {};
@@ -92,7 +91,7 @@ class DoubleFollower {
     return by_quantiles_ ? core::rounded(box, quantiles_) : core::rounded(box, fit_);
   }
 
-  /// Rounds all boxes of the frame before, by a rounding that suits this one.
+  /// Chooses a rounding that suits this frame, and rounds all boxes of the frame before with it.
   void start(const Change<D, double>& change) {
     false_candidates_ = 0;
     fit_ = core::fit_linear<D>(change.now);

@@ -1,4 +1,4 @@
-// FindAnew.
+// FindAnew: compares the pairs of two frames.
 #include "track/find_anew.hpp"
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace broadside::track {
 namespace {
 
-/// Pairs that one of several threads compares at a time.
+/// The number of pairs that a thread compares at a time.
 constexpr std::size_t pairs_at_once = 4096;
 
-/// Whether a filter has changed: then a pair may differ whose boxes overlap in both frames.
+/// Whether a filter has changed. A pair may then begin or end while its boxes overlap in both frames.
 template <int D, typename Real>
 bool has_changed_filter(const Change<D, Real>& change) {
   return !change.filters_now.empty() && std::ranges::any_of(change.changed, [&](BoxId id) {
@@ -25,8 +25,7 @@ bool has_changed_filter(const Change<D, Real>& change) {
   });
 }
 
-/// Calls `report` for each of `pairs` with a changed box whose boxes do not overlap in `boxes`; unless
-/// `by_boxes`, for every one with a changed box.
+/// Calls `report` for each pair with a changed box; if `by_boxes`, leaves out those that overlap in `boxes`.
 template <int D, typename Real, typename Report>
 void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
                    std::span<const Box<D, Real>> boxes, bool by_boxes, Report report) {
@@ -46,11 +45,11 @@ void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
   }
 }
 
-/// Writes what began and what ended, given `found`, all pairs that overlap now, and `kept`, all those that
-/// held in the frame before.
+/// Writes the pairs that began and ended. `found` are all pairs that hold now, and `kept` all that held in
+/// the frame before.
 ///
-/// No pair is looked up in the other list: its boxes tell whether it was one in the other frame, and two
-/// boxes at rest need no test. Most pairs go on, so that is tested first.
+/// No pair is looked up in the other list: its boxes tell whether it was a pair in the other frame, and two
+/// boxes at rest need no test. Most pairs persist, so that is tested first.
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
                         std::span<const Pair> kept, core::Parallel& parallel, PairSink& begun,

@@ -20,27 +20,26 @@
 
 namespace broadside::track {
 
-/// Pairs that are tested in the time that a search takes for a box.
+/// The number of pairs that are tested in the time that a search takes per box.
 inline constexpr std::size_t pairs_per_box = 8;
 
 inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
-/// Keeps the pairs of the last frame. They are not kept up to date while frames are handled otherwise, which
-/// would cost more than it saves: the next frame then finds those of the frame before as well.
-///
-/// A pair that filters refuse is neither kept nor counted.
+/// Keeps the pairs of the last frame, without those that filters reject. It does not update them in frames
+/// that are handled in another way, which would cost more than it saves; the next frame then also finds the
+/// pairs of the frame before.
 template <int D, typename Real>
 class FindAnew {
  public:
   FindAnew(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles)
       : search_(std::move(searcher), tests_doubles) {}
 
-  /// Writes the events of a change. Throws LimitPassed where `max_pairs` is not no_limit and there are more
+  /// Writes the events of a change. Throws LimitPassed if `max_pairs` is not no_limit and there are more
   /// pairs, or a search makes far more tests than the numbers of boxes and pairs justify.
   std::optional<Statistics> update(const Change<D, Real>& change, std::size_t max_pairs, PairSink& begun,
                                    PairSink& ended);
 
-  /// Writes all pairs. Throws LimitPassed where the search makes far more tests than justified.
+  /// Writes all pairs. Throws LimitPassed if the search makes far more tests than justified.
   std::optional<Statistics> find_within_limits(std::span<const Box<D, Real>> boxes,
                                                std::span<const Filter> filters, const Workers& workers,
                                                PairSink& pairs);
@@ -48,7 +47,7 @@ class FindAnew {
   /// The number of pairs after an update().
   std::size_t pair_count() const noexcept { return pairs_.size(); }
 
-  /// Says that a frame is handled otherwise; forget() also releases the memory.
+  /// Call it if a frame is handled in another way. forget() also releases the memory.
   void skip() noexcept { has_pairs_ = false; }
 
   void forget() noexcept {
@@ -64,7 +63,7 @@ class FindAnew {
                                  const Workers& workers, std::size_t max_pairs, std::vector<Pair>& pairs);
 
   find::Search<D, Real> search_;
-  std::vector<Pair> pairs_;  // those of the last frame, if has_pairs_
+  std::vector<Pair> pairs_;  // of the last frame, if has_pairs_
   std::vector<Pair> found_;
   core::Parallel parallel_;
   bool has_pairs_ = false;

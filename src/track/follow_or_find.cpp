@@ -1,4 +1,4 @@
-// FollowOrFind.
+// FollowOrFind: follows or finds by its policy, starts structures, and explains the choice.
 #include "track/follow_or_find.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace broadside::track {
 namespace {
 
-/// Boxes that are followed at first to see what a mover costs.
+/// The number of boxes followed at first, to measure the cost of a mover.
 constexpr std::size_t tried_movers = 64;
 
 template <int D>
@@ -44,8 +44,8 @@ std::optional<Statistics> FollowOrFind<D, Real>::update(const Change<D, Real>& c
   if (was_followed_) return follow(change, begun, ended);
   const std::optional<Statistics> statistics = find_anew_->update(change, max_pairs_, begun, ended);
   policy_.found(change.now.size(), find_anew_->pair_count(), statistics);
-  // After a first frame come others, most often with few changes: what follows them is made ready with it,
-  // so that the second frame does not take longer than those after it.
+  // Frames after the first usually have few changes. The structure that follows them is built now, so that
+  // the second frame does not take longer than later ones.
   if (change.rebuild && policy_.update() == Update::automatic && !structures_.empty())
     start_following(change.now, change.workers);
   return statistics;
@@ -62,7 +62,7 @@ std::optional<Statistics> FollowOrFind<D, Real>::follow(const Change<D, Real>& c
   return statistics;
 }
 
-/// The structure in use. One that has not started keeps no memory.
+/// The structure in use; makes it if it does not exist yet.
 template <int D, typename Real>
 auto FollowOrFind<D, Real>::follower() -> Followed& {
   if (!follower_ || follower_number_ != policy_.current()) {
@@ -81,12 +81,12 @@ auto FollowOrFind<D, Real>::followed(std::unique_ptr<Follower<D>> follower) -> s
     return std::make_unique<DoubleFollower<D>>(std::move(follower));
 }
 
-/// Starts the structure that costs least, by trying one after the other.
+/// Tries structures, the cheapest first by what is known, and starts the cheapest.
 template <int D, typename Real>
 void FollowOrFind<D, Real>::start_following(std::span<const Box<D, Real>> boxes, const Workers& workers) {
   std::vector<std::uint8_t> was_tried(structures_.size());
   do {
-    // The last one may be one that was tried, and turned out to be the best.
+    // The last structure may have been tried before, and turned out to be the cheapest.
     policy_.use(policy_.cheapest());
     try_out(boxes, workers);
   } while (std::exchange(was_tried[policy_.current()], std::uint8_t{1}) == 0 &&
@@ -94,7 +94,7 @@ void FollowOrFind<D, Real>::start_following(std::span<const Box<D, Real>> boxes,
   policy_.settle();
 }
 
-/// Starts the structure without a few boxes, which it then takes in: that tells what a mover costs.
+/// Starts the structure without a few boxes and then adds these, to measure the cost of a mover.
 template <int D, typename Real>
 void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const Workers& workers) {
   std::vector<Box<D, Real>> before(boxes.begin(), boxes.end());

@@ -1,5 +1,4 @@
-// FollowOrFind: follows what changed in a structure that stays, or finds all pairs anew, whichever costs less
-// in this frame.
+// FollowOrFind: follows changes in a persistent structure or finds all pairs anew, whichever costs less.
 #pragma once
 
 #include <cstddef>
@@ -19,24 +18,25 @@
 
 namespace broadside::track {
 
-/// What a tracker brings its pairs up to date by.
+/// The means by which a tracker updates its pairs.
 template <int D>
 struct TrackerPlan {
   Update update = Update::automatic;
   std::vector<FollowerChoice<D>> structures{};  ///< may be empty
-  std::optional<Settings> settings{};           ///< to make structures by
-  std::unique_ptr<Follower<D>> follower{};      ///< of the first structure, if it is made already
-  std::unique_ptr<Searcher<D>> searcher{};      ///< may be null where `update` is `follow`
+  std::optional<Settings> settings{};           ///< for making structures
+  std::unique_ptr<Follower<D>> follower{};      ///< of the first structure, if already made
+  std::unique_ptr<Searcher<D>> searcher{};      ///< may be null if `update` is `follow`
   bool tests_doubles = false;                   ///< whether the searcher does
   FindCosts find_costs{};
   bool explains = true;  ///< whether there is more than one way
 };
 
-/// Three of a tracker's ways: a structure that compares all boxes, one that follows them, and finding anew.
+/// Three of a tracker's ways: a structure that compares all boxes, a structure that follows them, and finding
+/// all pairs anew.
 ///
-/// When few boxes move it pays to move them in a structure that stays; when many do, to find all pairs anew,
-/// as B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
-/// memory", VLDB 2013). One structure is kept at a time; where there are several, another takes over when the
+/// If few boxes move, it pays to move them in a persistent structure; if many do, to find all pairs anew, as
+/// B. Sowell et al. found for spatial joins ("An experimental analysis of iterated spatial joins in main
+/// memory", VLDB 2013). One structure is kept at a time; if there are several, another takes over when the
 /// first makes many tests.
 template <int D, typename Real>
 class FollowOrFind {
@@ -54,8 +54,8 @@ class FollowOrFind {
     return find_anew_->find_within_limits(boxes, filters, workers, pairs);
   }
 
-  /// To be called after find_within_limits(), with the number of pairs it found and what it did: prepares to
-  /// follow these boxes from the next update on.
+  /// Prepares to follow these boxes from the next update on. Call it after find_within_limits(), with the
+  /// number of pairs that it found and its statistics.
   void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,
                 const std::optional<Statistics>& statistics, const Workers& workers) {
     forget();
@@ -82,8 +82,8 @@ class FollowOrFind {
 
   std::string explanation() const;
 
-  /// The index of the structure that followed the last frame. One that was only made ready for the next frame
-  /// has seen no filters, so its index cannot be used yet.
+  /// The index of the structure that followed the last frame. A structure that was only prepared for the next
+  /// frame has seen no filters, so its index cannot be used yet.
   const BoxIndex<D, Real>* box_index() const noexcept {
     if constexpr (std::is_same_v<Real, float>)
       return was_followed_ && follower_ ? follower_->box_index() : nullptr;
@@ -108,12 +108,12 @@ class FollowOrFind {
   std::optional<Settings> settings_;
   bool explains_;
   FollowPolicy policy_;
-  std::unique_ptr<Followed> follower_;  // null: none was needed yet
+  std::unique_ptr<Followed> follower_;  // null until one is needed
   std::size_t follower_number_ = 0;
-  std::optional<FindAnew<D, Real>> find_anew_;  // none where all frames are followed
+  std::optional<FindAnew<D, Real>> find_anew_;  // empty if all frames are followed
   std::size_t max_pairs_ = no_limit;
   std::size_t changed_ = 0;    // of the last update
-  bool was_followed_ = false;  // whether the last frame was
+  bool was_followed_ = false;  // whether the last frame was followed
 };
 
 }  // namespace broadside::track

@@ -1,4 +1,4 @@
-// FrameStates: the boxes and filters of the last whole frame and of the one that is being taken.
+// FrameStates: the boxes and filters of the last whole frame and of the current one.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace broadside::track {
 
-/// Invalid boxes of a frame count as absent, and are listed as long as they do not change.
+/// Invalid boxes count as absent, and are listed in quarantined() until they change.
 template <int D, typename Real>
 class FrameStates {
  public:
@@ -71,7 +71,7 @@ class FrameStates {
     for (std::size_t i = std::min(known_, frame.boxes.size()); i < size; ++i) take_once(i);
   }
 
-  /// What differs between the two frames, once one is taken.
+  /// The change from the last whole frame to the one taken.
   Change<D, Real> change(bool rebuild, const Workers& workers) const noexcept {
     return {.before = before_,
             .now = now_,
@@ -83,10 +83,10 @@ class FrameStates {
             .workers = workers};
   }
 
-  /// Takes the memory that keep() needs.
+  /// Reserves the memory that keep() needs.
   void prepare_to_keep() { quarantined_.reserve(quarantined_.size() + invalid_.size()); }
 
-  /// Makes the frame that was taken the last whole one.
+  /// Makes the frame taken the last whole frame.
   void keep(const Frame<D, Real>& frame, core::Parallel& parallel) noexcept {
     const std::size_t size = frame.boxes.size();
     if (!quarantined_.empty() || !invalid_.empty()) {
@@ -102,7 +102,7 @@ class FrameStates {
     };
     try {
       parallel.for_ranges(changed_.size(), keep_changed);
-    } catch (...) {  // the executor's, after some of its tasks
+    } catch (...) {  // from the executor, after some of its tasks
       keep_changed({0, changed_.size()}, 0);
     }
     if (!filters_now_.empty()) {
@@ -115,7 +115,7 @@ class FrameStates {
     known_ = size;
   }
 
-  /// How many boxes there are to be changed: those of the last frame, whether or not it was a whole one.
+  /// The number of boxes of the last frame, whole or not.
   std::size_t size() const noexcept { return before_.size(); }
 
   /// The boxes of the last whole frame, and their filters.
@@ -137,10 +137,10 @@ class FrameStates {
   std::size_t known_ = 0;  // an update that failed may have left before_ longer
   std::vector<Box<D, Real>> now_;
   std::vector<Filter> filters_before_;  // both empty until there are filters
-  std::vector<Filter> filters_now_;     // after keep() as long as it was, for an index that uses it
+  std::vector<Filter> filters_now_;     // keep() does not shorten it: an index may use it
   std::vector<BoxId> changed_;
   std::vector<std::uint8_t> flags_;
-  std::vector<BoxId> invalid_;  // of the changed ones
+  std::vector<BoxId> invalid_;  // among the changed boxes
   std::vector<BoxId> quarantined_;
 };
 

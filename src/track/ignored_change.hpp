@@ -18,8 +18,8 @@ namespace broadside::track {
 
 class IgnoredChange {
  public:
-  /// Takes the set of the next frame, or null, and the pairs listed as changed. `takes_all`: every difference
-  /// is looked for, not only what is listed.
+  /// Takes the next frame's set, or null, and the pairs listed as changed. `takes_all`: looks for all
+  /// differences, not only those listed.
   void take(const IgnoredPairs* now, std::span<const Pair> listed, bool takes_all) {
     has_set_ = now != nullptr;
     newly_ = 0;
@@ -57,8 +57,8 @@ class IgnoredChange {
     }
   }
 
-  /// Makes the set of the next frame that of the last whole one, in two steps: the first takes memory and can
-  /// be undone, the second does neither.
+  /// insert() and keep() make the next frame's set that of the last whole frame. insert() allocates memory
+  /// and can be undone; keep() does not and cannot.
   void insert() {
     const auto middle = std::partition(toggled_.begin(), toggled_.end(),
                                        [this](Pair pair) { return !pairs_.contains(pair); });
@@ -81,11 +81,11 @@ class IgnoredChange {
   std::size_t bytes() const noexcept { return core::bytes_of(toggled_, sorting_) + pairs_.bytes(); }
 
  private:
-  IgnoredPairs pairs_;         // those of the last whole frame
-  bool had_set_ = false;       // whether that had a set
-  bool has_set_ = false;       // whether the next frame has
+  IgnoredPairs pairs_;         // of the last whole frame
+  bool had_set_ = false;       // whether that frame had a set
+  bool has_set_ = false;       // whether the next frame has one
   std::vector<Pair> toggled_;  // pairs that are ignored in one of the two frames, sorted by take()
-  std::size_t newly_ = 0;      // after insert(): the first ones of toggled_ are those newly ignored
+  std::size_t newly_ = 0;      // after insert(): the number of newly ignored pairs, first in toggled_
   std::vector<Pair> sorting_;
 };
 

@@ -1,4 +1,4 @@
-// Tracker.
+// Tracker: takes frames, finds events, delivers them, and keeps its state whole if anything throws.
 #include "broadside/tracker.hpp"
 
 #include <algorithm>
@@ -23,17 +23,17 @@
 namespace broadside {
 namespace {
 
-/// Changes whose boxes are copied in the time that a search takes for a box.
+/// The number of changed boxes that are copied in the time that a search takes per box.
 constexpr std::size_t changes_per_box = 8;
 
-/// Whether it has the tunable `update` as the library's algorithms have it: others have one of their own.
+/// Whether it has the library's tunable `update`; other algorithms may have their own of that name.
 bool chooses_update(const Algorithm& algorithm) {
   return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
     return tunable.name == "update" && std::ranges::find(tunable.choices, "follow") != tunable.choices.end();
   });
 }
 
-/// The ways that an algorithm offers, by its settings.
+/// The ways to update pairs that an algorithm offers with these settings.
 template <int D, typename Real>
 track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settings) {
   const bool is_float = std::is_same_v<Real, float>;
@@ -51,7 +51,7 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
   else
     plan.update = chooses ? core::update_of(settings) : Update::follow;
   plan.explains = chooses && !plan.structures.empty();
-  // Also where it is not used: it says whether the algorithm does the dimension.
+  // Made even if it is not used: this throws if the algorithm does not support the dimension.
   std::unique_ptr<Searcher<D>> searcher = find::searcher_of<D>(algorithm, settings);
   if (plan.update != Update::follow) plan.searcher = std::move(searcher);
   return plan;
@@ -59,7 +59,7 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
 
 }  // namespace
 
-/// What every tracker does around bringing its pairs up to date.
+/// What every tracker does around an Updater.
 template <int D, typename Real>
 class BROADSIDE_HIDDEN Tracker<D, Real>::State {
  public:
@@ -96,7 +96,7 @@ class BROADSIDE_HIDDEN Tracker<D, Real>::State {
     core::sort_unique(ended, sorting);
   }
 
-  /// All memory is taken before the events are delivered, so that nothing can fail after them.
+  /// Allocates all memory before it delivers events, so that nothing can fail afterwards.
   void deliver(PairSink& begun_sink, PairSink& ended_sink) {
     try {
       ignored.insert();
@@ -123,7 +123,7 @@ class BROADSIDE_HIDDEN Tracker<D, Real>::State {
   std::vector<Pair> ended;
   std::vector<Pair> sorting;
   core::Parallel parallel;
-  bool is_dirty = true;  // the last update did not end, or there was none
+  bool is_dirty = true;  // there was no update yet, or the last one failed
 };
 
 template <int D, typename Real>

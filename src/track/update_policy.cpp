@@ -1,4 +1,4 @@
-// FollowPolicy and EnlargePolicy: which of its four ways a tracker goes in a frame.
+// FollowPolicy and EnlargePolicy: which of four ways a tracker takes in a frame.
 #include "track/update_policy.hpp"
 
 #include <algorithm>
@@ -13,20 +13,20 @@ namespace {
 constexpr double usual_tests = 64;
 constexpr double usual_references = 4;
 
-/// A pair that boxes of doubles have to decide, in any structure; and one that a structure has to look at
-/// again in both frames, beyond the usual number for a mover.
+/// The cost of a candidate that double boxes must decide in any structure; and of one that a structure tests
+/// again in both frames, beyond the usual number per mover.
 constexpr double cost_of_shared_candidate = 15;
 constexpr double cost_of_candidate = 5;
 constexpr double usual_candidates = 64;
 
-/// The part of the way back to its expected value that a structure's cost takes each time another one is
-/// weighed: the boxes may have changed.
+/// With each measurement, every structure's known cost moves by this fraction towards its expected value,
+/// since the boxes may have changed.
 constexpr double forgotten = 0.01;
 
-/// Fewer movers say little about what one costs.
+/// Fewer movers say little about the cost of one.
 constexpr std::size_t telling_movers = 64;
 
-/// Up to this number of changed boxes, a structure that follows goes on without a look at costs.
+/// Up to this number of changed boxes, a structure goes on following whatever the costs.
 constexpr std::size_t few_movers = 8;
 
 // Thresholds of enlarged boxes: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
@@ -34,26 +34,26 @@ constexpr std::size_t few_movers = 8;
 /// With fewer boxes, finding all pairs anew takes no longer than keeping candidates.
 constexpr std::size_t min_enlarged = 512;
 
-/// Of all boxes, the part that must move before they are enlarged.
+/// Boxes are enlarged only if at least one in this number changes.
 constexpr std::size_t many_movers = 8;
 
-/// The part below which they are no longer enlarged. Hysteresis: leave a bit later than you enter, so that a
-/// count near the limit does not flip each frame.
+/// They stay enlarged while at least one in this number changes. Hysteresis: a lower limit than for the
+/// start, so that a count near it does not flip each frame.
 constexpr std::size_t too_few_movers = 16;
 
-/// Candidates that are tested in the time that it takes to follow a mover without tests, and each of its
-/// tests; and the frames in a row in which following would have taken less before boxes are no longer
-/// enlarged.
+/// The number of candidates tested in the time of following a mover without its tests, and in that of each of
+/// its tests. Boxes are no longer enlarged after this number of frames in a row in which following would have
+/// cost less.
 constexpr double candidates_per_mover = 96;
 constexpr double candidates_per_test = 1.5;
 constexpr std::size_t max_calm_frames = 8;
 
-/// Boxes that a mover is compared with, in the structure that compares all, in the time that it takes to test
-/// a candidate; with some room before boxes are no longer enlarged.
+/// The number of boxes that the structure that compares all compares with a mover, in the time of testing a
+/// candidate. It leaves some room before boxes are no longer enlarged.
 constexpr double compared_per_candidate = 4;
 
-/// Of the changed boxes, the part that may leave their enlarged ones, and the frames over which it is
-/// averaged: boxes that move alike leave in the same frame.
+/// The fraction of changed boxes that may leave their enlarged boxes, and the number of frames over which it
+/// is averaged: boxes that move alike leave in the same frame.
 constexpr double max_left = 0.1;
 constexpr double averaged_frames = 16;
 constexpr std::size_t min_pause = 16;
@@ -67,7 +67,7 @@ FollowPolicy::FollowPolicy(Update update, const FindCosts& finding,
     : update_(update), finding_(finding), of_box_(finding.box), shared_candidates_{shares_candidates} {
   for (const StructureCosts& structure : structures)
     structures_.push_back({structure, structure.costs.mover});
-  // The structure that compares all is for special cases.
+  // The structure that compares all is only for few boxes or many tests.
   const auto usual =
       std::find_if_not(structures_.begin(), structures_.end(), std::mem_fn(&StructureCosts::compares_all));
   if (usual != structures_.end()) current_ = static_cast<std::size_t>(usual - structures_.begin());
@@ -91,8 +91,8 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   const double saving = now - movers * cost_of_mover(best);
   const bool goes_on = follows_ && now < finding;
   if (saving <= 0) return goes_on;
-  // Starting to follow has a cost as well. It is done at once where the frame costs no more for it, else as
-  // soon as it would have paid: so little is lost where few and many boxes move in alternation.
+  // Starting to follow has a cost as well. It starts once the savings missed so far would have paid for that,
+  // which may be at once. So little is lost if few and many boxes move in alternation.
   change_.saved += saving;
   const double patience = best == current_ ? 1 : change_.patience;
   if (change_.saved < patience * static_cast<double>(boxes) * structures_[best].costs.start) return goes_on;
@@ -101,7 +101,7 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   return true;
 }
 
-/// Hysteresis: few boxes may become a quarter more before other structures are used.
+/// Hysteresis: "few" boxes may become a quarter more before another structure takes over.
 void FollowPolicy::take_count(std::size_t boxes) {
   boxes_ = boxes;
   const bool were_few = std::exchange(are_few_, false);
@@ -200,7 +200,7 @@ bool EnlargePolicy::goes_on(const EnlargedFrame& frame) {
   const auto boxes = static_cast<double>(frame.boxes);
   const auto changed = static_cast<double>(frame.changed);
   const auto candidates = static_cast<double>(frame.candidates);
-  // A mover has the candidates of which it is the first, and those of which it is the second.
+  // A mover is the first box of some candidates and the second of others, hence the 2.
   double following = changed * (candidates_per_mover + candidates_per_test * 2 * candidates / boxes);
   if (may_compare_all_) following = std::min(following, changed * boxes / compared_per_candidate);
   const bool is_calm = following < candidates || frame.changed < frame.boxes / too_few_movers;

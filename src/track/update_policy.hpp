@@ -1,7 +1,7 @@
-// FollowPolicy and EnlargePolicy: which of its four ways a tracker goes in a frame.
+// FollowPolicy and EnlargePolicy: which of four ways a tracker takes in a frame.
 //
-// Both decide by counts alone, of boxes, changes, tests and pairs, so that the same history always goes the
-// same way.
+// Both decide by counts of boxes, changes, tests and pairs alone, so that the same history always leads to
+// the same choices.
 #pragma once
 
 #include <cstddef>
@@ -22,35 +22,34 @@ struct StructureCosts {
   bool compares_all() const noexcept { return max_boxes > 0; }
 };
 
-/// Whether a frame's changes are followed, and in which structure, or all pairs found anew. Cost of a frame:
-/// near the lesser of the two ways', and never much more than finding all pairs anew, since a structure whose
-/// movers make too many tests is not followed.
+/// Decides whether to follow a frame's changes, and in which structure, or to find all pairs anew. A frame
+/// costs about as much as the cheaper of the two, and never much more than finding all pairs anew, since a
+/// structure whose movers make too many tests is not followed.
 class FollowPolicy {
  public:
-  /// `shares_candidates`: the same pairs have to be looked at again in every structure, as those of boxes of
-  /// doubles do.
+  /// `shares_candidates`: every structure has to test the same candidates again, as with double boxes.
   FollowPolicy(Update update, const FindCosts& finding, const std::vector<StructureCosts>& structures,
                bool shares_candidates = false);
 
-  /// Whether the next frame is to be followed, in the structure of number current(). `rebuild` says that
-  /// nothing of the frame before is known.
+  /// Whether to follow the next frame, in structure number current(). `rebuild`: nothing is known of the
+  /// frame before.
   bool follows(std::size_t boxes, std::size_t changed, bool rebuild);
 
-  /// Says that all pairs were found anew, and what that took.
+  /// Call it after all pairs were found anew, with what that took.
   void found(std::size_t boxes, std::size_t pairs, const std::optional<Statistics>& statistics);
 
-  /// Says that the structure followed a frame, and what that took.
+  /// Call it after the structure followed a frame, with what that took.
   void followed(std::size_t changed, const std::optional<Statistics>& statistics);
 
-  /// Says that no structure has the boxes of the last frame.
+  /// Call it when no structure has the boxes of the last frame.
   void lost() noexcept;
 
-  /// The structure in use, and the one that costs least by what is known. use() gives up one for another.
+  /// The structure in use, and the cheapest one by what is known. use() switches to another.
   std::size_t current() const noexcept { return current_; }
   std::size_t cheapest() const;
   void use(std::size_t structure);
 
-  /// After all structures were tried: a change to another is not yet one of many.
+  /// Forgets the changes of structure so far, after all structures were tried.
   void settle() noexcept { change_.patience = 1; }
 
   Update update() const noexcept { return update_; }
@@ -58,10 +57,10 @@ class FollowPolicy {
   /// Whether the structure has the boxes of the last frame.
   bool is_following() const noexcept { return follows_; }
 
-  /// Whether the boxes of the last frame were so few that only the structure that compares all is used.
+  /// Whether the last frame had so few boxes that only the structure that compares all is used.
   bool are_few() const noexcept { return are_few_; }
 
-  /// Up to how many changed boxes following cost less, in the last frame.
+  /// In the last frame, following cost less up to this number of changed boxes.
   std::size_t break_even() const noexcept { return break_even_; }
 
  private:
@@ -69,23 +68,23 @@ class FollowPolicy {
   void take_count(std::size_t boxes);
 
   struct KnownStructure : StructureCosts {
-    double of_mover;  // the cost of a mover when it was last used, or the expected one
+    double of_mover;  // per mover: as last measured, or the expected cost
   };
 
-  /// Candidates that have to be looked at in every structure, and what those of a mover cost.
+  /// Whether all structures must test the same candidates again, and what these cost per mover.
   struct SharedCandidates {
     bool exist;
     double of_mover = 0;
   };
 
-  /// Hysteresis: a change must have paid for itself, more so after each change of structures, so that they do
-  /// not take turns.
+  /// Hysteresis: a change of way must first have paid for itself. After each change of structure, it must
+  /// have paid twice as much, so that structures do not take turns.
   struct ChangeOfWay {
-    double saved = 0;  // what following, or another structure, would have saved since it was last done
+    double saved = 0;  // savings missed since the last change
     double patience = 1;
   };
 
-  /// What the structure took since it was last weighed.
+  /// What the structure did since its cost was last measured.
   struct Seen {
     std::uint64_t movers = 0;
     std::uint64_t tests = 0;
@@ -94,7 +93,7 @@ class FollowPolicy {
 
   Update update_;
   FindCosts finding_;
-  double of_box_;  // the cost of finding all pairs anew, a box
+  double of_box_;  // the cost of finding all pairs anew, per box
   std::vector<KnownStructure> structures_;
   SharedCandidates shared_candidates_;
   std::size_t boxes_ = 0;  // of the last frame
@@ -110,26 +109,26 @@ class FollowPolicy {
 struct EnlargedFrame {
   std::size_t boxes = 0;
   std::size_t changed = 0;     ///< boxes
-  std::size_t left = 0;        ///< of them, those that left their enlarged ones
+  std::size_t left = 0;        ///< of these, boxes that left their enlarged boxes
   std::size_t candidates = 0;  ///< pairs of enlarged boxes
 };
 
-/// Whether boxes are enlarged: while many move and hardly any moves far.
+/// Decides whether boxes are enlarged: while many move and hardly any moves far.
 class EnlargePolicy {
  public:
-  /// `may_compare_all`: a structure that compares all boxes is at hand.
+  /// `may_compare_all`: there is a structure that compares all boxes.
   explicit EnlargePolicy(bool may_compare_all) : may_compare_all_(may_compare_all) {}
 
-  /// Whether to enlarge the boxes after a frame that was handled otherwise, if these moved little enough.
+  /// Whether to enlarge the boxes after a frame without enlarged boxes, if they moved little enough.
   bool tries(std::size_t boxes, std::size_t changed);
 
   void started() noexcept;
 
-  /// Whether boxes stay enlarged. If not, the next try is not soon.
+  /// Whether boxes stay enlarged. If not, the next try comes after a pause.
   bool goes_on(const EnlargedFrame& frame);
 
-  /// Says that there would be too many candidates, that there was no memory for them, or that the search for
-  /// them was ended.
+  /// Call one of these if there would be too many candidates, if memory for them ran out, or if the search
+  /// for them was interrupted.
   void limit_passed() noexcept;
   void out_of_memory() noexcept;
   void interrupted() noexcept;
@@ -138,7 +137,7 @@ class EnlargePolicy {
   void give_up(std::size_t pause) noexcept { pause_ = next_pause_ = pause; }
 
   bool may_compare_all_;
-  double left_share_ = 0;        // of the changed boxes, on average
+  double left_share_ = 0;        // average fraction of the changed boxes
   std::size_t calm_frames_ = 0;  // in a row, in which following would have cost less
   std::size_t pause_ = 1;        // frames with many movers until the next try
   std::size_t next_pause_ = 0;   // hysteresis: grows with each try that did not last

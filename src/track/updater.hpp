@@ -1,4 +1,4 @@
-// Updater: brings the pairs of a tracker up to date in one of four ways, and says in which.
+// Updater: updates the pairs of a tracker in one of four ways, and explains which one.
 #pragma once
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 
 namespace broadside::track {
 
-/// Lets a FollowOrFind handle the boxes; while many of them move and hardly any far, lets it handle enlarged
-/// boxes instead, and tests the candidates. If there would be too many of these, boxes are no longer
-/// enlarged, the frame is processed without margins, and the memory is released.
+/// Passes boxes to a FollowOrFind. While many boxes move and hardly any moves far, passes enlarged boxes
+/// instead, and tests their pairs, the candidates. If there would be too many candidates, it stops enlarging
+/// boxes, processes the frame without margins, and releases the memory.
 template <int D, typename Real>
 class Updater {
  public:
@@ -42,7 +42,7 @@ class Updater {
     return statistics_;
   }
 
-  /// Which way the last update went and why, in a sentence; empty where there is one way.
+  /// In one sentence, which way the last update took and why; empty if there is only one.
   std::string explanation() const {
     if (!was_enlarged_) return pairs_.explanation();
     const EnlargedFrame& frame = candidates_.last();
@@ -52,7 +52,7 @@ class Updater {
            std::to_string(frame.changed) + " boxes that changed left their enlarged ones";
   }
 
-  /// An index of the last frame's boxes, where one is kept anyway; or null. One over enlarged boxes would
+  /// An index of the last frame's boxes, if one is kept anyway; else null. An index of enlarged boxes would
   /// answer queries wrongly.
   const BoxIndex<D, Real>* box_index() const noexcept {
     return boxes_ == Boxes::exact ? pairs_.box_index() : nullptr;
@@ -63,7 +63,7 @@ class Updater {
  private:
   static bool compares_all(const FollowerChoice<D>& structure) { return structure.max_boxes > 0; }
 
-  /// Whether boxes may be enlarged: where structures other than one that compares all are followed by choice.
+  /// Enlarging needs a tracker that may choose and a structure that does not compare all boxes.
   static bool may_enlarge(const TrackerPlan<D>& plan) {
     return plan.update == Update::automatic && !std::ranges::all_of(plan.structures, compares_all);
   }
@@ -115,11 +115,11 @@ class Updater {
       boxes_ = Boxes::enlarged;
       policy_.started();
     } catch (const LimitPassed&) {
-      statistics.tests += candidates_.candidate_count();  // those that are known
+      statistics.tests += candidates_.candidate_count();  // those found so far
       policy_.limit_passed();
       give_up();
     } catch (const std::bad_alloc&) {
-      // The frame itself is whole.
+      // The frame's own events are complete.
       policy_.out_of_memory();
       give_up();
     } catch (...) {  // thrown by a checkpoint or an executor
@@ -141,7 +141,7 @@ class Updater {
   enum class Boxes : std::uint8_t {
     exact,
     enlarged,
-    ending  ///< enlarged ones of former frames: it has to be rebuilt
+    ending  ///< enlarged boxes of earlier frames: it has to be rebuilt
   };
 
   bool may_enlarge_;
