@@ -12,15 +12,15 @@
 
 namespace broadside::debug {
 
-/// Keeps one earlier frame whole, and what changed since. The oldest changes become a part of the
-/// whole frame when there are more of them than allowed, or when they take more bytes than allowed.
+/// Keeps one earlier frame whole, and the changes since. The oldest changes are applied to that frame when
+/// there are more than allowed, or when they take more bytes than allowed.
 template <int D, typename Real>
 class FrameLog {
  public:
   FrameLog(std::size_t max_frames, std::size_t max_bytes) : max_frames_(max_frames), max_bytes_(max_bytes) {}
 
-  /// Makes room for a frame, in which `frame.changed` says what changed, and `toggled` which pairs became
-  /// ignored or no longer are. It counts when add() has taken it.
+  /// Prepares a frame: `frame.changed` lists what changed, and `toggled` the pairs that became ignored or no
+  /// longer are. The frame counts once add() has taken it.
   void prepare(const Frame<D, Real>& frame, const std::vector<Pair>& toggled) {
     Step<D, Real> step{frame.boxes.size(), {frame.changed.begin(), frame.changed.end()}, {}, {}, toggled};
     for (const BoxId id : step.changed) {
@@ -34,7 +34,7 @@ class FrameLog {
       return;
     }
     while (!steps_.empty() && (steps_.size() >= max_frames_ || bytes_ + bytes_of(step) > max_bytes_)) {
-      Replay<D, Real> second = first_;  // a step that is taken by halves could not be taken again
+      Replay<D, Real> second = first_;  // a copy: a half-applied step could not be applied again
       second.next(steps_.front());
       first_ = std::move(second);
       bytes_ -= bytes_of(steps_.front());

@@ -1,4 +1,4 @@
-// Histories played again, and written for people.
+// Replays histories, and writes them as text.
 #include "broadside/debug/history.hpp"
 
 #include "core/input_check.hpp"
@@ -7,7 +7,7 @@
 namespace broadside {
 namespace {
 
-/// `lines`, one a line, without those beyond `max_items`, which are counted.
+/// Appends up to `max_items` lines, and the number of lines if some are left out.
 template <typename Line>
 void add_lines(std::string& text, std::size_t count, std::size_t max_items, const char* indent, Line line) {
   for (std::size_t i = 0; i < std::min(count, max_items); ++i) text += indent + line(i);

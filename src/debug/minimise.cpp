@@ -1,4 +1,4 @@
-// Failing inputs made small by delta debugging.
+// Reduces failing inputs by delta debugging.
 #include "broadside/debug/minimise.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace broadside {
 namespace {
 
-/// Drops from `items` what `still_fails` does without.
+/// Drops items while still_fails() remains true.
 template <typename Items>
 void drop_what_can_go(Items& items, const std::function<bool()>& still_fails,
                       const std::function<bool()>& stop) {
@@ -26,7 +26,7 @@ void drop_what_can_go(Items& items, const std::function<bool()>& still_fails,
   }
 }
 
-/// Whether no step changes a box beyond both its own frame and the one before.
+/// Whether each changed box is in the frame of its step or in the frame before.
 template <int D, typename Real>
 bool is_valid(const History<D, Real>& history) {
   std::size_t known = history.boxes.size();
@@ -38,7 +38,7 @@ bool is_valid(const History<D, Real>& history) {
   return true;
 }
 
-/// Drops the places of the array that can go.
+/// Drops the boxes that the failure does not need.
 template <int D, typename Real>
 void drop_places(History<D, Real>& history, const HistoryFails<D, Real>& fails,
                  const std::function<bool()>& stop) {
@@ -50,7 +50,7 @@ void drop_places(History<D, Real>& history, const HistoryFails<D, Real>& fails,
   history = only<D, Real>(kept, whole);
 }
 
-/// Drops the changes of a step that can go.
+/// Drops the changes of a step that the failure does not need.
 template <int D, typename Real>
 void drop_changes(Step<D, Real>& step, const std::function<bool()>& still_fails,
                   const std::function<bool()>& stop) {
@@ -128,7 +128,7 @@ void minimise(History<D, Real>& history, const HistoryFails<D, Real>& fails,
   const std::function<bool()> still_fails = [&] { return is_valid(history) && fails(history); };
   drop_what_can_go(history.steps, still_fails, stop);
   drop_places(history, fails, stop);
-  // Where boxes are gone, more frames can go.
+  // With fewer boxes, more frames may be dropped.
   drop_what_can_go(history.steps, still_fails, stop);
   for (Step<D, Real>& step : history.steps) drop_changes(step, still_fails, stop);
   drop_what_can_go(history.ignored, still_fails, stop);

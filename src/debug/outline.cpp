@@ -1,4 +1,4 @@
-// outline(): checks the boxes, lets the algorithm lay itself out, and ends it at their bounds.
+// outline(): checks the boxes, asks the algorithm for its outline, and clips it to the boxes' bounds.
 #include "broadside/debug/outline.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Box<D, Real> finite_bounds(std::span<const Box<D, Real>> boxes) {
   return bounds;
 }
 
-/// Ends what is infinite at the bounds.
+/// Clips infinite sides to the bounds.
 template <int D, typename Real>
 void make_finite(Box<D, Real>& part, const Box<D, Real>& bounds) {
   for (int axis = 0; axis < D; ++axis) {
@@ -45,7 +45,7 @@ void make_finite(Box<D, Real>& part, const Box<D, Real>& bounds) {
   }
 }
 
-/// As if doubles were rounded linearly.
+/// Lays out doubles that are rounded linearly.
 template <int D>
 Outline<D, double> lay_out_rounded(const MakeOutline<D>& make, std::span<const Box<D, double>> boxes,
                                    const Workers& workers, const Settings& settings) {

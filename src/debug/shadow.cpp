@@ -1,4 +1,4 @@
-// ShadowTracker: any tracker with brute force beside it.
+// ShadowTracker: checks a tracker's events against brute force, and minimises what fails.
 #include "broadside/debug/shadow.hpp"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ using debug::Pairs;
                      ", and is not listed; expected every change in the frame's lists");
 }
 
-/// Throws if a box that is not listed, or its filter, is not the one that the tracker knows. Such boxes are
-/// in both frames.
+/// Throws if an unlisted box or its filter differs from the one that the tracker knows. Looks only at boxes
+/// in both frames: all others are listed.
 template <int D, typename Real>
 void check_unlisted(const Frame<D, Real>& last, const Frame<D, Real>& frame,
                     std::span<const std::uint8_t> is_listed, std::size_t number) {
@@ -33,7 +33,7 @@ void check_unlisted(const Frame<D, Real>& last, const Frame<D, Real>& frame,
     if (is_listed[i] != 0) continue;
     const Box<D, Real>& box = frame.boxes[i];
     const Box<D, Real>& known = last.boxes[i];
-    // An invalid box can only have been let in as an absent one.
+    // The tracker knows an invalid box only as an absent one.
     if (box != known && !(core::is_invalid(box) && is_absent(known)))
       refuse_unlisted(number, "box " + std::to_string(i) + " had " + core::text_of(known) + ", has now " +
                                   core::text_of(box));
@@ -42,7 +42,7 @@ void check_unlisted(const Frame<D, Real>& last, const Frame<D, Real>& frame,
   }
 }
 
-/// The pairs that are ignored in one of the two frames, sorted. A null pointer is an empty set.
+/// The pairs that are ignored in exactly one of the two frames, sorted. A null pointer is an empty set.
 Pairs difference(const IgnoredPairs* before, const IgnoredPairs* now) {
   Pairs pairs;
   const auto add_missing = [&pairs](const IgnoredPairs* from, const IgnoredPairs* in) {
@@ -81,8 +81,7 @@ void hand_on(const EventPairs& events, PairSink& begun, PairSink& ended) {
 
 template <int D, typename Real>
 struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
-  /// `name`: of the tracker, in messages. `make` makes another one on which to try histories; it may be
-  /// empty.
+  /// `name`: the tracker's name in messages. `make`, which may be empty, makes trackers to try histories on.
   State(Tracker<D, Real> its_tracker, std::string name, Make make, const ShadowOptions& options)
       : tracker(std::move(its_tracker)),
         name_(std::move(name)),
@@ -90,8 +89,8 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
         options_(options),
         log_(options.frames, options.bytes) {}
 
-  /// Has the tracker take a frame, and writes its events. What the first frame lists, and one after a frame
-  /// that failed, does not count: everything may have changed.
+  /// Passes a frame to the tracker, and writes its events. In the first frame and after a failed one, the
+  /// frame's lists do not count: everything may have changed.
   std::optional<Statistics> update(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
     if (fault_) diverge();
     const bool lists_count = std::exchange(is_whole_, false);
@@ -105,7 +104,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
       is_whole_ = lists_count;
       throw;
     }
-    // With the first filters, or without the last ones, every box has changed.
+    // If filters appear or disappear, every box has changed.
     if (!lists_count || frame.filters.empty() != last.filters.empty()) {
       changed_.resize(std::max(frame.boxes.size(), last.boxes.size()));
       for (std::size_t i = 0; i < changed_.size(); ++i) changed_[i] = BoxId(i);
@@ -115,7 +114,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
     if (lists_count && (frame.ignored != nullptr) == (last.ignored != nullptr))
       check_listed(toggled, frame.ignored_changed, log_.count());
 
-    // Whatever takes memory comes before the tracker is asked, so that what it takes is known here as well.
+    // Allocates memory first, so that this state misses no frame that the tracker takes.
     boxes_.assign(frame.boxes.begin(), frame.boxes.end());
     for (Box<D, Real>& box : boxes_) {
       if (core::is_invalid(box)) box = absent_box<D, Real>();
@@ -128,7 +127,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
     const EventPairs expected = debug::events_between(pairs_, now);
     log_.prepare(seen, toggled);
     EventPairs events;
-    // As soon as all are there and right, they are handed on. If a sink then throws, the tracker has not
+    // Passes the events on as soon as all are there and right. If a sink then throws, the tracker has not
     // taken the frame either.
     const auto collect_in = [&](Pairs& some) {
       return [&](std::span<const Pair> pairs) {
@@ -153,7 +152,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
   Tracker<D, Real> tracker;
 
  private:
-  /// Lists what the frame does, and the boxes that it need not list, each once.
+  /// Lists the frame's listed changes and the boxes that it need not list, each once.
   void list_changed(const Frame<D, Real>& last, const Frame<D, Real>& frame) {
     const std::size_t size = std::max(frame.boxes.size(), last.boxes.size());
     std::vector<std::uint8_t> is_listed(size);
@@ -166,7 +165,8 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
     check_unlisted<D, Real>(last, frame, is_listed, log_.count());
   }
 
-  /// Throws the divergence. Where there is no memory to tell it, that is thrown, and told the next time.
+  /// Throws the divergence. If memory runs out while it is described, throws std::bad_alloc, and tries again
+  /// next time.
   [[noreturn]] void diverge() {
     if (!divergence_) divergence_ = std::make_exception_ptr(explained());
     std::rethrow_exception(divergence_);
@@ -216,7 +216,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
   bool is_whole_ = false;            // whether the last update ended
   std::optional<Fault> fault_;       // in the last frame of the log
   Pairs faulty_;                     // the pairs of that frame
-  std::exception_ptr divergence_;    // which tells all about it
+  std::exception_ptr divergence_;    // describes the fault
 };
 
 template <int D, typename Real>
@@ -247,7 +247,7 @@ std::optional<Statistics> ShadowTracker<D, Real>::update(const Frame<D, Real>& f
     const core::DefaultEnvironment environment;
     statistics = state_->update(frame, begun, ended);
   }
-  // Where there were no events, they may hold what their owner has put there.
+  // Without events, the sinks may still hold pairs that the caller added.
   begun.flush();
   ended.flush();
   return statistics;

@@ -1,5 +1,4 @@
-// The pairs of a frame by the definition, what a tracker reports wrongly, and the smallest history in which
-// it does.
+// The pairs of a frame by the definition, faults of a tracker, and the smallest history that shows a fault.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +46,7 @@ struct EventPairs {
   friend bool operator==(const EventPairs&, const EventPairs&) = default;
 };
 
-/// Has a tracker take a frame, and sets `events` to what it reports.
+/// Passes a frame to a tracker, and sets `events` to what it reports.
 template <int D, typename Real>
 void take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, EventPairs& events) {
   events = {};
@@ -59,8 +58,8 @@ void take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, EventPa
 /// A pair that was reported wrongly.
 struct Fault {
   Pair pair;
-  bool began;     ///< as one that began; else as one that ended
-  bool reported;  ///< although it did not; else not, although it did
+  bool began;     ///< whether the event is a beginning; else an end
+  bool reported;  ///< reported but did not happen; else happened but was not reported
 };
 
 /// Such as "(1, 2)", and "reported that the pair (1, 2) began".
@@ -84,7 +83,7 @@ inline EventPairs events_between(const Pairs& before, const Pairs& now) {
   return {without(now, before), without(before, now)};
 }
 
-/// The first event that was reported and did not happen, or the other way round, or was reported twice.
+/// The first event that was reported wrongly or twice, or was not reported.
 inline std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, bool began) noexcept {
   const auto [found, expected] = std::ranges::mismatch(reported, happened);
   if (found == reported.end() && expected == happened.end()) return std::nullopt;
@@ -100,7 +99,7 @@ inline std::optional<Fault> fault_of(const EventPairs& events, const EventPairs&
   return began ? began : ended;
 }
 
-/// What a tracker does wrong in a history's last frame. If it throws, that is another failure, and none here.
+/// The fault of a tracker in a history's last frame. An exception is another failure, and none here.
 template <int D, typename Real>
 std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history) {
   try {
@@ -120,8 +119,9 @@ std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D
   }
 }
 
-/// The smallest history found in whose last frame what `make` makes is at fault; empty if it is not on this
-/// one. Compares about that many pairs of boxes, and no clock is asked: another machine finds the same one.
+/// The smallest history found in whose last frame a tracker from `make` is at fault; empty if none is on
+/// `history`. Stops after about `max_tests` tests, not after some time, so that all machines find the same
+/// history.
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
                                                const std::function<Tracker<D, Real>()>& make,
@@ -131,7 +131,7 @@ std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
     std::uint64_t changes = some.boxes.size();
     for (const Step<D, Real>& step : some.steps) changes += step.changed.size();
     const std::uint64_t places = places_of(some);
-    // What a tracker does is not known: as if it took a hundred tests a change.
+    // The tracker's own tests are unknown; assumes a hundred per change.
     tests += places * places / 2 + 100 * changes;
     Tracker<D, Real> tracker = make();
     return fault_at_the_end(tracker, some).has_value();
