@@ -113,8 +113,7 @@ struct FollowerChoice {
   FollowCosts costs{};
 
   /// Not 0 if the follower compares each changed box with all others, so that its cost is known in advance.
-  /// It is always used for up to this number of boxes, and for more if the other followers make about as many
-  /// tests.
+  /// It is always used for up to this number of boxes, and for more if the others make about as many tests.
   std::size_t max_boxes = 0;
 };
 
@@ -133,8 +132,7 @@ struct Strategies {
   MakeOutline<D> outline{};  ///< empty if there is nothing to draw
 };
 
-/// The input that an algorithm claims to support. The lab gives it no other input; the library does not
-/// check.
+/// The input that an algorithm claims to support. The lab gives it no other; the library does not check.
 struct InputLimits {
   bool infinite_boxes = true;                                  ///< whether boxes may have infinite extents
   double max_coordinate = std::numeric_limits<double>::max();  ///< greatest magnitude of a finite coordinate

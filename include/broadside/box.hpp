@@ -31,14 +31,14 @@ struct SupportedBox {
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
-/// Boxes are closed: two boxes that only touch overlap, and a degenerate box (min = max) is valid.
+/// Boxes are closed: two boxes that only touch overlap, and a degenerate box (min = max) is a valid point.
 /// Coordinates are in the caller's unit, float or double. Infinite coordinates are allowed and have their
 /// usual meaning.
 ///
 /// Coordinates, denormals included, are compared by value. The calling thread's rounding mode, flushing of
 /// denormals (FTZ, DAZ) and traps have no effect: the library computes in the default floating-point
 /// environment. It restores the caller's environment before it returns, throws, or calls a sink, a visitor, a
-/// predicate or an executor. Inline functions in these headers, such as overlap(), compute in the caller's
+/// predicate or an executor. Inline functions in these headers, such as overlap(), use the caller's
 /// environment.
 template <int D, typename Real = float>
 struct Box {
@@ -135,7 +135,7 @@ template <int D, typename Real>
   return box;
 }
 
-/// The box with each side moved outwards by `margin`, which must be finite. A negative margin moves the sides
+/// The box with each side moved outwards by `margin`, which must be finite. A negative margin moves them
 /// inwards; min may then exceed max. Bounds are rounded to Real. Infinite bounds and absent boxes do not
 /// change.
 template <int D, typename Real>

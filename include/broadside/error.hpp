@@ -35,8 +35,7 @@ class BROADSIDE_PUBLIC InvalidQuery : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// A spec that cannot be parsed, or that has an unknown algorithm, an unknown tunable or a value out of
-/// range.
+/// A spec that cannot be parsed, or has an unknown algorithm, an unknown tunable or a value out of range.
 class BROADSIDE_PUBLIC InvalidSpec : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -78,8 +78,7 @@ inline const Workers default_workers{};
 /// few million. Each thread needs its own.
 class BROADSIDE_PUBLIC Checkpoint {
  public:
-  /// The maximum number of comparisons between two calls, not counting those of the last few boxes with all
-  /// others.
+  /// The maximum number of comparisons between two calls, plus those of a few boxes with all others.
   static constexpr std::uint64_t max_tests = std::uint64_t{1} << 22;
 
   /// `call` may be empty, and must outlive the Checkpoint.

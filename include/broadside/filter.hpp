@@ -32,8 +32,7 @@ struct Filter {
 };
 
 namespace detail {
-/// Whether the bits of two filters accept each other, whatever their groups are. Two static boxes never
-/// collide.
+/// Whether the bits of two filters accept each other, whatever their groups. Two static boxes never collide.
 constexpr bool bits_accept(const Filter& a, const Filter& b) noexcept {
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0 && !(a.is_static && b.is_static);
 }

@@ -63,8 +63,8 @@ class BROADSIDE_PUBLIC Finder final {
   std::optional<Statistics> find(BoxView<D, Real> boxes, PairSink& pairs, const PairFilters& filters = {});
 
   /// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's
-  /// `first` is an index into `left` and its `second` an index into `right`, so the two may be equal. Pairs
-  /// within a set are never written; the library's own algorithms do not even look for them. Throws as find()
+  /// `first` is an index into `left` and its `second` an index into `right`, so the two may be equal. Never
+  /// writes pairs within a set; the library's own algorithms do not even look for them. Throws as find()
   /// does.
   std::optional<Statistics> find_between(BoxView<D, Real> left, BoxView<D, Real> right, PairSink& pairs,
                                          const PairFilters& filters = {});

@@ -25,8 +25,8 @@ struct Change {
   std::span<const Box<D, Real>> before;
   std::span<const Box<D, Real>> now;
 
-  /// The indexes at which boxes or filters may have changed, each once. flags[i] is 1 if index i is among
-  /// them, and otherwise 0.
+  /// The indexes at which boxes or filters may have changed, each once. flags[i] is 1 if i is among them,
+  /// else 0.
   std::span<const BoxId> changed;
   std::span<const std::uint8_t> flags;
 

@@ -1,5 +1,4 @@
-// Queries: what a BoxIndex or a World can be asked, what it answers, and the functions that define the
-// answers.
+// Queries: what a BoxIndex or a World can be asked, its answers, and the functions that define these.
 #pragma once
 
 #include <concepts>

@@ -124,10 +124,9 @@ class Checksum {
 /// nothing more is written. Only the standard library throws, and only if memory runs out, so the recorder
 /// works with exceptions switched off.
 ///
-/// When end_frame() returns, the frame has left the process: a crash of the process loses at most the current
-/// frame. Time of a frame: proportional to the slots named since the last frame, plus sorting the pairs.
-/// Memory: two boxes per slot and two numbers per pair; with pairs, also two filters per slot. One thread at
-/// a time.
+/// When end_frame() returns, the frame has left the process: a crash loses at most the current frame. Time of
+/// a frame: proportional to the slots named since the last frame, plus sorting the pairs. Memory: two boxes
+/// per slot and two numbers per pair; with pairs, also two filters per slot. One thread at a time.
 template <int D, typename Real = float>
 class BROADSIDE_RECORDER_ABI Recorder {
   static_assert(D == 2 || D == 3, "a trace has two or three dimensions");
@@ -195,8 +194,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
   }
 
   /// Replaces all boxes: slot i gets box i, of 2 D coordinates (min, then max), and there are no further
-  /// slots. Refused as a whole if set() would refuse a box. Compares all boxes to find what changed:
-  /// O(count).
+  /// slots. Refused as a whole if set() would refuse a box. Finds changes by comparing all boxes: O(count).
   bool set_boxes(const Real* boxes, std::size_t count) {
     if (!is_open("set_boxes")) return false;
     if (count > std::numeric_limits<std::uint32_t>::max())
@@ -244,7 +242,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
 
   /// Adds a pair that the engine's broad phase reports in this frame. Call it for each pair that the engine
   /// holds, in any order and with either slot first, and twice for a pair that it reports twice. The next
-  /// frame begins without pairs. Refused if both slots are the same or one is empty, and in a trace without
+  /// frame begins without pairs. Refused if the slots are equal or one is empty, and in a trace without
   /// pairs.
   bool add_pair(std::uint32_t first, std::uint32_t second) {
     return put_pair("add_pair", first, second, pairs_now_);
@@ -431,8 +429,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     return true;
   }
 
-  /// Sorts the frame's pairs and drops pairs with a slot that has become empty. Returns whether there were
-  /// none.
+  /// Sorts the frame's pairs and drops those with an emptied slot. Returns whether there were none.
   bool settle_pairs() {
     bool are_right = true;
     const auto is_gone = [&](std::uint64_t pair) {

@@ -107,7 +107,7 @@ void with_sink(Target& target, const Body& body) {
 }
 
 /// Hashes and counts pairs as a set. The hash is the same for any order, and differs if a pair is missing,
-/// extra or repeated (except by a chance of 2^-64).
+/// extra or repeated (except with probability 2^-64).
 class BROADSIDE_PUBLIC PairHasher final : public PairSink {
  public:
   [[nodiscard]] std::uint64_t hash() const noexcept { return hash_; }

@@ -73,8 +73,8 @@ class BROADSIDE_PUBLIC Tracker final {
   /// InvalidSpec if a value is wrong or the algorithm does not support D dimensions.
   Tracker(const Algorithm& algorithm, const Spec& spec);
 
-  /// A tracker that uses your own searcher to find all pairs anew in each frame. Cost of a frame: one search
-  /// and one pass over the pairs of both frames; the pairs are stored. Throws std::invalid_argument if it is
+  /// A tracker that uses your own searcher to find all pairs anew in each frame, and stores them. Cost of a
+  /// frame: one search and one pass over the pairs of both frames. Throws std::invalid_argument if it is
   /// null.
   explicit Tracker(std::unique_ptr<Searcher<D>> searcher);
 
@@ -105,8 +105,7 @@ class BROADSIDE_PUBLIC Tracker final {
     return update(frame, static_cast<PairSink&>(begun_sink), static_cast<PairSink&>(ended_sink));
   }
 
-  /// What update() does with changed boxes that are invalid: it throws, unless set_bad_input() says
-  /// otherwise.
+  /// What update() does with invalid changed boxes: it throws, unless set_bad_input() says otherwise.
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 

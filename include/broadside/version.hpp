@@ -1,7 +1,6 @@
 // The library's version, and one clear error if the compiler is not set to C++20.
 //
-// Every header except recorder.hpp includes this one, directly or through another one, before the library's
-// own code.
+// Every header but recorder.hpp includes this one, directly or through another one, before any code.
 #pragma once
 
 // The build reads the version from here, its only place.

@@ -127,8 +127,7 @@ struct WorldOptions {
   /// a move within the enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
   WorldEvents events = WorldEvents::exact;
 
-  /// The generation of the first handles. Worlds with first generations far apart refuse each other's
-  /// handles.
+  /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
 
   /// Whether add() and move() reject invalid boxes or quarantine them. A quarantined box counts as absent
@@ -376,8 +375,8 @@ class BROADSIDE_PUBLIC World {
   [[nodiscard]] std::uint64_t user_data(Handle handle) const;
   void set_user_data(Handle handle, std::uint64_t user_data);
 
-  /// The quarantined boxes (see WorldOptions::bad_input), sorted by slot. box() returns the absent box for
-  /// them. O(slots).
+  /// The boxes quarantined by WorldOptions::bad_input, by slot. box() gives the absent box for them.
+  /// O(slots).
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Handle> quarantined() const {
     std::vector<Handle> handles;
     detail::OutputTo output(handles);

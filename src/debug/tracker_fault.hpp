@@ -120,8 +120,7 @@ std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D
 }
 
 /// The smallest history found in whose last frame a tracker from `make` is at fault; empty if none is on
-/// `history`. Stops after about `max_tests` tests, not after some time, so that all machines find the same
-/// history.
+/// `history`. Stops after about `max_tests` tests, not after a time: all machines find the same history.
 template <int D, typename Real>
 std::optional<History<D, Real>> smallest_fault(History<D, Real> history,
                                                const std::function<Tracker<D, Real>()>& make,

@@ -64,8 +64,8 @@ struct FilterGroup {
 class FilterGroups {
  public:
   /// Groups the first `boxes` places. If `left_count` is not 0, the places before it are the left set, and no
-  /// group has boxes of both. Returns false, and has no groups, if there would be more than `boxes` / 4
-  /// groups. O(boxes).
+  /// group has boxes of both. Returns false, without groups, if there would be more than `boxes` / 4.
+  /// O(boxes).
   bool build(const BoxFilters& filters, std::size_t boxes, std::size_t left_count);
 
   std::span<const FilterGroup> groups() const noexcept { return groups_; }

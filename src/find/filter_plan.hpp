@@ -36,8 +36,7 @@ struct PlannedSearch {
 /// nodes. The plan starts with one search of all nodes that meet any. It then takes nodes out of this search,
 /// as long as that saves more rejected pairs than it costs boxes. Each of these nodes is searched by itself
 /// and against the nodes it meets. The remaining nodes fall into parts that never meet, with a search for
-/// each. Pairs of a positive group that their bits do not accept are searched group by group, in the same
-/// way.
+/// each. Pairs of a positive group that their bits do not accept are searched likewise, group by group.
 ///
 /// Depends on the groups and the sampled pairs alone. Keeps its memory.
 class FilterPlan {

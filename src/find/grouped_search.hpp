@@ -32,8 +32,7 @@ class GroupedSearch {
   /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
   /// sets, pairs within a set may be written too. Returns the sum of what the searches did, or nothing if one
   /// of them did not count. A search that gives up calls the successor of `input`. The successor must end the
-  /// whole search, since ids then refer to the boxes of one group. Throws what the searcher and the sink
-  /// throw.
+  /// whole search, since ids then refer to the boxes of one group. Exceptions pass through.
   std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
                                    const BoxFilters& filters, PairSink& pairs);
 

@@ -22,8 +22,8 @@
 
 namespace broadside::find {
 
-/// Makes a user's searcher throw std::logic_error for a pair with an id out of range, since later stages
-/// index arrays by the ids.
+/// Makes a user's searcher throw std::logic_error for a pair with an id out of range, since ids later index
+/// arrays.
 template <int D>
 std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher);
 

@@ -42,8 +42,8 @@ constexpr std::size_t many_movers = 8;
 constexpr std::size_t too_few_movers = 16;
 
 /// The number of candidates tested in the time of following a mover without its tests, and in that of each of
-/// its tests. Boxes are no longer enlarged after this number of frames in a row in which following would have
-/// cost less.
+/// its tests. Boxes are no longer enlarged after this number of frames in a row in which following would cost
+/// less.
 constexpr double candidates_per_mover = 96;
 constexpr double candidates_per_test = 1.5;
 constexpr std::size_t max_calm_frames = 8;

@@ -76,8 +76,8 @@ struct ShadowOptions {
 /// Runs a tracker, compares its events with brute force in every frame, and throws the first difference as a
 /// DivergenceOf<D, Real>. Use it to look for faults in an algorithm or in your list of changes.
 ///
-/// Cost of a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and the
-/// frames of ShadowOptions.
+/// Cost of a frame: the tracker's, and n^2 / 2 tests. Memory: four copies of the boxes, the pairs, and
+/// ShadowOptions::frames.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC ShadowTracker final {
  public:
