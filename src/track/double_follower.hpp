@@ -19,7 +19,7 @@
 
 namespace broadside::track {
 
-/// Rounding keeps order, as in find::DoubleSearch, so boxes that overlap in double overlap in float. So every
+/// Rounding keeps order, as in find::DoubleSearch: boxes that overlap in double overlap in float. So every
 /// pair that began or ended is of a changed box and a box that it overlaps, or overlapped, in float. The
 /// rounding is chosen for the boxes of the first frame, and again when boxes have moved to where it makes too
 /// many false candidates. Cost: that of the floats, and a test in double for each candidate.

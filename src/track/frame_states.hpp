@@ -86,7 +86,7 @@ class FrameStates {
   /// Reserves the memory that keep() needs.
   void prepare_to_keep() { quarantined_.reserve(quarantined_.size() + invalid_.size()); }
 
-  /// Makes the frame taken the last whole frame.
+  /// Turns the taken frame into the last whole frame.
   void keep(const Frame<D, Real>& frame, core::Parallel& parallel) noexcept {
     const std::size_t size = frame.boxes.size();
     if (!quarantined_.empty() || !invalid_.empty()) {

@@ -41,15 +41,15 @@ constexpr std::size_t many_movers = 8;
 /// start, so that a count near it does not flip each frame.
 constexpr std::size_t too_few_movers = 16;
 
-/// The number of candidates tested in the time of following a mover without its tests, and in that of each of
-/// its tests. Boxes are no longer enlarged after this number of frames in a row in which following would cost
-/// less.
+/// The number of candidates that can be tested in the time that a mover takes without its tests, and in the
+/// time of each of its tests. Boxes are no longer enlarged after this number of frames in a row in which
+/// following would cost less.
 constexpr double candidates_per_mover = 96;
 constexpr double candidates_per_test = 1.5;
 constexpr std::size_t max_calm_frames = 8;
 
-/// The number of boxes that the structure that compares all compares with a mover, in the time of testing a
-/// candidate. It leaves some room before boxes are no longer enlarged.
+/// In the time of one candidate's test, the structure that compares all compares a mover with this number of
+/// boxes. The value leaves some room before boxes are no longer enlarged.
 constexpr double compared_per_candidate = 4;
 
 /// The fraction of changed boxes that may leave their enlarged boxes, and the number of frames over which it

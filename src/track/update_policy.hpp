@@ -105,7 +105,7 @@ class FollowPolicy {
   Seen seen_;
 };
 
-/// What a frame of enlarged boxes took.
+/// Counts of a frame with enlarged boxes.
 struct EnlargedFrame {
   std::size_t boxes = 0;
   std::size_t changed = 0;     ///< boxes

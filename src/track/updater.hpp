@@ -100,7 +100,7 @@ class Updater {
     statistics_ = pairs_.update(exact, begun, ended);
   }
 
-  /// Enlarges the boxes after a frame that was handled otherwise, if they moved little enough.
+  /// Enlarges the boxes after a frame that was handled in another way, if they moved little enough.
   void enlarge(const Change<D, Real>& change) {
     const auto margins = CandidateList<D, Real>::margins_for(change);
     if (!margins) return;

@@ -14,7 +14,7 @@ namespace broadside {
 /// What an algorithm lays over boxes.
 template <int D, typename Real = float>
 struct Outline {
-  std::string kind;     ///< "cells", "stripes", "nodes" or "sweep"; empty where there is nothing to draw
+  std::string kind;     ///< "cells", "stripes", "nodes" or "sweep"; empty if there is nothing to draw
   std::string caption;  ///< such as "24 x 18 cells of 3.1"
   int swept_axis = -1;  ///< the axis along which boxes are sorted; -1 for none
 
