@@ -283,20 +283,28 @@ class WorldOf final : public AnyWorld {
 };
 
 std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std::string& algorithm,
-                                     nb::handle threads, double margin, double relative_margin,
-                                     double predicted_frames, bool exact, bool quarantine,
-                                     std::uint32_t first_generation) {
-  const WorldOptions options{.algorithm = algorithm,
-                             .margin = margin,
-                             .relative_margin = relative_margin,
-                             .predicted_frames = predicted_frames,
-                             .events = exact ? WorldEvents::exact : WorldEvents::enlarged,
-                             .first_generation = first_generation,
-                             .bad_input = quarantine ? BadInput::quarantine : BadInput::reject};
+                                     nb::handle threads, const std::string& settings) {
+  WorldOptions options = world_options(settings);
+  options.algorithm = algorithm;
   const std::size_t max_threads = threads_of(threads, algorithm);
   return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyWorld> {
     return std::make_unique<WorldOf<D, Real>>(options, max_threads);
   });
+}
+
+/// The table of options: name, summary, default value, type, choices, min and max of each.
+nb::list list_of_options() {
+  nb::list list;
+  for (const Tunable& option : world_tunables()) {
+    nb::list choices;
+    for (const std::string& choice : option.choices) choices.append(choice);
+    const char* const type = option.type == Tunable::Type::choice    ? "choice"
+                             : option.type == Tunable::Type::integer ? "integer"
+                                                                     : "number";
+    list.append(nb::make_tuple(option.name, option.summary, option.default_value, type, choices, option.min,
+                               option.max));
+  }
+  return list;
 }
 
 }  // namespace
@@ -323,9 +331,8 @@ void add_world(nb::module_& module) {
       .def("restore", &AnyWorld::restore);
   add_queries(type);
   module.def("make_world", &make_world, nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"),
-             nb::arg("threads").none(), nb::arg("margin"), nb::arg("relative_margin"),
-             nb::arg("predicted_frames"), nb::arg("exact"), nb::arg("quarantine"),
-             nb::arg("first_generation"));
+             nb::arg("threads").none(), nb::arg("settings"));
+  module.def("world_options", &list_of_options);
 }
 
 }  // namespace broadside::python

@@ -101,17 +101,9 @@ def partition_of_cuts(
     dimension: int, has_doubles: bool, links: NDArray[np.uint32], places: NDArray[Any], /
 ) -> Partition: ...
 def make_world(
-    dimension: int,
-    has_doubles: bool,
-    algorithm: str,
-    threads: SupportsInt | None,
-    margin: float,
-    relative_margin: float,
-    predicted_frames: float,
-    exact: bool,
-    quarantine: bool,
-    first_generation: int,
+    dimension: int, has_doubles: bool, algorithm: str, threads: SupportsInt | None, settings: str
 ) -> World: ...
+def world_options() -> list[tuple[str, str, str, str, list[str], float, float]]: ...
 def make_tracker(
     dimension: int, has_doubles: bool, algorithm: str, threads: SupportsInt | None, quarantine: bool
 ) -> Tracker: ...

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from broadside import _arguments, _convert, _core, _pickling
+from broadside import _arguments, _convert, _core, _pickling, _world_options
 from broadside._columns import Columns
 from broadside._queries import (
     FirstHits,
@@ -52,14 +52,8 @@ class World:
             exact in it.
         algorithm: A spec: see `algorithms`.
         threads: The most threads of an update; None: all cores, if there is enough to do.
-        margin: How far a box is enlarged on every side, so that small moves cost little. Pairs stay exact unless
-            `events` says otherwise.
-        relative_margin: Likewise, times the box's longest side; the lesser one counts where both are given.
-        predicted_frames: For how many frames ahead an enlarged box also covers the way of a box that was moved with a
-            velocity.
-        events: ``"exact"``: pairs are those of the boxes themselves; ``"enlarged"``: those of enlarged boxes.
-        quarantine: Take invalid boxes in as absent ones instead of raising; `quarantined` names them.
         first_generation: The generation of the first handles; by default each world has another one.
+        **options: {options}
 
     Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not while
     the first query after a change builds its index. You can repeat an update that Ctrl-C ended. Functions of many boxes
@@ -76,32 +70,21 @@ class World:
         dtype: DTypeLike = np.float64,
         algorithm: str = "auto",
         threads: int | None = None,
-        margin: float = 0.0,
-        relative_margin: float = 0.0,
-        predicted_frames: float = 0.0,
-        events: Literal["exact", "enlarged"] = "exact",
-        quarantine: bool = False,
         first_generation: int | None = None,
+        **options: Any,
     ) -> None:
-        if events not in ("exact", "enlarged"):
-            raise ValueError(f"events is {events!r}; expected 'exact' or 'enlarged'")
         first = _next_first_generation() if first_generation is None else first_generation
+        options["first_generation"] = _arguments.integer(first, "first_generation", 0, 2**32 - 1)
         self._has_doubles = _has_doubles(dtype)
         self._options: dict[str, Any] = {
+            "dimension": _checked_dimension(dimension),
             "algorithm": _arguments.text(algorithm, "algorithm"),
             "threads": threads,
-            "margin": _arguments.number(margin, "margin"),
-            "relative_margin": _arguments.number(relative_margin, "relative_margin"),
-            "predicted_frames": _arguments.number(predicted_frames, "predicted_frames"),
-            "events": events,
-            "quarantine": bool(quarantine),
-            "first_generation": _arguments.integer(first, "first_generation", 0, 2**32 - 1),
+            **options,
         }
-        options = {**self._options, "exact": events == "exact"}
-        del options["events"]
-        self._options["dimension"] = _checked_dimension(dimension)
         self._crs: Any = None
-        self._world = _core.make_world(self._options["dimension"], self._has_doubles, **options)
+        settings = _world_options.settings_of(options)
+        self._world = _core.make_world(self._options["dimension"], self._has_doubles, algorithm, threads, settings)
 
     @property
     def dimension(self) -> int:
@@ -134,7 +117,7 @@ class World:
         `velocities`, shape (n, dimension), says how far each box is expected to go in a frame, for `predicted_frames`.
         Raises InvalidHandleError, InvalidBoxError.
         """
-        if velocities is not None and not self._options["predicted_frames"]:
+        if velocities is not None and not self._options.get("predicted_frames"):
             raise ValueError(
                 "velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities"
             )
@@ -290,6 +273,10 @@ def _unpickled_world(
     world._world.restore(snapshot)
     world._crs = crs
     return world
+
+
+World.__doc__ = str(World.__doc__).replace("        **options: {options}\n", _world_options.help_text("        "))
+setattr(World, "__signature__", _world_options.signature(World))  # noqa: B010, mypy sees no such attribute
 
 
 class Tracker:

@@ -92,15 +92,17 @@ void KeptWorld::ignore(double a, double b, bool ignores) {
 }
 
 BROADSIDE_EXPORT(world_make)
-Status world_make(const char* spec, std::size_t size, double margin, double relative_margin,
-                  double predicted_frames, bool tells_enlarged) {
-  return make_kept<KeptWorld>(
-      WorldOptions{.algorithm = std::string(spec, size),
-                   .margin = margin,
-                   .relative_margin = relative_margin,
-                   .predicted_frames = predicted_frames,
-                   .events = tells_enlarged ? WorldEvents::enlarged : WorldEvents::exact,
-                   .first_generation = next_first_generation()});
+Status world_make(const char* texts, std::size_t size) {
+  // The algorithm's spec, and the options on the next line.
+  WorldOptions options;
+  const Status status = guarded([&] {
+    const std::string_view both(texts, size);
+    const std::size_t line = both.find('\n');
+    options = world_options(both.substr(line + 1));
+    options.algorithm = both.substr(0, line);
+    options.first_generation = next_first_generation();
+  });
+  return status == ok ? make_kept<KeptWorld>(options) : status;
 }
 
 BROADSIDE_EXPORT(world_free) void world_free(KeptWorld* world) { delete world; }

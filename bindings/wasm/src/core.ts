@@ -26,10 +26,7 @@ export interface Exports {
   tracker_update(
     tracker: number, boxes: number, count: number, changed: number, changedCount: number, filters: number,
   ): number;
-  world_make(
-    spec: number, size: number, margin: number, relativeMargin: number, predictedFrames: number,
-    tellsEnlarged: number,
-  ): number;
+  world_make(texts: number, size: number): number;
   world_free(world: number): void;
   world_add(world: number, boxes: number, count: number, filters: number, handles: number): number;
   world_move(world: number, handles: number, boxes: number, count: number, velocities: number): number;

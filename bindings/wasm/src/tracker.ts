@@ -10,9 +10,8 @@ import { asksForView, checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 
 /** The module and the spec of an object that is made with options, checked. */
-export function specOf(cores: Cores, options: TrackerOptions, known: readonly string[]):
-  { core: Core; algorithm: string } {
-  checkOptions(options, ["dimension", "algorithm", ...known]);
+export function specOf(cores: Cores, options: TrackerOptions): { core: Core; algorithm: string } {
+  checkOptions(options, ["dimension", "algorithm"]);
   const core = cores.of(options.dimension);
   const { algorithm = core.algorithmFor(Infinity) } = options;
   if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
@@ -51,7 +50,7 @@ export class KeptTracker extends Kept implements Tracker {
   readonly dimension: Dimension;
 
   constructor(cores: Cores, options: TrackerOptions = {}) {
-    const { core, algorithm } = specOf(cores, options, []);
+    const { core, algorithm } = specOf(cores, options);
     const { exports, dimension } = core;
     super(core.make(algorithm, (spec, size) => exports.tracker_make(spec, size)),
       (address) => exports.tracker_free(address));

@@ -1,6 +1,6 @@
 // Worlds.
 import type {
-  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, ResultOptions, World, WorldOptions,
+  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, ResultOptions, TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
   type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilter, putFilters, putFloats,
@@ -9,8 +9,6 @@ import type { Core, Cores } from "./core.ts";
 import { asksForView, checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 import { specOf } from "./tracker.ts";
-
-const worldOptions = ["margin", "relativeMargin", "predictedFrames", "events"];
 
 /** A handle's lowest bits are its slot: module/handles.hpp. */
 const maxSlots = 2 ** 24;
@@ -34,14 +32,23 @@ function putHandles(core: Core, handles: Handles, count: number): number {
   return address;
 }
 
+/** The options as the library reads them, such as "world:relative_margin=0.1"; it has their table. */
+function settingsOf(options: Readonly<Record<string, unknown>>): string {
+  const settings = ["world"];
+  for (const [name, value] of Object.entries(options)) {
+    if (value === undefined) continue;
+    if (!["number", "string", "boolean"].includes(typeof value)) refuse(name, value, "a number, a text, true or false");
+    const text = typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
+    settings.push(`${name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`)}=${text}`);
+  }
+  return settings.join(":");
+}
+
 function make(cores: Cores, options: WorldOptions): { core: Core; address: number } {
-  const { core, algorithm } = specOf(cores, options, worldOptions);
-  const { margin = 0, relativeMargin = 0, predictedFrames = 0, events = "exact" } = options;
-  if (events !== "exact" && events !== "enlarged") refuse("events", events, "'exact' or 'enlarged'");
-  for (const [name, value] of Object.entries({ margin, relativeMargin, predictedFrames }))
-    if (typeof value !== "number") refuse(name, value, "a number");
-  const address = core.make(algorithm, (spec, size) => core.exports.world_make(spec, size, margin,
-    relativeMargin, predictedFrames, events === "enlarged" ? 1 : 0));
+  if (typeof options !== "object" || options === null) refuse("options", options, "an object");
+  const { dimension, algorithm, ...others } = options;
+  const { core, algorithm: spec } = specOf(cores, { dimension, algorithm } as TrackerOptions);
+  const address = core.make(`${spec}\n${settingsOf(others)}`, core.exports.world_make);
   return { core, address };
 }
 

@@ -76,6 +76,12 @@ export interface WorldOptions extends TrackerOptions {
   readonly predictedFrames?: number;
   /** Which boxes make the pairs: the boxes themselves (`"exact"`), or the enlarged ones. */
   readonly events?: "exact" | "enlarged";
+  /** Whether current pairs are kept, for `pairs()`: true by default. */
+  readonly keepPairs?: boolean;
+  /** Whether invalid boxes are taken as absent ones instead of being refused. */
+  readonly quarantine?: boolean;
+  /** Any other option of the library's table (`world_tunables()`), in camel case. */
+  readonly [option: string]: number | string | boolean | undefined;
 }
 
 /** An object whose memory is in the module. `free` gives it back; so does the garbage collector, but later. */

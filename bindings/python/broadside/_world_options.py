@@ -1,0 +1,72 @@
+"""The options of a world, by the library's table: names, defaults, ranges and help."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, NamedTuple
+
+from broadside import _arguments, _core
+
+
+class WorldOption(NamedTuple):
+    """An option as the library describes it."""
+
+    name: str
+    summary: str
+    default: Any
+    choices: list[str]
+    min: float
+    max: float
+
+    @property
+    def is_switch(self) -> bool:
+        return self.choices == ["no", "yes"]
+
+    def text(self, value: Any) -> str:
+        """The value as the library reads it."""
+        if self.is_switch:
+            return "yes" if value else "no"
+        if self.choices:
+            if value not in self.choices:
+                raise ValueError(f"{self.name} is {value!r}; expected {' or '.join(map(repr, self.choices))}")
+            return str(value)
+        if isinstance(self.default, int):
+            return str(_arguments.integer(value, self.name, int(self.min), int(self.max)))
+        return repr(_arguments.number(value, self.name))
+
+
+def _option(name: str, summary: str, default: str, kind: str, choices: list[str], low: float, high: float) -> WorldOption:
+    value: Any = {"number": float, "integer": int, "choice": str}[kind](default)
+    return WorldOption(name, summary, value == "yes" if choices == ["no", "yes"] else value, choices, low, high)
+
+
+OPTIONS = {row[0]: _option(*row) for row in _core.world_options()}
+
+
+def settings_of(options: dict[str, Any]) -> str:
+    """The options as one text, such as ``"world:margin=0.1"``."""
+    for name in options:
+        if name not in OPTIONS:
+            raise TypeError(f"World() has no option {name!r}; expected one of: {', '.join(OPTIONS)}")
+    return ":".join(["world", *(f"{name}={OPTIONS[name].text(value)}" for name, value in options.items())])
+
+
+def help_text(indent: str) -> str:
+    """A line for each option, for a docstring."""
+    lines = []
+    for option in OPTIONS.values():
+        values = f" ({', '.join(map(repr, option.choices))})" if option.choices and not option.is_switch else ""
+        lines.append(f"{indent}{option.name}: {option.summary}{values}; by default {option.default!r}.")
+    return "\n".join(lines)
+
+
+def signature(function: Any) -> inspect.Signature:
+    """The signature of a function that takes all options as its last keywords."""
+    plain = inspect.signature(function)
+    own = [one for one in plain.parameters.values() if one.kind is not one.VAR_KEYWORD]
+    table = [
+        inspect.Parameter(option.name, inspect.Parameter.KEYWORD_ONLY, default=option.default)
+        for option in OPTIONS.values()
+        if option.name not in plain.parameters
+    ]
+    return plain.replace(parameters=[*own, *table])
