@@ -1,4 +1,4 @@
-// CellAxis: which of some cells of one length a coordinate lies in.
+// CellAxis: maps a coordinate to its cell among cells of one length.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +6,8 @@
 
 namespace broadside::core {
 
-/// The one formula by which a coordinate has a cell. It never falls where the coordinate rises, and clamps:
-/// the first and the last cell take in what lies beyond, infinite or not. A NaN is in the first one.
+/// The only formula that maps a coordinate to a cell. It is monotonic, and it clamps: coordinates beyond the
+/// cells, even infinite ones, are in the first or the last cell. A NaN is in the first.
 struct CellAxis {
   float low = 0;       ///< where the first cell begins
   float per_unit = 0;  ///< 1 / the length of a cell
@@ -15,7 +15,7 @@ struct CellAxis {
 
   std::uint32_t operator()(float coordinate) const {
     const float cell = (coordinate - low) * per_unit;
-    // By way of a signed number, which takes one instruction.
+    // Conversion through a signed integer takes one instruction.
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(std::max(0.0F, cell), last)));
   }
 

@@ -1,4 +1,4 @@
-// Delivery: the pieces of a search that several threads share, and their pairs on the way to one sink.
+// Delivery: hands out the pieces of a shared search, and delivers their pairs to one sink in order.
 #include "core/delivery.hpp"
 
 #include <algorithm>
@@ -6,10 +6,10 @@
 namespace broadside::core {
 namespace {
 
-/// From here on no piece is begun, so that those being searched have room to end.
+/// With this many blocks in use, no piece starts that needs blocks: the running pieces need room to finish.
 constexpr std::size_t nearly_full = PairBlocks::max_blocks / 2;
 
-/// Below this, workers that found no room may come back.
+/// Below this, a round ends if a worker found no room in it, so that all workers resume.
 constexpr std::size_t nearly_empty = PairBlocks::max_blocks / 8;
 
 }  // namespace
@@ -93,7 +93,7 @@ std::optional<Delivery::Piece> Delivery::take() {
     workers_left_ = true;
     return std::nullopt;
   }
-  if (is_direct) delivering_ = true;  // by this very piece
+  if (is_direct) delivering_ = true;  // until this piece ends
   pieces_[next_].state = State::taken;
   return Piece{next_++, is_direct};
 }

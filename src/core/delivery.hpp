@@ -1,5 +1,5 @@
-// Delivery: the pieces of a search that several threads share, and their pairs on the way to one sink, in
-// blocks, so that memory for them has a limit.
+// Delivery: hands out the pieces of a shared search, and delivers their pairs to one sink in order. Pairs
+// wait in blocks of limited total size.
 #pragma once
 
 #include <array>
@@ -16,23 +16,23 @@
 
 namespace broadside::core {
 
-/// Some thousand pairs, and the block that follows in a list.
+/// A node of a linked list of pairs.
 struct PairBlock {
   PairBlock* next;
   std::size_t size;
   std::array<Pair, 4096> pairs;
 };
 
-/// The blocks of all lists of a search. Keeps those that are given back. Thread-safe.
+/// The block pool of all lists of a search. Keeps returned blocks for reuse. Thread-safe.
 class PairBlocks {
  public:
-  /// The most blocks in use at once: 64 MiB.
+  /// The maximum number of blocks in use at once: 64 MiB of pairs.
   static constexpr std::size_t max_blocks = (std::size_t{64} << 20) / sizeof(PairBlock::pairs);
 
-  /// An empty block; null where `max_blocks` are in use. Throws std::bad_alloc.
+  /// An empty block; null if `max_blocks` are in use. Throws std::bad_alloc.
   PairBlock* take();
 
-  /// Gives back a block and all that follow it.
+  /// Returns a block and all blocks after it in its list to the pool.
   void give_back(PairBlock* first) noexcept;
 
   std::size_t used() const;
@@ -44,7 +44,7 @@ class PairBlocks {
   std::size_t used_ = 0;
 };
 
-/// Pairs in the order in which they were appended. Gives its blocks back.
+/// Pairs in the order in which they were appended. Its destructor returns the blocks to their pool.
 class PairList {
  public:
   PairList() = default;
@@ -61,11 +61,11 @@ class PairList {
   }
   ~PairList() { clear(); }
 
-  /// False if `blocks` has too little room for all of them, or throws std::bad_alloc; the list is then good
-  /// for clear() alone.
+  /// Returns false if `blocks` has too little room, and may throw std::bad_alloc. After either, the list may
+  /// only be cleared.
   bool append(std::span<const Pair> pairs, PairBlocks& blocks);
 
-  /// Hands all pairs on, and gives back each block once the sink has taken it.
+  /// Passes all pairs to the sink, and returns each block to the pool once the sink has taken its pairs.
   void move_to(PairSink& sink);
 
   void clear() noexcept;
@@ -76,14 +76,13 @@ class PairList {
   PairBlock* last_ = nullptr;
 };
 
-/// Workers take pieces in order and finish them in any order; the pairs go to the sink in order, in the
-/// thread that made the delivery: the caller's. That thread searches straight into the sink where nothing
-/// waits before its piece; all other pieces keep their pairs in blocks until it comes to deliver them.
+/// Workers take pieces in order and finish them in any order. The pairs reach the sink in order, in the
+/// caller's thread: the one that made the delivery. That thread searches directly into the sink if all pieces
+/// before its own are delivered. All other pieces keep their pairs in blocks until it delivers them.
 ///
-/// No worker waits for another. One that finds no room takes no further piece, and a piece that outgrows the
-/// room is given up, to be searched again. So a search goes by rounds of all workers; a round after which
-/// nothing could be delivered was stopped by the first piece, which is then for the caller's thread to
-/// search.
+/// No worker waits for another. A worker that finds no room takes no further piece; a piece that runs out of
+/// room is dropped and searched again. So a search runs in rounds of all workers. If a round delivers
+/// nothing, its first piece ran out of room, and the caller's thread then searches that piece.
 class Delivery {
  public:
   Delivery(PairBlocks& blocks, std::size_t pieces, PairSink& target)
@@ -91,29 +90,29 @@ class Delivery {
 
   struct Piece {
     std::size_t number;
-    bool is_direct;  // its pairs go straight to the target
+    bool is_direct;  // its pairs go directly to the target
   };
 
   bool is_callers_thread() const { return std::this_thread::get_id() == caller_; }
 
-  /// How many pieces are delivered, which is the number of the first that is not. For the caller's thread.
+  /// How many pieces are delivered: the number of the first undelivered one. Only for the caller's thread.
   std::size_t delivered() const { return delivered_; }
 
   bool is_complete() const { return delivered_ == pieces_.size(); }
 
   void begin_round();
 
-  /// The next piece for a worker; none if there is no other, or no room for one, or if the round is to end.
+  /// The next piece for a worker; empty if none is left, there is no room for one, or the round is to end.
   std::optional<Piece> take();
 
-  /// Says that a piece has ended, and takes the pairs of one that is not direct.
+  /// Marks a piece as ended, and takes its pairs if it is not direct.
   void end(const Piece& piece, PairList pairs);
 
-  /// Says that there was no room for a piece's pairs, which are dropped.
+  /// Reopens a piece that ran out of room and dropped its pairs.
   void give_up(const Piece& piece);
 
-  /// Delivers the next piece, if it has ended, and says whether it did. In the caller's thread alone; where
-  /// the sink itself came here, what called it goes on when it returns.
+  /// Delivers the next piece if it has ended; returns whether it did. Only for the caller's thread. Returns
+  /// false if called within a delivery, as when the sink runs a task of the executor.
   bool deliver_next();
 
  private:
@@ -127,12 +126,12 @@ class Delivery {
   PairBlocks* blocks_;
   PairSink* target_;
   std::thread::id caller_ = std::this_thread::get_id();
-  std::mutex mutex_;  // for all that follows
+  std::mutex mutex_;  // guards all members below
   std::vector<Result> pieces_;
-  std::size_t next_ = 0;       // no piece before it is open
+  std::size_t next_ = 0;       // no piece before this one is open
   std::size_t delivered_ = 0;  // written by the caller's thread alone
   bool delivering_ = false;
-  bool workers_left_ = false;  // in this round, since there was no room
+  bool workers_left_ = false;  // a worker left this round for lack of room
   bool round_ends_ = false;
 };
 

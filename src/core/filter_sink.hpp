@@ -1,5 +1,5 @@
-// FilterSink: a sink that passes pairs on to another one, changed or left out. PassingSink: one by a
-// function.
+// FilterSink: a sink that changes or drops pairs and passes the rest to another sink. PassingSink: a filter
+// made from a function.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace broadside::core {
 
-/// consume() must depend on the pairs alone and change only the target, so that several
-/// threads can filter at the same time, each with a filter of its own onto a target of its own.
+/// consume() must depend on the pairs alone and change only the target, so that several threads can filter
+/// at the same time, each with its own filter and target.
 class FilterSink : public PairSink {
  public:
   /// The sink if it is a filter, else null.
@@ -21,14 +21,14 @@ class FilterSink : public PairSink {
 
   PairSink& target() const noexcept { return *target_; }
 
-  /// The same filter onto another target, which must outlive it.
+  /// A copy of this filter onto another target, which must outlive it.
   virtual std::unique_ptr<FilterSink> onto(PairSink& target) const = 0;
 
  protected:
   explicit FilterSink(PairSink& target) : target_(&target) {}
 
-  /// Calls `pass(pair, to)` for each pair, which sets `to` to what becomes of it and returns whether it is
-  /// passed on. Written in any case, and kept if it is: a branch could not be predicted.
+  /// Calls `pass(pair, to)` for each pair. `pass` sets `to` to the pair to pass on, and returns whether to
+  /// pass it on. `to` is written in either case, because a branch could not be predicted.
   template <typename Pass>
   void pass_on(std::span<const Pair> pairs, const Pass& pass) {
     while (!pairs.empty()) {
@@ -47,7 +47,7 @@ class FilterSink : public PairSink {
   PairSink* target_;
 };
 
-/// A filter by a function, as pass_on() takes it. Threads have a copy of the function each.
+/// A filter made from a function as pass_on() takes it. Each thread has its own copy of the function.
 template <typename Pass>
 class PassingSink final : public FilterSink {
  public:

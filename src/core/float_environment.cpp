@@ -1,4 +1,4 @@
-// The floating-point environment: set, and set back.
+// The floating-point environment: set and restored.
 #include "core/float_environment.hpp"
 
 #include <cfloat>
@@ -12,13 +12,13 @@ namespace broadside::core {
 namespace {
 
 #if defined(__wasm__) && !defined(__wasm_atomics__)
-// There is one thread, and clang 14 does not always make a plain variable of a thread-local one by itself.
+// There is one thread, and clang 14 does not always turn a thread-local variable into a plain one by itself.
 #define BROADSIDE_THREAD_LOCAL
 #else
 #define BROADSIDE_THREAD_LOCAL thread_local
 #endif
 
-/// Of the library's caller, while a DefaultEnvironment has replaced it.
+/// The environment of the library's caller while a DefaultEnvironment replaces it.
 BROADSIDE_THREAD_LOCAL constinit FloatControl callers_control = FloatControl::standard();
 
 }  // namespace
@@ -35,7 +35,7 @@ void DefaultEnvironment::leave() const noexcept {
 
 CallersEnvironment::CallersEnvironment() noexcept : callers_(callers_control) {
   if (callers_.is_standard()) return;
-  // A callback may call the library again, as any caller.
+  // A callback may call the library again, like any caller.
   callers_control = FloatControl::standard();
   callers_.set();
 }

@@ -18,7 +18,7 @@ struct FloatControl {
   static FloatControl now() noexcept { return {_mm_getcsr()}; }
   void set() const noexcept { _mm_setcsr(static_cast<unsigned>(bits)); }
   static constexpr FloatControl standard() noexcept { return {_MM_MASK_MASK}; }
-  /// The lowest bits tell which exceptions were raised, and decide nothing.
+  /// Ignores the lowest bits: they record raised exceptions and do not affect results.
   bool is_standard() const noexcept { return (bits & ~std::uint64_t{_MM_EXCEPT_MASK}) == _MM_MASK_MASK; }
 #elif defined(__aarch64__)
   static FloatControl now() noexcept {
@@ -30,13 +30,13 @@ struct FloatControl {
   static constexpr FloatControl standard() noexcept { return {0}; }
   bool is_standard() const noexcept { return bits == 0; }
 #elif defined(__wasm__)
-  // WebAssembly has no other environment.
+  // WebAssembly has only the default environment.
   static constexpr FloatControl now() noexcept { return {0}; }
   void set() const noexcept {}
   static constexpr FloatControl standard() noexcept { return {0}; }
   constexpr bool is_standard() const noexcept { return true; }
 #else
-  // Where C++ has no name for flushed denormals, the rounding mode.
+  // Only the rounding mode: standard C++ has no access to the flushing of denormals.
   static FloatControl now() noexcept { return {static_cast<std::uint64_t>(std::fegetround())}; }
   void set() const noexcept { std::fesetround(static_cast<int>(bits)); }
   static constexpr FloatControl standard() noexcept { return {FE_TONEAREST}; }
@@ -44,24 +44,23 @@ struct FloatControl {
 #endif
 };
 
-/// Gives this thread the default environment while it lives: rounding to nearest, denormals kept, no traps.
-/// Afterwards the thread has its own again.
+/// Gives this thread the default environment for its lifetime: rounding to nearest, denormals kept, no traps.
+/// Its destructor restores the thread's own.
 ///
-/// So boxes are compared by value, and pairs and their order are the same in every environment. Each public
-/// function that compares or computes coordinates begins with one, and so does each task of an executor.
-/// Where the thread is in the default environment already, it costs a read of the register, some
-/// nanoseconds.
+/// Boxes are thus compared by value, and pairs and their order are the same in every environment. Each public
+/// function that compares or computes coordinates begins with one, and so does each task of an executor. If
+/// the thread is already in the default environment, it costs one read of the register: some nanoseconds.
 ///
-/// Compilers do not know what it does, and may move arithmetic on local values across its beginning and its
-/// end. So read operands through references, and write a result that is returned to a volatile variable; a
-/// call of a function in another source needs neither.
+/// Compilers do not know this effect, and may move arithmetic on local values across the constructor and the
+/// destructor. So read operands through references, and write a returned result to a volatile variable. A
+/// call of a function in another source file needs neither.
 class DefaultEnvironment {
  public:
   DefaultEnvironment() noexcept : thread_(FloatControl::now()), callers_(thread_) {
     if (is_foreign()) enter();
   }
 
-  /// For a task in a thread of an executor: `callers` is what CallersEnvironment::control() says in the
+  /// For a task in a thread of an executor: `callers` is what CallersEnvironment::control() returns in the
   /// thread that hands out the task.
   explicit DefaultEnvironment(FloatControl callers) noexcept
       : thread_(FloatControl::now()), callers_(callers) {
@@ -74,20 +73,21 @@ class DefaultEnvironment {
   DefaultEnvironment(const DefaultEnvironment&) = delete;
   DefaultEnvironment& operator=(const DefaultEnvironment&) = delete;
 
-  /// Whether the thread's or the caller's is another one. Then what calls back needs a CallersEnvironment.
+  /// Whether the thread's or the caller's environment is not the default. Callbacks then need a
+  /// CallersEnvironment.
   bool is_foreign() const noexcept { return !thread_.is_standard() || !callers_.is_standard(); }
 
  private:
   void enter() noexcept;
   void leave() const noexcept;
 
-  FloatControl thread_;                            // what this thread had
-  FloatControl callers_;                           // what the library's caller has,
-  FloatControl outer_ = FloatControl::standard();  // and that of a DefaultEnvironment around this one
+  FloatControl thread_;                            // the environment of this thread before
+  FloatControl callers_;                           // the environment of the library's caller
+  FloatControl outer_ = FloatControl::standard();  // `callers_` of a DefaultEnvironment around this one
 };
 
-/// Gives this thread the environment of the library's caller again while it lives: around calls of sinks,
-/// visitors, predicates and executors. Does nothing where that is the default one.
+/// Restores the environment of the library's caller for its lifetime: around calls of sinks, visitors,
+/// predicates and executors. Does nothing if that is the default.
 class CallersEnvironment {
  public:
   CallersEnvironment() noexcept;

@@ -11,13 +11,13 @@
 namespace broadside::core {
 namespace {
 
-/// Ways to follow boxes that were tunables of the library's own trackers.
+/// Former values of `update`: ways in which the library's own trackers followed boxes.
 constexpr std::array<std::string_view, 13> former_ways = {
     "reinsert", "translate", "insertion", "binary", "merge", "heap",    "root",
     "relative", "siblings",  "changed",   "all",    "refit", "enlarge",
 };
 
-/// Whether earlier versions had the algorithm: one that a user registers may call its tunables what it likes.
+/// Whether the algorithm is the library's own. An algorithm that a user registers may have any tunables.
 bool is_ours(std::string_view algorithm) {
   constexpr std::array<std::string_view, 6> ours = {"auto",     "brute_force", "grid", "sweep_and_prune",
                                                     "quadtree", "bvh"};
@@ -43,7 +43,7 @@ Spec current_spec(Spec current) {
   current.name = current_algorithm(current.name);
   for (auto& [tunable, value] : current.values)
     value = std::string(current_value(current.name, tunable, value.text()));
-  // Not std::ranges::remove_if(), whose subrange clang 14 does not compile.
+  // Not std::ranges::remove_if(): clang 14 does not compile the subrange it returns.
   const auto is_gone = [&current](const auto& given) {
     return !former_tunable(current.name, given.first).empty() ||
            !former_value(current.name, given.first, given.second.text()).empty();

@@ -1,4 +1,4 @@
-// Names of earlier versions, so that old specs and results are understood, or refused with the reason.
+// Names of earlier versions, so that old specs and results are understood, or rejected with the reason.
 #pragma once
 
 #include <string_view>
@@ -7,15 +7,15 @@
 
 namespace broadside::core {
 
-/// The current name of an algorithm; `name` itself if it is no former one.
+/// The current name of an algorithm; `name` itself if it is not a former name.
 std::string_view current_algorithm(std::string_view name) noexcept;
 
 /// The current name of a value of an algorithm's tunable, if only its name changed; else `value` itself.
 std::string_view current_value(std::string_view algorithm, std::string_view tunable,
                                std::string_view value) noexcept;
 
-/// A spec of an earlier version as this one understands it: renamed, and without the tunables and values that
-/// are gone, none of which changed the pairs.
+/// Translates a spec of an earlier version: uses current names, and drops removed tunables and values, which
+/// never affected the pairs.
 Spec current_spec(Spec spec);
 
 /// The canonical form of a spec, the same for all specs that make the same algorithm with the same values:
@@ -27,7 +27,7 @@ Spec canonical_spec(const Spec& spec);
 /// message; empty if it never had it.
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value);
 
-/// The reason why algorithms no longer have this tunable, likewise.
+/// The reason why a library's algorithm no longer has this tunable, likewise.
 std::string_view former_tunable(std::string_view algorithm, std::string_view tunable);
 
 }  // namespace broadside::core

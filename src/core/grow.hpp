@@ -7,8 +7,8 @@
 
 namespace broadside::core {
 
-/// Makes `size` the vector's size, new elements being `value`. Where memory is to be taken, it is for an
-/// eighth more: a vector would double it, and so double the memory of each box for the sake of a few more.
+/// Resizes the vector; new elements are `value`. Reserves an eighth more than needed when it reallocates: the
+/// vector itself would double its memory for the sake of a few more boxes.
 template <typename T>
 void resize_by_eighths(std::vector<T>& vector, std::size_t size, const T& value = T{}) {
   if (size > vector.capacity()) vector.reserve(size + size / 8);

@@ -1,4 +1,4 @@
-// Refuses boxes that no algorithm may see, before anything has changed.
+// Rejects invalid boxes before anything has changed.
 #include "core/input_check.hpp"
 
 #include <algorithm>

@@ -11,7 +11,7 @@ namespace broadside {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
 
 void detail::prefer_large_pages(void* begin, std::size_t bytes) noexcept {
-  // Two of the usual size: one at least lies wholly within the memory, wherever that begins.
+  // Two large pages of the usual size: wherever the memory begins, at least one lies wholly within it.
   constexpr std::size_t min_bytes = std::size_t{4} << 20;
   if (bytes < min_bytes) return;
   static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));

@@ -1,4 +1,4 @@
-// LargeArray: a vector for a search's large arrays, whose memory comes in large pages where there are such.
+// LargeArray: a vector for a search's large arrays, in large pages where the system has them.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace broadside::core {
 
-/// The standard allocator, but that it asks for large pages: of a single search by cells, to fill pages of
-/// 4 KiB with zeros is half the time. Elements that are not given a value have none.
+/// The standard allocator, but it asks for large pages: zeroing pages of 4 KiB takes half the time of a
+/// single search by cells. It does not initialize elements without a given value.
 template <typename T>
 struct LargeAllocator {
   using value_type = T;  // NOLINT(readability-identifier-naming): as the standard asks
@@ -44,7 +44,7 @@ struct LargeAllocator {
 template <typename T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
 
-/// Makes `size` the array's size. What was in it is gone: it is not copied where the array grows.
+/// Resizes the array without keeping its contents: growth copies nothing.
 template <typename T>
 void renew(LargeArray<T>& array, std::size_t size) {
   if (size > array.capacity()) array.clear();

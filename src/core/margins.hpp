@@ -1,4 +1,4 @@
-// Margins: how far boxes are enlarged, and when that is done anew.
+// Margins: how far boxes are enlarged, and when they are enlarged anew.
 #pragma once
 
 #include <algorithm>
@@ -9,23 +9,23 @@
 
 namespace broadside::core {
 
-/// The distances of WorldOptions, as numbers of the boxes' type. A pointer to a velocity may be null: none.
+/// The margins of WorldOptions, in the number type of the boxes. A null velocity means that there is none.
 template <int D, typename Real>
 struct Margins {
   Real margin;
   Real relative;
   Real frames;
-  bool is_of_shortest = false;  ///< whether `relative` is of a box's shortest side, instead of its longest
+  bool is_of_shortest = false;  ///< `relative` is a part of a box's shortest side, not of its longest
 
-  /// Whether each of the two applies. A given one that rounds to 0 does apply: it limits the other one to 0.
+  /// Whether `margin` and `relative` apply. One that is given but rounds to 0 does: it limits the other to 0.
   bool has_margin = margin > 0;
   bool has_relative = relative > 0;
 
   /// Whether boxes are enlarged at all.
   bool any() const noexcept { return margin > 0 || relative > 0 || frames > 0; }
 
-  /// The box with its margin on every side, and extended along its velocity. Sums of infinities that are no
-  /// number add nothing, so that an absent box stays absent.
+  /// The box with its margin on every side, and extended along its velocity. A sum of infinities that is NaN
+  /// adds nothing, so an absent box stays absent.
   Box<D, Real> enlarged(Box<D, Real> box, const Point<D, Real>* velocity) const noexcept {
     const Real its_margin = margin_of(box);
     for (int axis = 0; axis < D; ++axis) {
@@ -36,8 +36,8 @@ struct Margins {
     return box;
   }
 
-  /// Whether `kept` stays the enlarged box of a box that moved: it contains it, and is not far too long for a
-  /// box that has shrunk or slowed down. Without a branch. No absent box stays another's.
+  /// Whether `kept` can stay the enlarged box of a moved box: it contains `box`, and is not far too long for
+  /// it after the box shrank or slowed down. Branchless. False if only one of the two is absent.
   bool keeps(const Box<D, Real>& kept, const Box<D, Real>& box,
              const Point<D, Real>* velocity) const noexcept {
     const Real slack = max_margins * margin_of(box);
@@ -53,10 +53,10 @@ struct Margins {
   }
 
  private:
-  /// A new enlarged box is longer than its box by two margins.
+  /// How many margins a kept box may be longer than its box. A newly enlarged one is longer by two.
   static constexpr Real max_margins = 6;
 
-  /// A side that is not finite counts for nothing.
+  /// Infinite sides are ignored.
   Real margin_of(const Box<D, Real>& box) const noexcept {
     if (!has_relative) return margin;
     constexpr Real infinity = std::numeric_limits<Real>::infinity();

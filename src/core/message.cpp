@@ -1,4 +1,4 @@
-// Messages of exceptions, put together of texts and numbers.
+// Messages of exceptions, composed of texts and numbers.
 #include "core/message.hpp"
 
 #include "core/number_text.hpp"

@@ -1,4 +1,4 @@
-// Messages of exceptions, put together of texts and numbers.
+// Messages of exceptions, composed of texts and numbers.
 #pragma once
 
 #include <concepts>
@@ -10,7 +10,7 @@
 
 namespace broadside::core {
 
-/// A part of a message: a text, which must outlive it, or a whole number of at least 0.
+/// A part of a message: a text, which must outlive the part, or a non-negative integer.
 class MessagePart {
  public:
   MessagePart(const char* text) noexcept : MessagePart(std::string_view(text)) {}
@@ -27,11 +27,11 @@ class MessagePart {
   std::size_t value_;  // the text's length, or the number
 };
 
-/// The parts one after the other. A sum of strings would take several times the code of this call, where it
-/// is all but never run.
+/// Concatenates the parts. A sum of strings would take several times the code of this call, on paths that
+/// hardly ever run.
 std::string message(std::initializer_list<MessagePart> parts);
 
-/// The names with commas between them; "none" where there are none.
+/// The names, separated by commas; "none" if there are none.
 std::string listed(std::span<const std::string> names);
 
 }  // namespace broadside::core

@@ -1,5 +1,5 @@
-// MovedBox: a box that changed from one frame to the next, as structures and kernels take it, and where they
-// write what it meets. nan_box(): the sentinel for "no box here".
+// MovedBox: a box that changed from one frame to the next, as structures and kernels take it. ChangeSinks:
+// where they write its pairs. nan_box(): the sentinel for "no box here".
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace broadside::core {
 /// Sentinel: a box that has no slot in a structure, or a chain without a first block.
 inline constexpr std::uint32_t no_slot = 0xffffffffU;
 
-/// A box of NaNs: overlaps nothing, not even an infinite box, without asking whether it is present. So it
-/// pads unused SIMD lanes. The absent box would not do: it overlaps an infinite one.
+/// A box of NaNs. It overlaps nothing, not even an infinite box, without a test for presence, so it pads
+/// unused SIMD lanes. The absent box would not do: it overlaps an infinite box.
 template <int D>
 constexpr Box<D> nan_box() noexcept {
   Box<D> box{};
@@ -32,37 +32,36 @@ struct MovedBox {
   Box<D> bounds;  ///< around both, or whichever is present
   BoxId id;
 
-  /// Where the algorithm keeps it: block * 16 + lane. For the algorithm to set.
+  /// Where the algorithm keeps it: block * 16 + lane. The algorithm sets it.
   std::uint32_t slot = no_slot;
 
   bool was_present;
   bool is_present;
 
-  /// Whether pairs that overlap before and now are asked for as well, since a filter may have changed what
-  /// they mean.
+  /// Whether its filter changed, so that pairs that overlap both before and now must be reviewed as well.
   bool filter_changed;
 
-  /// Whether the two boxes are too far from each other to be looked up as one. For the algorithm to set.
+  /// Whether `before` and `now` are too far apart to be looked up as one box. The algorithm sets it.
   bool is_far = false;
 };
 
-/// Where a search for what moved boxes meet writes.
+/// Where a search for the changed pairs of moved boxes writes.
 struct ChangeSinks {
-  PairSink& begun;       ///< a moved box with each box at rest that it overlaps now and did not before
-  PairSink& ended;       ///< and that it did and does not
-  PairSink& candidates;  ///< pairs whose boxes must be looked at again; some more than once
+  PairSink& begun;       ///< a moved box with each box at rest that it overlaps now but not before
+  PairSink& ended;       ///< a moved box with each box at rest that it overlapped before but not now
+  PairSink& candidates;  ///< pairs that must be tested again; some more than once
 
-  /// By id: 1 for boxes that move, whether the structure has moved them already or not yet.
+  /// By id: 1 for boxes that move, whether or not the structure has moved them yet.
   const std::uint8_t* moves;
 
-  /// Counts the pairs compared, and may end the search by an exception; or null.
+  /// Counts the compared pairs, and may end the search by an exception. May be null.
   Checkpoint* checkpoint = nullptr;
 };
 
 /// The work of a search.
 struct ChangeWork {
   std::uint64_t tests = 0;   ///< pairs of boxes compared
-  std::uint64_t blocks = 0;  ///< blocks looked at
+  std::uint64_t blocks = 0;  ///< blocks visited
 
   ChangeWork& operator+=(const ChangeWork& other) {
     tests += other.tests;

@@ -1,4 +1,4 @@
-// In place of the standard executor, in a library built without threads.
+// The standard executor of a library built without threads: none.
 #include "broadside/executor.hpp"
 
 namespace broadside {

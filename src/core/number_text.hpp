@@ -6,7 +6,7 @@
 
 namespace broadside::core {
 
-/// The number that `text` is from end to end, or NaN. One that is too large is infinite, one too small 0.
+/// The number that all of `text` spells, or NaN. A number that is too large is infinite, one too small is 0.
 double number_in(std::string_view text);
 
 /// The shortest text that reads back to `value`.

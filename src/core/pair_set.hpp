@@ -37,7 +37,7 @@ class PairSet {
     if (!contains(pair)) return false;
     std::size_t gap = find(ordered_key(pair));
     for (std::size_t place = next(gap); keys_[place] != none; place = next(place)) {
-      // One that stands before its gap on the way from its home moves there.
+      // A key moves into the gap if probing for it passes the gap.
       if (((place - home(keys_[place])) & mask()) < ((place - gap) & mask())) continue;
       keys_[gap] = keys_[place];
       gap = place;
@@ -55,11 +55,11 @@ class PairSet {
   std::size_t size() const noexcept { return size_; }
   std::size_t bytes() const noexcept { return sizeof(*this) + keys_.capacity() * sizeof(std::uint64_t); }
 
-  /// The table: a key for each pair, and zeros.
+  /// The table: the key of each pair, and 0 in free places.
   std::span<const std::uint64_t> keys() const noexcept { return keys_; }
 
  private:
-  /// No pair: the key of box 0 with itself.
+  /// Marks a free place: the key of box 0 with itself, which is no pair.
   static constexpr std::uint64_t none = 0;
 
   static std::uint64_t ordered_key(Pair pair) noexcept {
@@ -69,13 +69,13 @@ class PairSet {
   std::size_t mask() const noexcept { return keys_.size() - 1; }
   std::size_t next(std::size_t place) const noexcept { return (place + 1) & mask(); }
 
-  /// Where a key's search begins: the highest bits of a multiple of the golden ratio (ibid., 6.4).
+  /// Where probing for a key begins: Fibonacci hashing (ibid., 6.4).
   std::size_t home(std::uint64_t key) const noexcept {
     const int bits = std::countr_zero(keys_.size());
     return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15U >> (64 - bits));
   }
 
-  /// Where the key is, or would be. The table is not empty, and half of it is free.
+  /// Where the key is, or would be inserted. The table must not be empty; at least half of it is free.
   std::size_t find(std::uint64_t key) const noexcept {
     std::size_t place = home(key);
     while (keys_[place] != none && keys_[place] != key) place = next(place);
@@ -91,7 +91,7 @@ class PairSet {
     keys_.swap(larger.keys_);
   }
 
-  std::vector<std::uint64_t> keys_;  // size is a power of two; `none` where a place is free
+  std::vector<std::uint64_t> keys_;  // size is a power of two; `none` in free places
   std::size_t size_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Sinks: their functions that are not inline.
+// PairSink: its functions that are not inline.
 #include <stdexcept>
 
 #include "broadside/pair.hpp"

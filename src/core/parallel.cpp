@@ -1,5 +1,4 @@
-// Parallel: a search's work shared among threads, so that the pairs and their order do not depend on how
-// many.
+// Parallel: shares a search's work among threads. Pairs and their order do not depend on the thread count.
 #include "core/parallel.hpp"
 
 #include <algorithm>
@@ -30,7 +29,7 @@ void Checkpoint::pass() {
 namespace broadside::core {
 namespace {
 
-/// Thrown where there is no room for a piece's pairs.
+/// Thrown when there is no room for a piece's pairs.
 struct NoRoom {};
 
 /// Thrown by a worker's checkpoint after another worker has thrown.
@@ -63,8 +62,8 @@ class BufferSink final : public PairSink {
   PairList pairs_;
 };
 
-/// The filters between an algorithm and its caller's sink, the algorithm's end first. What they hold of an
-/// earlier search is handed on: its pairs come before those of this one.
+/// The filters between an algorithm and its caller's sink, the algorithm's end first. Flushes them, because
+/// the pairs of an earlier search come before those of this one.
 std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   std::vector<const FilterSink*> filters;
   for (FilterSink* filter = FilterSink::of(pairs); filter != nullptr;
@@ -75,7 +74,7 @@ std::vector<const FilterSink*> filters_before(PairSink& pairs) {
   return filters;
 }
 
-/// Filters of a worker's own, like those given, onto a target of its own.
+/// A worker's copies of the given filters, onto a target of its own.
 class FilterChain {
  public:
   FilterChain(const std::vector<const FilterSink*>& filters, PairSink& target) : front_(&target) {
@@ -87,7 +86,7 @@ class FilterChain {
 
   PairSink& front() { return *front_; }
 
-  /// Hands on what the filters hold, up to the target and not beyond.
+  /// Flushes the filters into the target, which is not flushed itself.
   void flush() {
     for (auto filter = chain_.rbegin(); filter != chain_.rend(); ++filter) (*filter)->flush();
   }
@@ -102,7 +101,7 @@ void add(Statistics& all, const Statistics& more) {
   all.references += more.references;
 }
 
-/// The parts of the piece `number`, where `parts` are cut into `pieces`.
+/// The range of parts in piece `number` when `parts` parts are cut into `pieces` pieces.
 Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexcept {
   const auto begin = [&](std::size_t i) { return parts / pieces * i + std::min(i, parts % pieces); };
   return {begin(number), begin(number + 1)};
@@ -110,10 +109,10 @@ Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexce
 
 }  // namespace
 
-/// The exceptions of tasks that run at the same time: the first in the tasks' order is kept.
+/// Keeps one exception of concurrent tasks: the first in the tasks' order.
 class Parallel::Errors {
  public:
-  /// In a handler, for the exception handled.
+  /// Call it in a handler: notes the exception being handled.
   void note(std::size_t task) noexcept {
     const std::lock_guard lock(mutex_);
     if (task < task_) {
@@ -168,7 +167,7 @@ class Parallel::Waiting {
   std::size_t others_ = 0;
 };
 
-/// A search that is cut into pieces of consecutive parts, each of which one worker searches.
+/// A search cut into pieces of consecutive parts. One worker searches each piece.
 class Parallel::SharedSearch {
  public:
   SharedSearch(Parallel& parallel, std::size_t parts, PairSink& pairs, const Search& search)
@@ -235,7 +234,7 @@ class Parallel::SharedSearch {
     }
   }
 
-  /// Searches pieces, or only one, until the delivery has no other or something goes wrong.
+  /// Searches pieces, or only one, until the delivery hands out no other, room runs out or something throws.
   void search_pieces(Delivery& delivery, std::size_t worker, bool only_one) noexcept {
     std::size_t at = 0;
     try {
@@ -359,12 +358,12 @@ void Parallel::pass_workers_checkpoint() const {
 void Parallel::run_workers(Errors& errors, const std::function<void(std::size_t)>& body) {
   errors_ = &errors;
   Waiting others;
-  // An executor brings the tasks' writes to this thread by means of its own, which need not be of a kind that
-  // a thread sanitizer sees. These two are.
+  // An executor synchronizes its tasks with this thread by means that a thread sanitizer may not see. It
+  // does see these two.
   std::atomic<bool> begun = false;
   std::atomic<std::size_t> ended = 0;
   begun.store(true, std::memory_order_release);
-  // oneTBB's threads have the environment in which it was called first, and in a task this one has as well.
+  // oneTBB's threads have the environment of its first caller, and so does this thread within a task.
   const FloatControl control = CallersEnvironment::control();
   const CallersEnvironment callers;
   try {

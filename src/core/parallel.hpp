@@ -1,5 +1,4 @@
-// Parallel: a search's work shared among threads, so that the pairs and their order do not depend on how
-// many.
+// Parallel: shares a search's work among threads. Pairs and their order do not depend on the thread count.
 #pragma once
 
 #include <cstddef>
@@ -23,12 +22,12 @@ struct Range {
   std::size_t size() const noexcept { return end - begin; }
 };
 
-/// Shares work among workers. A worker is one task of the executor, which takes piece after piece; it runs in
+/// Shares work among workers. A worker is one task of the executor, which takes piece after piece. It runs in
 /// one thread, so scratch memory by worker needs no lock. With one worker everything runs in the calling
 /// thread, as if this class were not there.
 ///
-/// Pieces must depend on the boxes alone, never on the number of workers. Keeps its memory. One thread at a
-/// time.
+/// The parts of a search must depend on the boxes alone, never on the number of workers. Keeps its memory for
+/// reuse. For one thread at a time.
 class Parallel {
  public:
   Parallel();
@@ -36,7 +35,7 @@ class Parallel {
   Parallel(const Parallel&) = delete;
   Parallel& operator=(const Parallel&) = delete;
 
-  /// Sets the number of workers for a search that takes about as long as looking at `boxes` boxes.
+  /// Sets the number of workers for a search that takes about as long as visiting `boxes` boxes.
   void start(const Workers& workers, std::size_t boxes);
 
   std::size_t workers() const noexcept { return workers_; }
@@ -48,8 +47,8 @@ class Parallel {
     return checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
   }
 
-  /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Throws what
-  /// a body throws, of several the first in order.
+  /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Rethrows
+  /// an exception of a body; of several, the first in order.
   template <typename Body>
   void for_ranges(std::size_t count, const Body& body) {
     if (workers() > 1)
@@ -61,23 +60,23 @@ class Parallel {
   /// How many ranges for_numbered_ranges() makes.
   std::size_t range_count() const noexcept { return workers() == 1 ? 1 : ranges_per_worker * workers_; }
 
-  /// The range of a number below range_count(): the same at every call between two of start().
+  /// Range `number`, below range_count(), of [0, count): the same in every call until the next start().
   Range range(std::size_t number, std::size_t count) const noexcept;
 
-  /// Calls body(number, range, worker) for each range of a number.
+  /// Calls body(number, range, worker) for each numbered range, like for_ranges().
   template <typename Body>
   void for_numbered_ranges(std::size_t count, const Body& body) {
     if (workers() > 1) return share_ranges(count, std::cref(body));
     body(std::size_t{0}, Range{0, count}, std::size_t{0});
   }
 
-  /// Searches [0, parts) for pairs: search(range, worker, sink) writes those of a few consecutive parts, and
-  /// returns what it did. `pairs` gets them part by part in order, in this thread, while others still search;
-  /// unless it can be cloned, then each worker fills a clone. Returns the sum of what was done.
+  /// Searches [0, parts) for pairs: search(range, worker, sink) writes the pairs of a few consecutive parts,
+  /// and returns its statistics. `pairs` gets them part by part in order, in this thread, while others still
+  /// search. If `pairs` can be cloned, each worker fills a clone instead. Returns the sum of the statistics.
   ///
-  /// Keeps at most 64 MiB of pairs that wait for those before them. A worker that finds no room drops what it
-  /// found of its parts, and they are searched again: `search` must be safe against exceptions of its
-  /// sink. Throws what a search or the sink throws, of several the first in order.
+  /// Keeps at most 64 MiB of pairs that wait for earlier ones. A worker that finds no room drops the pairs of
+  /// its parts, which are then searched again. So `search` must be exception-safe: its sink may throw.
+  /// Rethrows an exception of a search or the sink; of several, the first in order.
   template <typename Search>
   Statistics search(std::size_t parts, PairSink& pairs, const Search& search) {
     if (workers_ > 1) return share_search(parts, pairs, std::cref(search));
@@ -90,7 +89,7 @@ class Parallel {
   static constexpr std::size_t ranges_per_worker = 4;
   static constexpr std::size_t pieces_per_worker = 32;
 
-  /// With a checkpoint a piece has no more boxes than this, so that the next one is not far.
+  /// With a checkpoint, a piece has about this many boxes at most, so that checkpoints are frequent.
   static constexpr std::size_t boxes_between_checkpoints = 1024;
 
   using RangeBody = std::function<void(std::size_t, Range, std::size_t)>;
@@ -104,17 +103,17 @@ class Parallel {
   Statistics share_search(std::size_t parts, PairSink& pairs, const Search& search);
   Statistics search_by_pieces(std::size_t parts, PairSink& pairs, const Search& search);
 
-  /// How many pieces a search of so many parts is cut into.
+  /// How many pieces a search of `parts` parts is cut into.
   std::size_t pieces_of(std::size_t parts) const noexcept;
 
-  /// Calls the caller's checkpoint, if there is one. In the caller's thread.
+  /// Calls the caller's checkpoint, if there is one. Only for the caller's thread.
   void pass_checkpoint() const;
 
   /// For a worker: calls the caller's checkpoint or, in another thread, ends the work after an exception.
   void pass_workers_checkpoint() const;
 
-  /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw, but notes in
-  /// `errors`. The caller's thread passes its checkpoint while it waits for others.
+  /// Runs body(worker) on every worker and returns when all have ended. `body` must not throw; it notes
+  /// exceptions in `errors`. The caller's thread calls its checkpoint while it waits for others.
   void run_workers(Errors& errors, const std::function<void(std::size_t)>& body);
 
   class Waiting;

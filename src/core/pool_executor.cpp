@@ -12,7 +12,7 @@
 namespace broadside {
 
 Executor* standard_executor() noexcept {
-  // Never destroyed: its threads sleep when the process ends, and others may still search then.
+  // Never destroyed: when the process ends, its threads sleep, but other threads may still search.
   alignas(core::ThreadPool) static std::array<std::byte, sizeof(core::ThreadPool)> storage;
   static auto* const pool =
       ::new (storage.data()) core::ThreadPool(std::max(std::thread::hardware_concurrency(), 1u));

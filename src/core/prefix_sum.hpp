@@ -7,9 +7,9 @@
 
 namespace broadside::core {
 
-/// Makes counts the places from which to scatter. `counts` are those of `buckets` buckets, range after range
-/// where several threads count at once, each for a range of the items: in a bucket, the items of one range
-/// stand before those of the next. Returns the sum.
+/// Replaces counts by the places from which to scatter (an exclusive prefix sum); returns the total. `counts`
+/// has `buckets` counts for each range of items; there are several ranges if several threads count. In a
+/// bucket, the items of one range come before those of the next.
 template <typename Count>
 Count prefix_sum(std::span<Count> counts, std::size_t buckets) {
   Count sum = 0;

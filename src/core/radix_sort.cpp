@@ -1,4 +1,4 @@
-// Boxes' places sorted by a float.
+// RadixSort: sorts the places of boxes by a float.
 #include "core/radix_sort.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr int digits = 3;
 constexpr int digit_bits = 11;
 constexpr std::size_t digit_values = std::size_t{1} << digit_bits;
 
-/// Fewer are sorted by comparison, which is faster then.
+/// Fewer places are sorted by comparison, which is then faster.
 constexpr std::size_t min_radix_sorted = 128;
 
 constexpr std::size_t digit(std::uint32_t key, int at) {
@@ -58,7 +58,7 @@ void RadixSort::sort_by_ranges(Parallel& parallel, int at) {
   const std::size_t ranges = parallel.range_count();
   counts_.resize(ranges * digit_values);
   parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
-    std::array<std::uint32_t, digit_values> counts{};  // no other worker's cache line
+    std::array<std::uint32_t, digit_values> counts{};  // shares no cache line with another worker
     for (std::size_t i = range.begin; i < range.end; ++i) ++counts[digit(places_[i].key, at)];
     std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * digit_values));
   });

@@ -1,4 +1,4 @@
-// Boxes' places sorted by a float: O(n) whatever the values.
+// RadixSort: sorts the places of boxes by a float in O(n), whatever the values.
 #pragma once
 
 #include <bit>
@@ -13,29 +13,29 @@
 
 namespace broadside::core {
 
-/// A number that orders as `value` does, for any float but NaN; -0.0 and 0.0 have the same.
+/// An integer key in the order of floats, for any value but NaN; -0.0 and 0.0 have the same key.
 inline std::uint32_t sort_key(float value) noexcept {
   const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
   return bits ^ (bits >> 31 != 0 ? 0xffffffffU : 0x80000000U);
 }
 
-/// A place in an array and the key it is to be sorted by.
+/// A place in an array and its sort key.
 struct KeyedPlace {
   std::uint32_t key;
   std::uint32_t place;
 };
 
-/// Sorts by key, those of equal keys in the order of their places: by comparison where they are few, else by
-/// a counting pass for each 11 bits in which the keys differ.
+/// Sorts by key, then by place: a few by comparison, more by a counting pass for each 11-bit digit in which
+/// the keys differ.
 class RadixSort {
  public:
-  /// Room for `count` places to be filled in, ascending, and sorted. Valid until the next call.
+  /// Room for `count` places, to be filled in ascending order and sorted. Valid until the next call.
   std::span<KeyedPlace> places(std::size_t count);
 
-  /// Sorts what was filled in. The result is valid until the next call of places().
+  /// Sorts the places. The result is valid until the next call of places().
   std::span<const KeyedPlace> sort();
 
-  /// The same by several workers.
+  /// The same with several workers.
   std::span<const KeyedPlace> sort(Parallel& parallel);
 
   /// The bytes held.

@@ -1,4 +1,4 @@
-// Doubles as floats in the same order.
+// Order-preserving rounding of doubles to floats.
 #include "core/rounding.hpp"
 
 #include <bit>
@@ -15,18 +15,18 @@ constexpr double largest_double = std::numeric_limits<double>::max();
 /// How many boxes are sampled to fit an origin and a scale.
 constexpr std::size_t max_fitted = 256;
 
-/// One box in sixteen gives its coordinates for knots, so that an interval holds about ten coordinates.
+/// One box in sixteen provides knots, so that about sixteen coordinates lie between two knots.
 constexpr std::size_t boxes_per_knot = 16;
-constexpr std::size_t max_knots = std::size_t{1} << 18;  // their numbers leave a float six bits between two
+constexpr std::size_t max_knots = std::size_t{1} << 18;  // leaves a float six bits between two knots
 
-/// False pairs a box that cost about what another rounding does.
+/// How many false pairs per box cost about as much as another rounding.
 constexpr double max_false_pairs = 8;
 
-/// Each false pair among the boxes that are compared stands for 4/3 a box.
+/// Each false pair among the compared boxes stands for 4/3 false pairs per box.
 constexpr double compared_share = 0.75;
 constexpr std::size_t min_compared = 64;
 
-/// Shifts a sample.
+/// The offset of a sample.
 std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
 
 /// Fits one axis to the finite minima of some boxes.
@@ -38,7 +38,7 @@ LinearRounding fit_axis(std::vector<double>& minima) {
   return {origin, distance};
 }
 
-/// Boxes by axis, so that a loop compares one with many.
+/// Boxes as a structure of arrays, so that a loop compares one with many.
 template <int D>
 class Columns {
  public:
@@ -52,7 +52,7 @@ class Columns {
 
   std::size_t size() const { return exact_.size(); }
 
-  /// How many of the first `count` boxes overlap box i as floats and not in double.
+  /// How many of the first `count` boxes overlap box i as floats but not as doubles.
   std::size_t false_pairs(std::size_t i, std::size_t count) const {
     std::uint32_t overlaps = 0;
     for (std::size_t j = 0; j < count; ++j) overlaps += overlap_as_floats(i, j);
@@ -81,11 +81,11 @@ class Columns {
 
 LinearRounding::LinearRounding(double origin, double distance) : origin_(origin) {
   if (!(distance > 0)) return;
-  // Tunables such as a grid's cell are lengths in the boxes' unit, so the unit stays what it is where floats
-  // can hold such distances.
+  // Tunables such as a grid's cell are lengths in the boxes' unit, so the unit is kept if floats can hold
+  // such distances.
   constexpr int kept_exponent = 30;
   if (std::abs(std::ilogb(distance)) <= kept_exponent) return;
-  // Beyond that the scale or its inverse would be none.
+  // Beyond that, the scale or its inverse would not be a normal number.
   const int exponent = std::clamp(std::ilogb(distance), -1022, 1022);
   scale_ = std::ldexp(1.0, -exponent);
   inverse_scale_ = std::ldexp(1.0, exponent);
@@ -111,15 +111,15 @@ float QuantileRounding::operator()(double value) const {
     const double above = (value - knots_.back()) * slope_;
     return static_cast<float>(std::min(largest, above + middle_));
   }
-  // The last knot that is not above the value, by halving without branches that cannot be predicted.
+  // Branchless binary search for the last knot that is not above the value.
   const double* knot = knots_.data();
   for (std::size_t size = knots_.size() - 1; size > 1;) {
     const std::size_t half = size / 2;
     knot += knot[half] <= value ? half : 0;
     size -= half;
   }
-  // Where the interval's length overflows, its values may as well become equal: then the part is 0 or NaN,
-  // which std::max takes for 0.
+  // If the interval's length overflows, its values may become equal: the quotient is then 0 or NaN, which
+  // std::max turns into 0.
   const double part = std::min(1.0, std::max(0.0, (value - knot[0]) / (knot[1] - knot[0])));
   return static_cast<float>(static_cast<double>(knot - knots_.data()) - middle_ + part);
 }
@@ -139,7 +139,7 @@ std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) 
 
 template <int D>
 std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place) {
-  // A weak hash is enough, and a sum can be made by several threads.
+  // A weak hash is enough, and several threads can compute parts of a sum.
   constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
   std::uint64_t hash = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {

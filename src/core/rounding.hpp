@@ -1,4 +1,4 @@
-// Doubles as floats in the same order.
+// Order-preserving rounding of doubles to floats.
 #pragma once
 
 #include <algorithm>
@@ -13,24 +13,24 @@
 
 namespace broadside::core {
 
-/// One axis about an origin, scaled by a power of two: each step keeps the order of values, at worst it makes
-/// two equal. Floats have seven digits of the distance to the origin, over 38 orders of magnitude to either
-/// side of a typical distance.
+/// Rounds one axis about an origin, scaled by a power of two. Each step is monotonic: at worst it makes two
+/// values equal. Floats have seven digits of the distance to the origin, over 38 orders of magnitude to
+/// either side of a typical distance.
 class LinearRounding {
  public:
   LinearRounding() = default;
 
-  /// Takes values about `distance` away from the origin to floats about as far away from 0, or where that is
-  /// more than 2^30 or less than 2^-30, to floats about 1 away.
+  /// Maps values about `distance` from the origin to floats about as far from 0, or about 1 from 0 if
+  /// `distance` is beyond 2^30 or below 2^-30.
   LinearRounding(double origin, double distance);
 
-  /// Finite, for an infinite value as well.
+  /// Finite even for an infinite value.
   float operator()(double value) const {
     constexpr double largest_float = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp((value - origin_) * scale_, -largest_float, largest_float));
   }
 
-  /// About the value that a float stands for, and the same for the same float.
+  /// Approximately the value that a float stands for. Equal floats give equal values.
   double back(float rounded) const { return origin_ + rounded * inverse_scale_; }
 
   double origin() const { return origin_; }
@@ -42,9 +42,9 @@ class LinearRounding {
   double inverse_scale_ = 1;
 };
 
-/// One axis by its quantiles, for coordinates whose distances differ too much for one scale, such as clusters
-/// within clusters: the i-th knot, in ascending order, becomes about i, and values between two knots are
-/// interpolated. Keeps order as LinearRounding does.
+/// Rounds one axis by its quantiles, for coordinates whose distances differ too much for one scale, such as
+/// clusters within clusters. The i-th knot, in ascending order, becomes i less the middle index. Values
+/// between two knots are interpolated. Monotonic, like LinearRounding.
 class QuantileRounding {
  public:
   QuantileRounding() = default;
@@ -58,16 +58,16 @@ class QuantileRounding {
 
  private:
   std::vector<double> knots_;  // ascending, no two equal
-  double middle_ = 0;          // the knots' mean number, which becomes 0
+  double middle_ = 0;          // the middle index of the knots, which becomes 0
   double slope_ = 0;           // beyond the first and the last knot
 };
 
-/// A rounding for each axis that suits most of the present boxes, by a sample.
+/// A rounding for each axis that suits most of the present boxes, judged by a sample.
 template <int D>
 std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes);
 
-/// Whether `floats`, which are `boxes` rounded by `fit`, keep every coordinate that differs from another
-/// apart from it, as far as `back` can tell.
+/// Whether back() restores every coordinate from `floats`, which are `boxes` rounded by `fit`. Distinct
+/// coordinates then stay distinct.
 template <int D>
 bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                  std::span<const Box<D>> floats) {
@@ -81,19 +81,19 @@ bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D
   return true;
 }
 
-/// A number that depends on all boxes and their order: the sum of what parts give, each with the place of its
-/// first box.
+/// A hash of all boxes and their order. The hash of an array is the sum of the hashes of its parts, each with
+/// the place of its first box.
 template <int D>
 std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place = 0);
 
-/// A rounding for each axis whose knots are from one in sixteen of the boxes, a sample by their hash: no
-/// pattern of the array can evade it. O(n log n).
+/// A rounding for each axis, with knots from one in sixteen of the boxes. Their hash selects the sample, so
+/// no pattern of the array can evade it. O(n log n).
 template <int D>
 std::array<QuantileRounding, D> fit_quantiles(std::span<const Box<D, double>> boxes, std::uint64_t hash);
 
-/// Whether this rounding makes enough false pairs (they overlap in float, not in double) that another pays.
-/// Where `left_count` is not 0, only pairs between the boxes before that place and the others matter.
-/// Compares a sample of about sqrt(n) boxes, by their hash, with each other: O(n).
+/// Whether this rounding makes enough false pairs (they overlap as floats but not as doubles) for another one
+/// to pay. If `left_count` is not 0, only pairs between the first `left_count` boxes and the others count.
+/// Compares about sqrt(n) boxes, sampled by their hash, with each other: O(n).
 template <int D>
 bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const Box<D, double>> boxes,
                        std::size_t left_count, std::uint64_t hash);

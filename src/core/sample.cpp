@@ -15,7 +15,7 @@ std::size_t sample_count(std::size_t boxes, std::size_t max_count) {
   return std::min({boxes, 64 + boxes / 16, max_count});
 }
 
-/// The part of the pairs among `minima.size()` intervals that overlap; both ends sorted, each for itself.
+/// The fraction of all pairs of intervals that overlap. The minima and the maxima are each sorted.
 double overlapping_part(std::span<const float> minima, std::span<const float> maxima) {
   // Two intervals are disjoint if one ends before the other begins.
   std::uint64_t disjoint = 0;
@@ -29,16 +29,16 @@ double overlapping_part(std::span<const float> minima, std::span<const float> ma
   return pairs > 0 ? 1 - static_cast<double>(disjoint) / pairs : 1;
 }
 
-/// With fewer overlaps among the sampled boxes, their number is chance. In a lattice in order there are none:
-/// a sample that is spread over the array is spread over each axis as well, and no two of its boxes are near.
+/// With fewer overlaps among the sampled boxes, their number is due to chance. A lattice in order has none: a
+/// sample spread over the array is then spread over each axis as well, and no two of its boxes are near.
 constexpr double telling_overlaps = 8;
 
-/// The chance that two boxes overlap on an axis, by how close the sampled boxes near each stand to each
-/// other: so clusters count for what they are. Empty where some stand in one place.
+/// The chance that two boxes overlap on an axis, estimated from the local density of the sampled boxes, which
+/// accounts for clusters. Empty if five neighbouring minima coincide.
 std::optional<double> overlap_by_density(std::span<const float> minima, double mean_extent) {
   constexpr std::size_t steps = 4;
   const auto size = static_cast<double>(minima.size());
-  double density = 0;  // of all boxes, those that begin in a unit of length
+  double density = 0;  // the fraction of all boxes that begin in a unit of length
   for (std::size_t i = 0; i + steps < minima.size(); ++i) {
     const double distance = static_cast<double>(minima[i + steps]) - minima[i];
     if (!(distance > 0)) return std::nullopt;
@@ -47,8 +47,8 @@ std::optional<double> overlap_by_density(std::span<const float> minima, double m
   return std::min(1.0, 2 * density * mean_extent);
 }
 
-/// Sets the bounds of a sample from its ends, both sorted: those of the middle three quarters, and as much
-/// again on either side if the sample reaches that far.
+/// Sets the bounds of a sample from its sorted minima and maxima: those of the middle three quarters, and as
+/// much again on either side if the sample reaches that far.
 void set_bounds(AxisSample& sample, std::span<const float> maxima) {
   if (maxima.empty()) return;
   const std::size_t eighth = maxima.size() / 8;

@@ -13,16 +13,16 @@
 
 namespace broadside::core {
 
-/// One axis as the sample shows it.
+/// What a sample tells about one axis.
 struct AxisSample {
   /// The chance that two boxes overlap in their projections on this axis. A sweep along the axis compares
-  /// about n / 2 times this many pairs a box.
+  /// about n / 2 times this many pairs per box.
   double overlap = 1;
 
-  float low = 0;           ///< the finite bounds between which the sampled boxes lie, except far outliers
-  float high = 0;          ///<
+  float low = 0;           ///< a finite lower bound of the sampled boxes, except far outliers
+  float high = 0;          ///< a finite upper bound of the sampled boxes, except far outliers
   float extent = 0;        ///< the median of the boxes' extents, at most FLT_MAX
-  double mean_extent = 0;  ///< and their mean, an extent counting as no more than the bounds' distance
+  double mean_extent = 0;  ///< the mean of the boxes' extents, each limited to high - low
 
   std::vector<float> minima;  ///< of the sampled boxes, ascending
 };
@@ -33,7 +33,7 @@ inline float without_nan(float value) noexcept {
   return std::max(-std::numeric_limits<float>::infinity(), value);
 }
 
-/// The median of some numbers, none of them a NaN, which are then in another order; 0 if there are none.
+/// The median of `values`, which must not have a NaN; 0 if there are none. Reorders `values`.
 template <typename Real>
 Real median(std::vector<Real>& values) {
   if (values.empty()) return 0;
@@ -42,26 +42,26 @@ Real median(std::vector<Real>& values) {
   return *middle;
 }
 
-/// The place of the i-th of a few boxes sampled from `boxes`: spread over the array, without a period that a
-/// regular scene could share.
+/// The place of the i-th box of a sample from an array of `boxes` boxes. The places are spread over the
+/// array, without a period that a regular scene could share.
 inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
-  // Multiples of the golden ratio, modulo 1, fall everywhere and never in step with a pattern in the array.
+  // Multiples of the golden ratio, modulo 1, are spread evenly and never in step with a pattern in the array.
   const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
   return static_cast<std::size_t>(fraction * std::uint64_t{boxes} >> 32);
 }
 
-/// The same where `count` of them are sampled: all in order if there are no more.
+/// The same for a sample of `count` boxes: all boxes in order if there are no more.
 inline std::size_t sampled_place(std::size_t i, std::size_t count, std::size_t boxes) {
   return count == boxes ? i : sampled_place(i, boxes);
 }
 
-/// Calls `take(box)` for up to `max_count` of the boxes that are present, sampled from all.
+/// Calls `take(box)` for up to `max_count` present boxes, sampled from the whole array.
 template <int D, typename Real, typename Take>
 void for_present_sample(std::span<const Box<D, Real>> boxes, std::size_t max_count, Take take) {
   const std::size_t tries = std::min(boxes.size(), 4 * max_count);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < tries && taken < max_count; ++i) {
-    // A copy, since another thread may change the caller's.
+    // A copy, since another thread may change the caller's array.
     const Box<D, Real> box = boxes[sampled_place(i, tries, boxes.size())];
     if (!is_present(box)) continue;
     take(box);
@@ -69,12 +69,12 @@ void for_present_sample(std::span<const Box<D, Real>> boxes, std::size_t max_cou
   }
 }
 
-/// A sample of at most some hundred boxes: the same for the same boxes, spread over the array without a
-/// period that a regular scene could share. Cost O(1) for large arrays.
+/// A sample of at most a few hundred boxes: the same for the same boxes, at places given by sampled_place().
+/// O(1) for large arrays.
 template <int D>
 class Sample {
  public:
-  /// Looks at `max_count` of the boxes, or fewer where there are few.
+  /// Samples at most `max_count` of the boxes, or fewer if the array is small.
   void take(std::span<const Box<D>> boxes, std::size_t max_count = 256);
 
   const AxisSample& operator[](int axis) const noexcept { return axes_[axis]; }

@@ -1,4 +1,4 @@
-// Pairs sorted by their ids: by comparison where they are few, else by a radix sort from the lowest bits on.
+// Sorts pairs by their ids: a few by comparison, more by a radix sort from the lowest digit on.
 #include "core/sort_pairs.hpp"
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace broadside {
 namespace core {
 namespace {
 
-/// The most bits that are sorted by at once.
+/// The maximum number of bits in a digit.
 constexpr int max_bits = 11;
 
 constexpr int max_steps = 3;  // for 32 bits
 
-/// How the bits of an id are cut for sorting: in as few and as short digits as do for the greatest.
+/// Cuts the bits of an id into digits: as few and as short as the greatest id allows.
 class Digits {
  public:
   explicit Digits(std::uint32_t greatest) {

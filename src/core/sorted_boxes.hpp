@@ -1,4 +1,4 @@
-// Boxes in the order in which a sweep meets them.
+// SortedBoxes: boxes in the order of a sweep.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace broadside::core {
 
-/// The box with axis a being `axes[a]` of its own.
+/// The box with its axes permuted: axis a of the result is axis `axes[a]` of `box`.
 template <int D>
 Box<D> turned(const Box<D>& box, const std::type_identity_t<std::array<int, D>>& axes) {
   Box<D> turned;
@@ -26,7 +26,7 @@ Box<D> turned(const Box<D>& box, const std::type_identity_t<std::array<int, D>>&
   return turned;
 }
 
-/// A box, its axes in a sweep's order (axis 0 is swept along), and its place in the caller's array.
+/// A box with its axes in a sweep's order (axis 0 is the swept axis), and its place in the caller's array.
 template <int D>
 struct SortedBox {
   Box<D> box;
@@ -34,17 +34,18 @@ struct SortedBox {
 };
 
 /// A sorted box in a node of a tree. Bit a of `dedup_mask` is set if the box begins before the node's region
-/// on axis a; the rest as in a run of the kernels.
+/// on axis a; the other bits are as in kernels::Run.
 struct SortedReference {
   std::uint32_t place;  ///< among the sorted boxes
   std::uint32_t dedup_mask;
 };
 
-/// Sorts boxes by where they begin on the swept axis; keeps its memory from one sort to the next.
+/// Sorts boxes by their minimum on the swept axis. Keeps its memory for the next sort.
 template <int D>
 class SortedBoxes {
  public:
-  /// The boxes, turned, ascending by min[0], ties in the caller's order. Valid until the next call.
+  /// The boxes with permuted axes, ascending by min[0], ties in the caller's order. Valid until the next
+  /// call.
   std::span<const SortedBox<D>> sort(std::span<const Box<D>> boxes, const std::array<int, D>& axes,
                                      Parallel& parallel) {
     const std::span<KeyedPlace> places = radix_.places(boxes.size());

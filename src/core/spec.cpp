@@ -1,4 +1,4 @@
-// Specs read, written and made of typed options, and their values checked against tunables.
+// Spec and Settings: parses and writes specs, makes them from typed options, and checks values.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -18,7 +18,7 @@ namespace {
 using core::listed;
 using core::message;
 
-/// The largest value of a tunable; an integer is never beyond what a double holds exactly.
+/// The largest value of a tunable; an integer never exceeds what a double holds exactly.
 double max_of(const Tunable& tunable) {
   return tunable.type == Tunable::Type::integer ? std::min(tunable.max, 0x1p53) : tunable.max;
 }
@@ -27,7 +27,7 @@ double max_of(const Tunable& tunable) {
 std::string range(const Tunable& tunable, double found) {
   const char* const kind = tunable.type == Tunable::Type::integer ? "a whole number" : "a number";
   const bool is_unbounded = max_of(tunable) >= std::numeric_limits<float>::max();
-  // A bound that only keeps a float from becoming 0 says nothing unless the value is near it.
+  // A minimum that only keeps a float from becoming 0 tells a user nothing unless the value is near it.
   if (is_unbounded && tunable.min == std::numeric_limits<float>::min() && !(found > 0))
     return message({kind, " above 0"});
   if (max_of(tunable) == std::numeric_limits<double>::max() && !std::isinf(found))
@@ -35,8 +35,7 @@ std::string range(const Tunable& tunable, double found) {
   return message({kind, " from ", core::text_of(tunable.min), " to ", core::text_of(max_of(tunable))});
 }
 
-/// The value as the tunable has it: a text, or a number. Throws InvalidSpec if it is not one of the
-/// tunable's.
+/// The value in the tunable's type: a text or a number. Throws InvalidSpec if the tunable does not allow it.
 SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecValue& given) {
   const std::string value(core::current_value(owner, tunable.name, given.text()));
   if (value == tunable.default_value) return value;
@@ -57,13 +56,13 @@ SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecVa
   return number;
 }
 
-/// The name of an enumerator, or its number if it has none: Settings then refuses it.
+/// The name of an enumerator, or its number if it has none: Settings then rejects it.
 SpecValue name_of(std::size_t value, std::initializer_list<const char*> names) {
   if (value < names.size()) return names.begin()[value];
   return static_cast<double>(value);
 }
 
-/// The spec of an algorithm with the values that all have; default values are not listed.
+/// A spec with the tunables that all algorithms have. Omits default values.
 Spec spec_of(const char* algorithm, std::size_t threads, Update update) {
   Spec spec{algorithm, {}};
   if (threads != 1) spec.values.emplace_back("threads", static_cast<double>(threads));

@@ -19,7 +19,7 @@ inline std::string lower_case(std::string_view text) {
   return lower;
 }
 
-/// The least number of letters to insert, remove, replace or swap with the next one that makes `b` of `a`
+/// The minimum number of letters to insert, remove, replace or swap with the next one to turn `a` into `b`
 /// (optimal string alignment).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -42,7 +42,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// missing, extra, wrong or swapped (one if `found` has fewer than five), or it begins with `found`. Ignores
 /// case. Empty if no name is that close.
 inline std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
-  // No name is longer; a longer text may be a whole file, whose distances would take long.
+  // No name is longer; a longer text may be a whole file, which would take long to compare.
   constexpr std::size_t max_letters = 64;
   constexpr std::size_t min_prefix = 3;
   if (found.size() > max_letters) return {};

@@ -1,4 +1,4 @@
-// Tasks on threads of the standard library.
+// ThreadPool: runs tasks on threads of the standard library.
 #include "core/thread_pool.hpp"
 
 #include <atomic>
@@ -11,7 +11,7 @@
 namespace broadside::core {
 namespace {
 
-/// A number that is another one in a forked child.
+/// A number that differs in a forked child.
 long this_process() noexcept {
 #ifdef _WIN32
   return 0;
@@ -26,7 +26,7 @@ struct ThreadPool::Job {
   const std::function<void(std::size_t)>& task;
   std::size_t count;
   std::atomic<std::size_t> next{0};
-  std::size_t helpers = 0;  // that take part in it
+  std::size_t helpers = 0;  // threads that take part, besides the caller's
 };
 
 ThreadPool::ThreadPool(std::size_t threads) : threads_(threads), process_(this_process()) {}
@@ -42,7 +42,7 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& task) {
   Job job{task, count};
-  // A forked child has the mutex as some thread of its parent's held it, perhaps for ever.
+  // In a forked child the mutex may stay locked for ever, if a thread of the parent held it.
   if (count < 2 || threads_ < 2 || process_ != this_process()) return take_part(job);
   {
     const std::lock_guard lock(mutex_);
@@ -70,7 +70,7 @@ void ThreadPool::start_helpers() {
   try {
     while (helpers_.size() + 1 < threads_) helpers_.emplace_back([this] { help(); });
   } catch (const std::system_error&) {
-    // As many as there are.
+    // Goes on with the threads that have started.
   }
 }
 

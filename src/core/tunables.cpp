@@ -1,4 +1,4 @@
-// The tunables that several algorithms have.
+// The tunables that several algorithms share.
 #include "core/tunables.hpp"
 
 namespace broadside::core {

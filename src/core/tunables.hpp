@@ -1,4 +1,4 @@
-// The tunables that several algorithms have, and what of an algorithm a build registers.
+// The tunables that several algorithms share, and the parts of an algorithm that a build registers.
 #pragma once
 
 #include "broadside/algorithm.hpp"
@@ -7,14 +7,14 @@
 
 namespace broadside::core {
 
-/// The tunable `threads`, of every algorithm that uses several: Finder and Tracker set their Workers by it.
+/// The tunable `threads` of every multithreaded algorithm. Finder and Tracker set their Workers from it.
 Tunable threads_tunable();
 
-/// The tunable `update`, of every algorithm of which a Tracker may also find all pairs anew.
+/// The tunable `update` of every algorithm with which a Tracker can also find all pairs anew.
 Tunable update_tunable();
 Update update_of(const Settings& settings);
 
-/// What `make` returns; nothing in a build without D dimensions, so that nothing of it is linked.
+/// Returns make(), or no strategies in a build without D dimensions, so that their code is not linked.
 template <int D>
 Strategies<D> in_dimension(Strategies<D> (*make)()) {
   if constexpr (has_dimension<D>)
@@ -23,7 +23,7 @@ Strategies<D> in_dimension(Strategies<D> (*make)()) {
     return {};
 }
 
-/// Makes an outline by `lay_out` of a searcher of class S.
+/// A function that makes an outline by calling `lay_out` of a searcher of class S.
 template <typename S, int D>
 MakeOutline<D> outline_by(Outline<D, float> (S::*lay_out)(std::span<const Box<D>>, const Workers&)) {
   return [lay_out](std::span<const Box<D>> boxes, const Workers& workers, const Settings& settings) {
