@@ -18,12 +18,12 @@ using core::no_slot;
 /// How many boxes a block has room for: all of them are compared at once.
 inline constexpr std::size_t block_size = 16;
 
-/// Sixteen boxes, one a lane. A lane without a box holds nan_box().
+/// Sixteen boxes, one per lane. A lane without a box holds nan_box().
 template <int D>
 struct alignas(64) Block {
   std::array<std::array<float, block_size>, D> min;
   std::array<std::array<float, block_size>, D> max;
-  std::array<std::uint32_t, block_size> id;  ///< the owner's numbers of its boxes
+  std::array<std::uint32_t, block_size> id;  ///< the numbers that the owner gives its boxes
 
   void set(std::size_t lane, const Box<D>& box) {
     for (int axis = 0; axis < D; ++axis) {
@@ -41,7 +41,7 @@ struct alignas(64) Block {
     return box;
   }
 
-  /// Puts nan_box() into every lane, and 0 for the id.
+  /// Sets every lane to nan_box() with id 0.
   void clear() {
     for (std::size_t lane = 0; lane < block_size; ++lane) set(lane, nan_box<D>());
     id.fill(0);

@@ -1,4 +1,4 @@
-// BlockPool: blocks of sixteen boxes in chains, for structures that stay from frame to frame.
+// BlockPool: blocks of sixteen boxes in chains, for structures that persist from frame to frame.
 #pragma once
 
 #include <atomic>
@@ -16,11 +16,10 @@
 
 namespace broadside::kernels {
 
-/// Brings memory that will be read or written into the cache, while other work goes on.
 inline void prefetch(const void* memory) { hwy::Prefetch(static_cast<const char*>(memory)); }
 
-/// Sets or clears bits of a word of which other threads set and clear others. Nothing is ordered by it: what
-/// joins the threads orders what they wrote.
+/// Sets or clears bits of a word while other threads set or clear its other bits. It orders no other memory
+/// access: joining the threads does.
 inline void set_shared(std::uint16_t& word, std::uint16_t bits) noexcept {
 #ifdef __cpp_lib_atomic_ref
   std::atomic_ref(word).fetch_or(bits, std::memory_order_relaxed);
@@ -39,11 +38,10 @@ inline void clear_shared(std::uint16_t& word, std::uint16_t bits) noexcept {
 
 /// Data about a block that a search can read without its boxes.
 struct BlockHead {
-  std::uint32_t next;   ///< the next block of the same chain, or no_slot
-  std::uint32_t owner;  ///< whose chain it is: a cell's or a node's number
-  std::uint16_t used;   ///< bit i: lane i holds a box
-  std::uint16_t
-      moving;  ///< bit i: the box of lane i moves in this update, its bounds cover where it was and is
+  std::uint32_t next;    ///< the next block of the same chain, or no_slot
+  std::uint32_t owner;   ///< the number of the cell or node that owns the chain
+  std::uint16_t used;    ///< bit i: lane i holds a box
+  std::uint16_t moving;  ///< bit i: the box in lane i moves in this update and covers it before and now
 };
 
 /// All blocks, by number.
@@ -64,7 +62,7 @@ class BlockPool {
   const BlockHead& head(std::uint32_t block) const { return heads_[block]; }
   bool is_full(std::uint32_t block) const { return heads_[block].used == all_used; }
 
-  /// A new block, without boxes, in front of the chain `first`.
+  /// Adds an empty block at the front of the chain `first`.
   void add_block(std::uint32_t& first, std::uint32_t owner) {
     std::uint32_t block = static_cast<std::uint32_t>(blocks_.size());
     if (free_.empty()) {
@@ -80,7 +78,7 @@ class BlockPool {
     first = block;
   }
 
-  /// Takes a block, whose boxes count no longer, out of the chain `first`.
+  /// Removes a block and the boxes in it from the chain `first`.
   void remove_block(std::uint32_t& first, std::uint32_t block) {
     std::uint32_t* link = &first;
     while (*link != block) link = &heads_[*link].next;
@@ -89,12 +87,12 @@ class BlockPool {
     free_.push_back(block);
   }
 
-  /// The slot of a block's first lane that is among `lanes`, as bits.
+  /// The slot of the first lane of a block among `lanes`, given as bits.
   static std::uint32_t slot(std::uint32_t block, std::uint32_t lanes) {
     return block * width + static_cast<std::uint32_t>(std::countr_zero(lanes));
   }
 
-  /// Puts a box into the first lane of the block that is free. Its slot.
+  /// Puts a box into the first free lane of the block. Returns its slot.
   std::uint32_t insert(std::uint32_t block, const Box<D>& box, BoxId id) {
     const auto lane = static_cast<std::uint32_t>(std::countr_one(heads_[block].used));
     const std::uint32_t slot = block * width + lane;
@@ -120,7 +118,7 @@ class BlockPool {
   BoxId id(std::uint32_t slot) const { return BoxId{blocks_[slot / width].id[slot % width]}; }
   void set(std::uint32_t slot, const Box<D>& box) { blocks_[slot / width].set(slot % width, box); }
 
-  /// Brings a slot that will be set into the cache, while others are.
+  /// Prefetches a slot that will be set.
   void prefetch(std::uint32_t slot) const {
     const std::uint32_t block = slot / width;
     if (block >= blocks_.size()) return;
@@ -131,7 +129,7 @@ class BlockPool {
     }
   }
 
-  /// Says that the box of a slot moves, or no longer does.
+  /// Marks the box of a slot as moving, or as no longer moving.
   void mark(std::uint32_t slot) {
     heads_[slot / width].moving = static_cast<std::uint16_t>(heads_[slot / width].moving | bit(slot));
   }
@@ -147,7 +145,7 @@ class BlockPool {
   }
   bool is_marked(std::uint32_t slot) const { return (heads_[slot / width].moving & bit(slot)) != 0; }
 
-  /// Reserves memory for an eighth more blocks than `count`. Blocks are most of what a structure keeps, so it
+  /// Reserves memory for an eighth more blocks than `count`. Blocks are most of a structure's memory, which
   /// should not double as a vector does.
   void reserve(std::size_t count) {
     constexpr std::size_t spare = 16;
@@ -155,7 +153,7 @@ class BlockPool {
     blocks_.reserve(count + count / 8 + spare);
   }
 
-  /// Drops all blocks, and gives memory back that far exceeds what was in use.
+  /// Drops all blocks, and releases the memory if it far exceeds what was in use.
   void clear() {
     if (blocks_.capacity() > 4 * (blocks_.size() - free_.size()) + 1024) {
       // Not `= {}`, which assigns an empty list and keeps the memory.

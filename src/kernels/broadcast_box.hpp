@@ -1,7 +1,7 @@
 // BroadcastBox: one box against a SIMD vector of others, for files that Highway compiles for each instruction
 // set.
 //
-// Included once an instruction set, hence no #pragma once.
+// Included once per SIMD target, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_BROADCAST_BOX) == defined(HWY_TARGET_TOGGLE)
 #ifdef BROADSIDE_KERNELS_BROADCAST_BOX
 #undef BROADSIDE_KERNELS_BROADCAST_BOX
@@ -31,7 +31,7 @@ using NumberVector = hn::Vec<Numbers>;
 using FloatMask = hn::Mask<Floats>;
 using NumberMask = hn::Mask<Numbers>;
 
-/// The elements of a vector: a block is one vector or several.
+/// How many elements a vector has: a block is one vector or several.
 inline constexpr std::size_t lanes = hn::MaxLanes(Floats());
 
 /// A block's coordinates are aligned; those of other boxes need not be.
@@ -62,7 +62,7 @@ struct BroadcastBox {
     }
   }
 
-  /// Which of the boxes from `at` on, a vector of them, it overlaps. A NaN overlaps nothing.
+  /// Which boxes this one overlaps, of the vector of boxes from `at` on. A NaN overlaps nothing.
   template <typename Boxes>
   HWY_INLINE FloatMask overlaps(const Boxes& boxes, std::size_t at) const {
     FloatMask hits = hn::And(hn::Le(load(boxes.min[0], at), max[0]), hn::Le(min[0], load(boxes.max[0], at)));
@@ -84,7 +84,7 @@ struct BroadcastBox {
   FloatVector max[D];
 };
 
-/// Boxes that follow each other, one a lane.
+/// Consecutive boxes, one per lane.
 template <int D>
 struct LoadedBoxes {
   // Not defaulted: it must be compiled for the instruction set of the vectors' constructors.
@@ -103,7 +103,7 @@ struct LoadedBoxes {
   FloatVector max[D];
 };
 
-/// In which lanes boxes that overlap do no more than touch. `a` is a BroadcastBox or LoadedBoxes.
+/// In which lanes overlapping boxes only touch. `a` is a BroadcastBox or LoadedBoxes.
 template <int D, template <int> typename A>
 HWY_INLINE FloatMask touch(const A<D>& a, const LoadedBoxes<D>& b) {
   FloatMask touching = hn::Or(hn::Eq(a.min[0], b.max[0]), hn::Eq(b.min[0], a.max[0]));

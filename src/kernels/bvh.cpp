@@ -1,5 +1,5 @@
-// What one node of a tree of bounds tells, and the traversal of a tree by overlap with a box: sixteen
-// children at a time, written once for every instruction set.
+// Tests of one BVH node, and the traversal of a BVH by overlap with a box: sixteen children at a time,
+// written once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh.cpp"
 #include "kernels/bvh.hpp"
@@ -35,7 +35,7 @@ Box<D> bounds(const Block<D>& node) {
 
 template <int D>
 std::size_t best(const Block<D>& node, std::size_t count, const Box<D>& box) {
-  // Beyond it, sizes are not told apart; sums of them are finite.
+  // Coordinates are clamped to this limit, so that sums of sizes are finite.
   const FloatVector limit = all(0x1p120f);
   const FloatVector other_limit = all(-0x1p120f);
   const auto bounded = [&](FloatVector v) HWY_ATTR { return hn::Max(hn::Min(v, limit), other_limit); };
@@ -88,7 +88,7 @@ void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::arra
       const FloatVector max = load(node.max[axis], at);
       const FloatVector low = all(query.point.min[axis]);
       const FloatVector high = all(query.point.max[axis]);
-      // Selected so that no infinity is subtracted from itself.
+      // Selected so that the difference of equal infinities is never used.
       const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
       const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
       const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
@@ -101,7 +101,7 @@ void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::arra
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& bounds_2 = bounds<2>;
 constexpr auto& bounds_3 = bounds<3>;
 constexpr auto& best_2 = best<2>;

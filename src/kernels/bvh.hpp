@@ -1,5 +1,5 @@
-// The node of a dynamic bounding volume hierarchy (an AABB tree), the views of one that kernels take, what
-// one node tells, and boxes that move in one.
+// The node of a dynamic bounding volume hierarchy (BVH, an AABB tree), the views of a BVH that kernels take,
+// tests of one node, and follow(), which moves boxes in a BVH.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@
 
 namespace broadside::kernels {
 
-/// How many children a node has at most: bounds (or boxes, in a leaf) that are compared at once. The same on
-/// every instruction set, since it fixes the order of the pairs.
+/// How many children a node has at most: bounds, or boxes in a leaf, all compared at once. The same on every
+/// instruction set, since it fixes the order of the pairs.
 inline constexpr std::size_t fan_out = block_size;
 
-/// A path through such a tree is never longer.
+/// No path through such a tree is longer.
 inline constexpr std::size_t longest_path = 32;
 
-/// Set in the number of a node that is a leaf, whose children are boxes.
+/// Set in the number of a leaf: a node with boxes as children.
 inline constexpr std::uint32_t leaf_bit = 0x80000000U;
 
-/// The part of a node that a search does not read. The node itself is a block: the bounds of its children, or
-/// boxes in a leaf, and as ids the children's numbers with their leaf_bit, or the boxes' ids.
+/// The part of a node that a search does not read. The node itself is a block. A leaf holds boxes and their
+/// ids; any other node holds the bounds of its children and, as ids, their numbers with their leaf_bit.
 struct BvhNodeInfo {
-  std::uint32_t parent;  ///< slot in the parent: the node above * fan_out + lane; no_slot for the root
+  std::uint32_t parent;  ///< slot in the parent: parent's number * fan_out + lane; no_slot for the root
   std::uint8_t count;    ///< children, in the first lanes
   bool is_leaf;
 };
@@ -40,22 +40,22 @@ struct BvhView {
   std::uint32_t root;
 };
 
-/// A tree whose bounds change.
+/// A tree to move boxes in.
 template <int D>
 struct WritableBvh {
   Block<D>* nodes;
   const BvhNodeInfo* info;
   std::uint32_t root;
   std::array<std::uint32_t*, 2> lists;  ///< scratch: each with room for all nodes and two more blocks
-  Checkpoint* checkpoint = nullptr;     ///< counts the pairs that follow() compares; or null
+  Checkpoint* checkpoint = nullptr;     ///< counts the pairs that follow() compares; may be null
 };
 
 /// The bounds of a node's children; the absent box if there are none.
 template <int D>
 Box<D> bounds_of(const Block<D>& node);
 
-/// Which of the first `count` > 0 children grows least, in the sum of its extents, if it is to hold `box`;
-/// of several, the smallest, then the first one.
+/// Which of the first `count` > 0 children grows least, in the sum of its extents, if it must contain `box`.
+/// Of several, the smallest one, then the first one.
 template <int D>
 std::size_t best_child(const Block<D>& node, std::size_t count, const Box<D>& box);
 
@@ -63,9 +63,9 @@ std::size_t best_child(const Block<D>& node, std::size_t count, const Box<D>& bo
 inline constexpr std::uint8_t may_shrink = 1;  ///< the old box was at the border of its leaf's bounds
 inline constexpr std::uint8_t left_leaf = 2;   ///< the new box is not within the bounds that its leaf had
 
-/// Moves boxes one after the other: writes the pairs of each box that begin and those that end, with all
-/// others where the tree has them at its turn, then writes the new box to its slot, enlarges the bounds
-/// around it, and writes to `calls_for` what the move calls for. Where the filter changed, all pairs that
+/// Moves boxes one after the other. For each box it writes the pairs that begin and that end, with all other
+/// boxes where the tree has them at that time. Then it writes the new box to its slot, enlarges the bounds
+/// around it, and writes to `calls_for` what the move calls for. If its filter changed, all pairs that
 /// overlap before or now go to `begun`. A box that is absent now leaves its lane without a box. Returns how
 /// many pairs of boxes were compared, each leaf counted as full.
 template <int D>

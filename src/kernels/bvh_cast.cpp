@@ -1,8 +1,8 @@
 // Traversal of a tree of boxes by casts, sixteen children at a time, written once for every instruction set.
 //
-// Slabs after T. Kay and J. Kajiya, "Ray tracing complex scenes" (1986). Bounds are tested with
-// multiplications by an inverse and a margin above what these can be wrong by, so that no box is lost that
-// the definition, with divisions, lets be met.
+// Slabs after T. Kay and J. Kajiya, "Ray tracing complex scenes" (1986). Bounds are tested by multiplying
+// with an inverse, with a margin above the rounding error, so that no box is lost that the cast meets by the
+// definition, which divides.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_cast.cpp"
 #include <array>
@@ -23,7 +23,7 @@ namespace {
 constexpr float margin = 1 + 0x1p-20f;
 constexpr float least = 0x1p-126f;
 
-/// Appends as append() does, and to `entries_to` the parameters at which these children are entered.
+/// As append(); also appends the parameters at which the cast enters these children to `entries_to`.
 template <int D>
 HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, FloatMask mask,
                                       FloatVector entries, std::uint32_t* to, float* entries_to) {
@@ -41,7 +41,7 @@ class Cast {
  public:
   HWY_INLINE explicit Cast(const CastQuery<D>& query) : cast_(query) {
     for (int axis = 0; axis < D; ++axis) {
-      // Selected without a branch, which no processor would predict.
+      // Branchless, since no processor could predict a branch here.
       const auto is_back = static_cast<std::size_t>(query.course[axis] == Course::backward) |
                            (static_cast<std::size_t>(query.course[axis] == Course::unknown) &
                             std::size_t{query.direction[axis] < 0});
@@ -56,7 +56,7 @@ class Cast {
     }
   }
 
-  /// Which children from `at` on may be met up to the `t_max` that `limit` is made of.
+  /// Which children from `at` on may be met up to `t_max`, given as `limit`.
   HWY_INLINE FloatMask may_meet(const Block<D>& node, std::size_t at, FloatVector limit,
                                 FloatVector& enter) const {
     FloatVector leave = all(infinity);
@@ -92,15 +92,15 @@ class Cast {
     return hn::And(hits, hn::Le(enter, leave));
   }
 
-  /// Appends the boxes from `at` on that are met (or may be, where the cast is not exact) to what was found,
-  /// of those that may be.
+  /// Appends to `found` the boxes from `at` on that are met. `hits` are the boxes that may be met; without
+  /// an exact cast, all of them are appended.
   HWY_INLINE void add(const Block<D>& leaf, std::size_t at, FloatMask hits, FloatVector enter,
                       FoundBoxes& found) const {
     if (cast_.exact) {
       if (all_false(Floats(), hits)) return;
       hits = meets(leaf, at, all(found.t_max), enter);
     }
-    // Makes -0.0 0.0.
+    // Turns -0.0 into 0.0.
     const FloatVector entries = hn::Add(enter, hn::Zero(Floats()));
     found.count += append_entries(leaf, at, hits, entries, found.ids.data() + found.count,
                                   found.t_enter.data() + found.count);
@@ -125,7 +125,7 @@ class Cast {
   FloatVector near_side_[D];
   FloatVector far_side_[D];
   FloatVector inverse_[D];
-  // The bounds of a node that a cast meets first and last: no branch on a direction.
+  // The bounds of a node that a cast meets first and last, chosen in advance to avoid branches on directions.
   Bounds Block<D>::*near_bounds_[D];
   Bounds Block<D>::*far_bounds_[D];
 };
@@ -148,21 +148,21 @@ bool met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& found) {
   });
 }
 
-/// The key of no parameter, and what of a key is its place.
+/// The key that stands for no parameter, and the bits of a key that hold the place.
 constexpr std::uint32_t no_key = 0xFFFFFFFFU;
 constexpr std::uint32_t place_bits = fan_out - 1;
 
-/// Keys that tell which of sixteen parameters is the least: the bits of a float that is not negative sort as
-/// it does, and the last four give way to its place, so a key stands for the parameter or a little less. A
-/// sign, that of -0.0, is lost. no_key outside the mask.
+/// Keys to find the least of sixteen parameters: the bits of a non-negative float sort as the float does. The
+/// parameter's place replaces the last four bits, so a key stands for the parameter or a little less. The
+/// sign of -0.0 is lost. no_key outside the mask.
 HWY_INLINE NumberVector keys(FloatVector t_enter, FloatMask mask, std::size_t at) {
   const auto bits = hn::And(hn::BitCast(Numbers(), t_enter), hn::Set(Numbers(), 0x7FFFFFFFU & ~place_bits));
   const auto places = hn::Iota(Numbers(), static_cast<std::uint32_t>(at));
   return hn::IfThenElse(hn::RebindMask(Numbers(), mask), hn::Or(bits, places), hn::Set(Numbers(), no_key));
 }
 
-/// The nodes that a search for the first box has yet to visit. Beyond sixteen it goes depth first, which
-/// bounds their number.
+/// The nodes that a search for the first box has yet to visit. With more than sixteen the search goes depth
+/// first, which bounds their number.
 class WaitingNodes {
  public:
   /// Adds the children of `node` from `at` on that are in `mask`.
@@ -171,8 +171,8 @@ class WaitingNodes {
     count_ += append_entries(node, at, mask, t_enter, nodes_ + count_, t_enter_ + count_);
   }
 
-  /// Takes out the node that is entered first, if there are at most sixteen, or one of those added last.
-  /// Those entered beyond `limit` do not count. Returns false if there is none.
+  /// Takes out the node that is entered first, or one of the last added if there are more than sixteen. Skips
+  /// nodes that are entered beyond `limit`. Returns false if there is none.
   HWY_INLINE bool take(float limit, std::uint32_t& node) {
     while (HWY_UNLIKELY(count_ > fan_out)) {
       node = nodes_[--count_];
@@ -185,7 +185,7 @@ class WaitingNodes {
       nearest = hn::Min(nearest, keys(load(t_enter_, at), hn::RebindMask(Floats(), is_there), at));
     }
     nearest = hn::MinOfLanes(Numbers(), nearest);
-    // By the key, since others entered earlier may have the same but for the place. A NaN if there is none.
+    // By the key without its place: another node with this key may be entered earlier. NaN if there is none.
     if (!(hn::GetLane(hn::BitCast(Floats(), hn::And(nearest, hn::Set(Numbers(), ~place_bits)))) <= limit))
       return false;
     const std::uint32_t place = hn::GetLane(nearest) & place_bits;
@@ -256,7 +256,7 @@ void first_met(const BvhView<D>& tree, const CastQuery<D>& query, FoundBoxes& fo
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& met_2 = met<2>;
 constexpr auto& met_3 = met<3>;
 constexpr auto& first_met_2 = first_met<2>;

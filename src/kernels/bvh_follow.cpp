@@ -1,7 +1,7 @@
-// Boxes that moved, looked up in a tree of bounds and moved in it, written once for every instruction set.
+// Looks up moved boxes in a BVH and moves them in it, written once for every instruction set.
 //
-// The children that a box's path touches are compressed to the end of the next level's list, without
-// branches, which no predictor could foresee.
+// The children that a box's path touches are compressed to the end of the next level's list without a branch,
+// which would be unpredictable.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_follow.cpp"
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 using Writer = PairWriter<Numbers>;
 static_assert(fan_out == Writer::at_once);
 
-/// How many boxes ahead of its own a leaf is prefetched.
+/// How many boxes ahead a leaf is prefetched.
 constexpr std::size_t ahead = 3;
 
 template <int D>
@@ -49,7 +49,8 @@ class Follow {
   }
 
  private:
-  /// Level by level: if some of a list's nodes were leaves, no predictor could know which.
+  /// Level by level, so that a list never mixes leaves with other nodes: a branch on them would be
+  /// unpredictable.
   HWY_INLINE void compare_in_leaves(const MovedBox<D>& box, const Box<D>& way) {
     const BroadcastBox<D> query(way);
     std::uint32_t* from = tree_.lists[0];
@@ -93,7 +94,7 @@ class Follow {
     }
   }
 
-  /// Enlarges the bounds around a box. Returns what its move calls for.
+  /// Enlarges the bounds around a box. Returns the repairs that its move calls for.
   HWY_INLINE std::uint8_t enlarge(const MovedBox<D>& moved) {
     const Box<D>& box = moved.now;
     std::uint8_t calls_for = 0;
@@ -135,7 +136,7 @@ std::uint64_t follow_moved(const WritableBvh<D>& tree, std::span<const MovedBox<
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& follow_2 = follow_moved<2>;
 constexpr auto& follow_3 = follow_moved<3>;
 

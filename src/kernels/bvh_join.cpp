@@ -1,10 +1,11 @@
-// The join of a packed tree of bounds with itself, written once for every instruction set.
+// The join of a packed BVH with itself, written once for every instruction set.
 //
-// A node's children are compared with those of all nodes that its bounds touch, sixteen at a time; the hits
-// of one level are the candidates of the next. Each two nodes meet once: the earlier one is compared with the
-// later ones. In a leaf, sixteen boxes are compared at once with the bounds of another leaf; the boxes that
-// touch them are collected over all such leaves and then compared with the boxes in these. Lists are written
-// without branches: hits are compressed to the front, and the end of the list advances by their number.
+// A node's children are compared with the children of all nodes that its bounds touch, sixteen at a time.
+// The hits of one level are the candidates of the next. Each pair of nodes is compared once: the earlier node
+// with the later one. In a leaf, sixteen boxes at once are compared with the bounds of another leaf. The
+// boxes that touch these bounds are collected over all such leaves, then compared with the boxes in those
+// leaves. Lists are written without branches: hits are compressed to the front, and the end of the list
+// advances by their number.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/bvh_join.cpp"
 #include "kernels/bvh_join.hpp"
@@ -27,14 +28,14 @@ namespace {
 using Hits = NumberMask;
 static_assert(fan_out == PairWriter<Numbers>::at_once);
 
-/// Which of the boxes or bounds from `at` on it overlaps.
+/// Which of the boxes or bounds from `at` on the query overlaps.
 template <int D>
 HWY_INLINE Hits touching(const BroadcastBox<D>& query, const TreeLevel<D>& level, std::size_t at) {
   return hn::RebindMask(Numbers(), query.overlaps(level, at));
 }
 
-/// The numbers from `begin` on, one a lane. Not by Iota(), which Highway 1.0 makes of numbers stored one by
-/// one: loading them as a vector then waits for all of these stores, which made AVX2 slower than SSE4.
+/// The numbers from `begin` on, one per lane. Not by Iota(): Highway 1.0 stores its numbers one by one, and
+/// loading them as a vector then waits for all of these stores, which made AVX2 slower than SSE4.
 HWY_INLINE NumberVector numbers_from(std::size_t begin) {
   alignas(64) static constexpr std::uint32_t first[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   return hn::Add(hn::Set(Numbers(), static_cast<std::uint32_t>(begin)), hn::Load(Numbers(), first));
@@ -60,8 +61,8 @@ class Join {
  private:
   std::uint64_t work() const { return tests_ + fan_out * bounds_; }
 
-  /// Joins what lies below `node`, whose children stand on `level`, with what lies below the nodes of `list`:
-  /// those that touch it and do not stand before it. False where it gave up.
+  /// Joins the subtree of `node`, with its children on `level`, with the subtrees of the nodes in `list`: all
+  /// nodes that touch `node` and do not come before it. Returns false if it gave up.
   bool children_of(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count,
                    std::uint32_t* touched) {
     if (level == 0) {
@@ -74,7 +75,7 @@ class Join {
     }
     const TreeLevel<D>& children = tree_.levels[level];
     const std::size_t border = tree_.left_size >> (4 * level);
-    // Of the children, those that have leaves in the range.
+    // The children that have leaves in the range.
     const std::size_t to_leaves = 4 * (level - 1);
     const std::size_t begin_child = std::max(node * fan_out, leaves_.begin >> to_leaves);
     const std::size_t end_child = std::min((node + 1) * fan_out, ((leaves_.end - 1) >> to_leaves) + 1);
@@ -164,7 +165,7 @@ class Join {
     observe_tests(tree_.id[place], tree_.id + leaf * fan_out, (1U << boxes) - 1);
   }
 
-  /// How many of a leaf's places hold no box: its last ones.
+  /// How many places at the end of a leaf hold no box.
   std::size_t gap_of(std::size_t leaf) const {
     const float* const mins = tree_.levels[0].min[0] + leaf * fan_out;
     std::size_t boxes = fan_out;
@@ -172,7 +173,7 @@ class Join {
     return fan_out - boxes;
   }
 
-  /// Does the first `count` of queries_: compares boxes of the leaf that begins at `begin` with other leaves.
+  /// Runs the first `count` of queries_: compares boxes of the leaf that begins at `begin` with other leaves.
   HWY_INLINE void across(std::size_t begin, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t place = begin + queries_[i] % fan_out;
@@ -188,7 +189,7 @@ class Join {
     tests_ += count * fan_out;
   }
 
-  /// The ids from `at` on, marked for the last test in double of the pairs with the query.
+  /// The ids from `at` on. Boxes that only touch the query are marked for the last test in double.
   HWY_INLINE NumberVector ids_beside(const BroadcastBox<D>& query, std::size_t at) const {
     const NumberVector ids = load_ids(Numbers(), tree_.id + at);
     if constexpr (!LastTest::marks_touching) return ids;
@@ -202,13 +203,12 @@ class Join {
   NodeRange leaves_;
   JoinLimit limit_;
   PairWriter<Numbers, LastTest> pairs_;
-  std::uint64_t tests_ = 0;   // where a leaf counts as full, which is what the work is
-  std::uint64_t unused_ = 0;  // of these, those with a place that holds no box
-  std::uint64_t bounds_ = 0;  // times that sixteen bounds were compared
+  std::uint64_t tests_ = 0;   // counts each leaf as full, because that is the work done
+  std::uint64_t unused_ = 0;  // how many of tests_ had a place without a box
+  std::uint64_t bounds_ = 0;  // how often sixteen bounds were compared
   std::uint64_t told_ = 0;    // the work that was reported to the checkpoint
   std::size_t next_leaf_;
-  std::uint32_t
-      queries_[max_queries + 2 * fan_out];  // another leaf's first place + the box's in its own leaf
+  std::uint32_t queries_[max_queries + 2 * fan_out];  // other leaf's first place + place in own leaf
 };
 
 template <int D>
@@ -242,7 +242,7 @@ JoinWork join_leaves(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& join_2 = join_leaves<2>;
 constexpr auto& join_3 = join_leaves<3>;
 constexpr auto& set_bounds_2 = bound_level<2>;

@@ -1,4 +1,4 @@
-// A packed tree of bounds, level by level in arrays, and its join with itself.
+// PackedBvh: a packed BVH, level by level in arrays, and its join with itself.
 #pragma once
 
 #include <array>
@@ -13,12 +13,11 @@
 
 namespace broadside::kernels {
 
-/// A tree over 2^32 boxes has no more levels.
+/// No tree over 2^32 boxes has more levels.
 inline constexpr std::size_t max_levels = 9;
 
-/// One level: the boxes (level 0), or bounds of sixteen elements each of the level below.
-/// Arrays hold a multiple of `fan_out` elements, those beyond `size` being NaN; so are places of level 0 that
-/// hold no box.
+/// One level: the boxes (level 0), or bounds around every sixteen elements of the level below. Arrays hold a
+/// multiple of `fan_out` elements. Elements beyond `size`, and places of level 0 without a box, are NaN.
 template <int D>
 struct TreeLevel {
   std::array<float*, D> min;
@@ -34,7 +33,7 @@ struct PackedBvh {
   std::size_t level_count;
   const BoxId* id;  ///< of the boxes on level 0
 
-  /// In a search between two sets, how many places of level 0 hold the left one: a multiple of `fan_out`.
+  /// In a search between two sets, how many places of level 0 hold the left set: a multiple of `fan_out`.
   /// Else 0.
   std::size_t left_size;
 
@@ -45,14 +44,14 @@ struct PackedBvh {
   const Box<D, double>* doubles = nullptr;
 };
 
-/// Elements of a level from one to before another; those of level 1 are the leaves.
+/// A half-open range of elements of a level. The elements of level 1 are the leaves.
 struct NodeRange {
   std::size_t begin;
   std::size_t end;
 };
 
-/// Sets the bounds of these nodes of level `parent` > 0 from those on the level below, whose places beyond
-/// its size and without a box must be absent boxes (not yet NaN). Several threads may do so at once.
+/// Sets the bounds of `nodes` on level `parent` > 0 from the level below. There, places beyond the level's
+/// size or without a box must be absent boxes (not yet NaN). Several threads may do so at once.
 template <int D>
 void set_bounds(const PackedBvh<D>& tree, std::size_t parent, NodeRange nodes);
 
@@ -65,8 +64,8 @@ std::size_t join_scratch(const PackedBvh<D>& tree) {
   return size;
 }
 
-/// The work a join may do before it gives up: a number of tests, and a number more for each pair it found.
-/// A comparison of bounds counts as a comparison of boxes, also for the checkpoint.
+/// The work a join may do before it gives up: a number of tests, and some more for each pair it has found.
+/// A comparison of bounds counts as a test, also for the checkpoint.
 struct JoinLimit {
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t tests_per_pair = 0;
@@ -76,12 +75,12 @@ struct JoinLimit {
 /// The work that a join did.
 struct JoinWork {
   std::uint64_t tests;    ///< pairs of boxes compared
-  std::uint64_t unused;   ///< how many tests more it might have made
-  std::size_t next_leaf;  ///< those before it were joined; the end of the range unless it gave up
+  std::uint64_t unused;   ///< how many more tests the limit allowed
+  std::size_t next_leaf;  ///< leaves before it are joined; the end of the range unless the join gave up
 };
 
-/// Joins each of these leaves with itself and all behind it, whatever the range: reports the pairs of
-/// overlapping boxes, or those between the two sets, leaf by leaf. `scratch` has room for join_scratch()
+/// Joins each of these leaves with itself and all later leaves, even beyond the range. Reports the pairs of
+/// overlapping boxes, or only pairs between the two sets, leaf by leaf. `scratch` has room for join_scratch()
 /// numbers. Several threads may join leaves of one tree at once.
 template <int D>
 JoinWork join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, std::uint32_t* scratch,

@@ -1,7 +1,6 @@
-// A node of a tree of bounds, several children at a time, for the files that Highway compiles for each
-// instruction set.
+// A BVH node, several children at a time, for the files that Highway compiles for each instruction set.
 //
-// Included once an instruction set, hence no #pragma once.
+// Included once per SIMD target, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_BVH_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef BROADSIDE_KERNELS_BVH_LANES
 #undef BROADSIDE_KERNELS_BVH_LANES
@@ -27,7 +26,6 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 HWY_INLINE FloatVector all(float value) { return hn::Set(Floats(), value); }
 
-/// Brings a node that will be read into the cache, while others are read.
 template <int D>
 HWY_INLINE void prefetch(const Block<D>& node) {
   for (std::size_t line = 0; line < sizeof(node); line += 64)
@@ -42,9 +40,8 @@ HWY_INLINE std::size_t append(const Block<D>& node, std::size_t at, FloatMask ma
   return count_true(Floats(), mask);
 }
 
-/// A depth-first traversal: goes on to the children that `may_hold(node, at)` lets through, a mask of those
-/// from `at` on, and calls `leaf` with each leaf that it reaches, until that returns false. Returns whether
-/// it did not.
+/// A depth-first traversal. `may_hold(node, at)` is the mask of the children from `at` on to descend to.
+/// Calls `leaf` with each leaf that it reaches, until one call returns false; returns false then.
 template <int D, typename MayHold, typename Leaf>
 HWY_INLINE bool traverse(const BvhView<D>& tree, const MayHold& may_hold, const Leaf& leaf) {
   std::uint32_t waiting[(longest_path + 1) * fan_out];

@@ -1,4 +1,4 @@
-// Queries to a tree of bounds: the boxes that a box overlaps or a cast box meets, and those near a point.
+// Queries to a BVH: the boxes that a box overlaps, that a cast box meets, or that are near a point.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace broadside::kernels {
 
-/// Where a search writes boxes: into arrays with room for a leaf beyond `full`. A derived class handles them
-/// in take().
+/// The arrays that a search writes boxes to, with room for a leaf beyond `full`. A derived class handles the
+/// boxes in take().
 class FoundBoxes {
  public:
   static constexpr std::size_t max_found = 256;
 
-  /// Handles the first `count` of `ids` (and `t_enter`), sets `count` to 0 and says whether to go on. May
+  /// Handles the first `count` of `ids` (and `t_enter`), sets `count` to 0 and returns whether to go on. May
   /// lower `t_max`.
   virtual bool take() = 0;
 
@@ -37,21 +37,21 @@ enum class Course : std::uint8_t {
   forward,   ///< to greater coordinates
   backward,  ///< to smaller ones
   still,     ///< not at all: the box must overlap on this axis
-  unknown,   ///< the tree's bounds are not to be looked at on this axis
+  unknown,   ///< the tree's bounds must not be tested on this axis
 };
 
 /// A box cast along a direction.
 template <int D>
 struct CastQuery {
   Box<D> box;
-  std::array<float, D> direction;  ///< looked at where `exact`
-  std::array<float, D> inverse;    ///< of the direction, rounded, a normal number; on axes that are not still
-  std::array<Course, D> course;  ///< in the tree; in a leaf searched exactly, unknown axes are looked at too
-  bool exact;                    ///< whether boxes are tested by the definition, with divisions
+  std::array<float, D> direction;  ///< used if `exact`
+  std::array<float, D> inverse;    ///< 1 / direction, a normal number; used on forward and backward axes
+  std::array<Course, D> course;    ///< in the tree; an exact search of a leaf tests unknown axes as well
+  bool exact;                      ///< whether boxes are tested by the definition, with divisions
 };
 
-/// A point, as a box that holds it, whose distances are asked for: each axis weighted, their squares' sum
-/// multiplied by `share`, less `allowance`, at most `max`.
+/// A query for squared distances from a point, given as a box that contains it: the sum of the squares of the
+/// weighted gaps on the axes, at most `max`, times `share`, less `allowance`.
 template <int D>
 struct DistanceQuery {
   Box<D> point;
@@ -61,8 +61,8 @@ struct DistanceQuery {
   float max = 0;
 };
 
-/// Writes the boxes that overlap `box`; false if take() ended the search. The tree must have a root; fewer
-/// than `full` boxes are left at the end, for the caller to take.
+/// Writes the boxes that overlap `box`; returns false if take() ended the search. The tree must have a root.
+/// At the end, fewer than `full` boxes are left for the caller to take.
 template <int D>
 bool find_overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found);
 
@@ -75,7 +75,7 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Sets `distances` to those of the node's children: squared, 0 inside.
+/// Sets `distances` to the squared distances of the node's children, as `query` defines them.
 template <int D>
 void distances(const Block<D>& node, const DistanceQuery<D>& query, std::array<float, fan_out>& distances);
 

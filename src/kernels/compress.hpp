@@ -1,12 +1,12 @@
 // Masks as bits, and numbers compressed to the front of a vector, for files that Highway compiles for each
 // instruction set.
 //
-// Highway 1.0 stores a mask of WebAssembly's to memory and reads it back as numbers, which took a third of a
-// sweep's time. There is an instruction. It looks the order of compressed numbers up in a table as well, but
-// in one that g++ copies to the stack at each call: a kilobyte with AVX2, which took three quarters of that
-// time.
+// On WebAssembly, Highway 1.0 stores a mask to memory and reads it back as numbers, which took a third of a
+// sweep's time; here one instruction does it. Highway also looks up the order of compressed numbers in a
+// table that g++ copies to the stack at each call: a kilobyte with AVX2, which took three quarters of a
+// sweep's time.
 //
-// Included once an instruction set, hence no #pragma once.
+// Included once per SIMD target, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_COMPRESS) == defined(HWY_TARGET_TOGGLE)
 #ifdef BROADSIDE_KERNELS_COMPRESS
 #undef BROADSIDE_KERNELS_COMPRESS
@@ -56,8 +56,8 @@ HWY_INLINE bool all_false(Tag tag, hn::Mask<Tag> mask) {
 #endif
 }
 
-/// For each set of `Lanes` lanes, as bits, which lanes are in it, in order; beyond them the first lane. Each
-/// lane is `Size` bytes: the places of its bytes.
+/// For each set of lanes, as bits: the places of the bytes of its lanes, in order, then zeros. A lane has
+/// `Size` bytes.
 template <std::size_t Lanes, std::size_t Size>
 struct LanesInSet {
   constexpr LanesInSet() {
@@ -77,7 +77,7 @@ struct LanesInSet {
 inline constexpr LanesInSet<8, 1> lanes_of_8;
 inline constexpr LanesInSet<4, 4> bytes_of_4;
 
-/// The numbers whose lanes are in `mask`, in order, at the front; what follows them is unspecified.
+/// The numbers in the lanes of `mask`, in order, at the front. The numbers after them are unspecified.
 template <typename Tag>
 HWY_INLINE hn::Vec<Tag> compress(Tag tag, hn::Vec<Tag> numbers, hn::Mask<Tag> mask) {
   static_assert(sizeof(hn::TFromD<Tag>) == 4);

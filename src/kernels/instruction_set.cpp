@@ -1,4 +1,4 @@
-// Which instruction set the kernels are dispatched to.
+// The instruction set that the kernels are dispatched to.
 #include <cstdint>
 
 #include "broadside/error.hpp"
@@ -27,14 +27,14 @@ void choose(std::int64_t) {}
 
 std::vector<std::int64_t> targets() { return {HWY_TARGETS}; }
 #else
-/// Makes Highway take `target` for all that the processor has, or if it is 0, what it really has. Highway has
-/// no other way to narrow the choice at run time than the one for its own tests.
+/// Makes Highway treat `target` as the processor's only one; 0 restores the targets that it really has.
+/// Highway's only way to narrow the choice at run time is the one for its own tests.
 void choose(std::int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-/// The processor's and the library's targets, whatever was chosen.
+/// The targets that the processor and the library have in common, whatever was chosen.
 const std::vector<std::int64_t>& targets() {
   static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
   return all;

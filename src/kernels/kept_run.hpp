@@ -1,4 +1,4 @@
-// KeptRun: the boxes of a run that stay from frame to frame.
+// KeptRun: a run of boxes that persists from frame to frame.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ struct KeptRun {
     return box;
   }
 
-  /// The run, after resize(); holds until the next one.
+  /// The run, valid until the next resize().
   Run<D> view() const {
     Run<D> run{};
     for (int axis = 0; axis < D; ++axis) {

@@ -1,4 +1,4 @@
-// The last test of pairs of boxes of doubles that kernels have found by floats.
+// The last test, in double, of pairs of boxes that kernels have found by floats.
 #include "kernels/last_test.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace broadside::kernels {
 
 template <int D>
 Pair* keep_overlapping(const Box<D, double>* boxes, Pair* begin, Pair* end) {
-  // Most pairs have no bit: these are only looked at.
+  // Most pairs do not have the bit and are only read.
   std::array<Pair*, PairSink::max_room> touching;
   std::size_t count = 0;
   for (Pair* pair = begin; pair != end; ++pair) {

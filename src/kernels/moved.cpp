@@ -1,8 +1,8 @@
-// Boxes that moved against kept ones, written once for every instruction set.
+// Compares moved boxes with kept ones, written once for every instruction set.
 //
-// In blocks, each step is taken for many boxes before the next one, so that none waits for memory: the blocks
-// in question are listed and prefetched; a box and where it was before are compared with the sixteen of each
-// block at once, and the blocks with hits listed, without a branch; then these are written.
+// In blocks, each step runs for many boxes before the next one, so that none waits for memory. The first step
+// lists and prefetches the blocks in question. The second compares a box, now and before, with the sixteen
+// boxes of each block at once, and lists the blocks with hits without a branch. The third writes their pairs.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/moved.cpp"
 #include "kernels/moved.hpp"
@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-/// The blocks in which a moved box meets others, and which of these, as bits.
+/// A block in which a moved box has hits, and its hits, as bits.
 struct Found {
   std::uint32_t moved;
   std::uint32_t block;
@@ -61,7 +61,7 @@ class Search {
     prefetch(block);
   }
 
-  /// Lists the first blocks of all cells in which there may be boxes that overlap `box`.
+  /// Lists the first block of each cell that may have boxes that overlap `box`.
   HWY_INLINE void list(const CellsView<D>& cells, std::uint32_t moved, const Box<D>& box) {
     for (const CellLevel<D>& level : cells.levels) {
       if (level.boxes == 0) continue;
@@ -83,7 +83,7 @@ class Search {
     }
   }
 
-  /// Two cells or one on each axis: which of them count is decided without a branch.
+  /// For one or two cells on each axis. Decides without a branch which of them count.
   HWY_INLINE void list_small(const CellsView<D>& cells, std::uint32_t moved, const CellLevel<D>& level,
                              std::uint32_t first, const std::array<std::uint32_t, D>& count) {
     if (HWY_UNLIKELY(listed_ + (std::size_t{1} << D) > max_listed)) compare();
@@ -124,7 +124,7 @@ class Search {
     }
   }
 
-  /// Compares what is listed, with all blocks of the chains.
+  /// Compares the listed boxes with all blocks of their chains.
   HWY_NOINLINE void compare() {
     const std::size_t listed = std::exchange(listed_, 0);
     std::size_t found = 0;
@@ -232,7 +232,7 @@ core::ChangeWork find_in_cells(const CellsView<D>& cells, std::span<const MovedB
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& in_blocks_2 = find_in_blocks<2>;
 constexpr auto& in_blocks_3 = find_in_blocks<3>;
 constexpr auto& in_cells_2 = find_in_cells<2>;

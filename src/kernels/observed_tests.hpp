@@ -1,6 +1,5 @@
-// The pairs of boxes that searches compare, written down one by one: in a build with BROADSIDE_OBSERVE, which
-// the playground and a test make. In any other build nothing here is called, so that nothing of it is
-// compiled.
+// Records the pairs of boxes that searches compare, one by one, in a build with BROADSIDE_OBSERVE, which the
+// playground and a test make. Other builds call nothing here, so nothing of it is compiled.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 
 namespace broadside::kernels {
 
-/// Whether this build writes its tests down.
+/// Whether this build records its tests.
 #ifdef BROADSIDE_OBSERVE
 inline constexpr bool is_observing = true;
 #else
@@ -22,28 +21,28 @@ inline constexpr bool is_observing = false;
 
 /// Every pair that a search has counted as a test since the list was cleared, in order and as often as it was
 /// compared: as many as Statistics::tests. Ids are places in the array that find() was given; in a search
-/// between two sets, places in the two of them, one behind the other. One list for all: a search that is
-/// observed has one worker. Trackers that follow boxes write nothing down.
+/// between two sets, places in the left array followed by the right one. There is one list, so an observed
+/// search must have one worker. Trackers that follow boxes record nothing.
 inline std::vector<Pair>& observed_tests() {
   static std::vector<Pair> tests;
   return tests;
 }
 
-/// Writes down one test, of two boxes in either order.
+/// Records one test of two boxes, in either order.
 inline void observe_test(BoxId a, BoxId b) { observed_tests().push_back({std::min(a, b), std::max(a, b)}); }
 
-/// Writes down the tests of `box` with those of `others` whose bits are set.
+/// Records the tests of `box` with the boxes of `others` at the set bits.
 inline void observe_tests(BoxId box, const BoxId* others, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) observe_test(box, others[std::countr_zero(bits)]);
 }
 
-/// Writes down the tests of each box with the other one at the same place, where the bit is set.
+/// Records the test of each box with the other one at the same place, for the set bits.
 inline void observe_tests(const BoxId* boxes, const BoxId* others, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1)
     observe_test(boxes[std::countr_zero(bits)], others[std::countr_zero(bits)]);
 }
 
-/// Gives the tests from `begin` on the ids that stand at their places in `ids`.
+/// Replaces the ids of the tests from `begin` on: place i becomes ids[i].
 template <typename Ids>
 void rename_observed_tests(std::size_t begin, const Ids& ids) {
   for (std::size_t i = begin; i < observed_tests().size(); ++i) {

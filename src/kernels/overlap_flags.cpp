@@ -1,7 +1,7 @@
-// Pairs of boxes that are known by their places, written once for every instruction set.
+// Tests given pairs of boxes for overlap, written once for every instruction set.
 //
-// A pair is tested by itself, in a vector of four floats: there is nothing to be gained by gathering the
-// coordinates of many pairs, which takes longer than the tests.
+// Each pair is tested by itself, in a vector of four floats. Gathering the coordinates of many pairs would
+// take longer than the tests.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/overlap_flags.cpp"
 #include "kernels/overlap_flags.hpp"
@@ -18,11 +18,11 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// How many pairs ahead boxes are prefetched: finders write neighbours one after the other, but boxes may be
-/// anywhere in their array.
+/// How many pairs ahead boxes are prefetched. Finders write neighbours one after the other, but their boxes
+/// may be anywhere in the array.
 constexpr std::size_t ahead = 16;
 
-/// Without a branch, which no predictor could foresee.
+/// Branchless, since a branch could not be predicted.
 template <int D, typename Real>
 HWY_INLINE bool both_overlap(const Box<D, Real>& a, const Box<D, Real>& b) {
   unsigned all = 1;
@@ -40,7 +40,7 @@ HWY_INLINE bool both_overlap(const Box<D, Real>& a, const Box<D, Real>& b) {
 using Four = hn::FixedTag<float, 4>;
 using Vector = hn::Vec<Four>;
 
-/// Four coordinates of a box, from the one of number `first` on.
+/// Four coordinates of a box, from number `first` on.
 template <int D>
 HWY_INLINE Vector load(const Box<D>& box, std::size_t first) {
   const hn::FixedTag<std::uint8_t, 16> bytes;
@@ -58,7 +58,7 @@ HWY_INLINE bool both_overlap(const Box<2>& a, const Box<2>& b) {
   return hn::AllTrue(four, hn::And(overlaps, are_present));
 }
 
-/// The fourth numbers are none of the same axis.
+/// Ignores the fourth lane: its numbers are not of one axis.
 HWY_INLINE bool both_overlap(const Box<3>& a, const Box<3>& b) {
   const Four four;
   const Vector a_min = load(a, 0);
@@ -86,7 +86,7 @@ void flag_overlaps(std::span<const Box<D, Real>> boxes, std::span<const Pair> pa
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& flags_2 = flag_overlaps<2, float>;
 constexpr auto& flags_3 = flag_overlaps<3, float>;
 constexpr auto& double_flags_2 = flag_overlaps<2, double>;

@@ -1,4 +1,4 @@
-// Pairs of boxes that are known by their places: which of them overlap.
+// Tests which of given pairs of boxes overlap.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace broadside::kernels {
 
-/// Sets flags[i] to 1 if the boxes of pairs[i] are present and overlap, else to 0. In any order in memory; a
-/// nanosecond or two a pair where the boxes are in the cache.
+/// Sets flags[i] to 1 if the boxes of pairs[i] are present and overlap, else to 0. Pairs may be in any order.
+/// Takes one or two nanoseconds per pair if the boxes are in the cache.
 template <int D, typename Real>
 void set_overlap_flags(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, std::uint8_t* flags);
 

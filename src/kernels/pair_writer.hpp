@@ -1,8 +1,9 @@
-// Writes the pairs that are hits, and loads ids, for files that Highway compiles for each instruction set.
+// PairWriter: writes the pairs that are hits. load_ids(): loads ids. For files that Highway compiles for each
+// instruction set.
 //
-// Both go by bytes, which may be read from any object and written to it.
+// Both access memory as bytes, which C++ allows for any object.
 //
-// Included once an instruction set, hence no #pragma once.
+// Included once per SIMD target, hence no #pragma once.
 #if defined(BROADSIDE_KERNELS_PAIR_WRITER) == defined(HWY_TARGET_TOGGLE)
 #ifdef BROADSIDE_KERNELS_PAIR_WRITER
 #undef BROADSIDE_KERNELS_PAIR_WRITER
@@ -24,7 +25,7 @@ HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The ids from `ids` on, one a lane.
+/// The ids from `ids` on, one per lane.
 template <typename Ids>
 HWY_INLINE hn::Vec<Ids> load_ids(Ids tag, const BoxId* ids) {
 #if HWY_TARGET == HWY_SCALAR
@@ -35,22 +36,21 @@ HWY_INLINE hn::Vec<Ids> load_ids(Ids tag, const BoxId* ids) {
 #endif
 }
 
-/// The ids, with a touching_bit where `touching`.
+/// The ids, with a touching_bit in the lanes of `touching`.
 template <typename Ids>
 HWY_INLINE hn::Vec<Ids> marked(Ids tag, hn::Vec<Ids> ids, hn::Mask<Ids> touching) {
   return hn::Or(ids, hn::IfThenElseZero(touching, hn::Set(tag, touching_bit)));
 }
 
-/// Where pairs are written: takes room from a sink in large pieces, so that none is asked for with each hit.
-/// `Ids` is the tag of vectors of ids. Where `LastTest` is InDouble, the second ids of pairs that touch are
-/// marked.
+/// Writes pairs to a sink. Takes room from the sink in large pieces, not for each hit. `Ids` is the tag of
+/// vectors of ids. If `LastTest` is InDouble, the second ids of pairs that only touch are marked.
 template <typename Ids, typename LastTest = ByFloats>
 class PairWriter {
   using IdVector = hn::Vec<Ids>;
   using Hits = hn::Mask<Ids>;
 
  public:
-  /// The room that must be left wherever a vector of pairs is written.
+  /// How many pairs there must be room for before a vector of pairs is written.
   static constexpr std::size_t at_once = 16;
 
   explicit PairWriter(PairSink& sink, LastTest last_test = {})
@@ -61,7 +61,8 @@ class PairWriter {
   PairWriter(const PairWriter&) = delete;
   PairWriter& operator=(const PairWriter&) = delete;
 
-  /// How many pairs were written, with those that the last test drops: when it comes depends on the lanes.
+  /// How many pairs were written, including any that the last test drops, since the number of lanes
+  /// determines when that test runs.
   std::uint64_t written() const { return handed_on_ + static_cast<std::uint64_t>(out_ - begin_); }
 
   /// How many times `at_once` pairs may be written before room() is called again: at least once.
@@ -76,14 +77,14 @@ class PairWriter {
     return left();
   }
 
-  /// Writes the pairs of `a` and `b`, lane by lane, that are hits. Takes the room of a vector.
+  /// Writes the pairs of `a` and `b`, lane by lane, that are hits. Takes the room of one vector.
   HWY_INLINE void write(IdVector a, IdVector b, Hits hits) {
     const Ids tag;
     if (is_none(hits)) return;
     store(compress(tag, a, hits), compress(tag, b, hits), count_true(tag, hits));
   }
 
-  /// Writes the pairs of `query`, which is the same in every lane, with those of `ids` that are hits.
+  /// Writes the pairs of `query`, which is the same in every lane, with the `ids` that are hits.
   HWY_INLINE void write_of(IdVector query, IdVector ids, Hits hits) {
     const Ids tag;
     if (is_none(hits)) return;
@@ -91,8 +92,8 @@ class PairWriter {
   }
 
  private:
-  /// Whether a vector without hits is skipped. On WebAssembly writing one takes longer than a branch that is
-  /// mispredicted: this halves the time of a sweep of 10,000 boxes.
+  /// Whether to skip a vector because it has no hits. On WebAssembly, writing one takes longer than a
+  /// mispredicted branch: skipping halves the time of a sweep of 10,000 boxes.
   static HWY_INLINE bool is_none(Hits hits) { return HWY_TARGET == HWY_WASM && all_false(Ids(), hits); }
 
   static HWY_NOINLINE Pair* next_room(PairSink& sink, std::size_t written) {
@@ -119,7 +120,7 @@ class PairWriter {
       hn::StoreU(hn::BitCast(bytes, pairs), bytes, reinterpret_cast<std::uint8_t*>(to));
     };
     write_half(hn::LowerHalf(half, first), hn::LowerHalf(half, second), out_);
-    // Of many lanes few are hits.
+    // With many lanes, few are hits.
     if (hn::MaxLanes(Ids()) < 16 || HWY_UNLIKELY(count > hn::Lanes(wide)))
       write_half(hn::UpperHalf(half, first), hn::UpperHalf(half, second), out_ + hn::Lanes(wide));
 #endif

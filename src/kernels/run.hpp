@@ -15,8 +15,7 @@
 
 namespace broadside::kernels {
 
-/// Kernels may read this many elements beyond a run's last one, whose min[0] and max[0]
-/// must then be NaN.
+/// Kernels may read this many elements beyond a run's last one. Their min[0] and max[0] must be NaN.
 inline constexpr std::size_t read_ahead = 16;
 
 /// `size` boxes as arrays. Axis 0 of a run is the swept axis, whichever axis of the caller's boxes that is.
@@ -33,24 +32,24 @@ struct Run {
 
   std::size_t size;
 
-  /// The most by which a box may begin before an earlier one of the run: 0 where
-  /// the run is sorted by min[0], a bucket's width where it is only sorted by buckets.
+  /// How far a box may begin before an earlier one of the run, at most: 0 if the run is sorted by min[0], a
+  /// bucket's width if it is only sorted by buckets.
   float slack = 0;
 
-  /// When a run is swept or compared with itself: the number of its first boxes that are, each with all after
-  /// it. A multiple of read_ahead, or no fewer than there are.
+  /// When a run is swept or compared with itself: how many of its first boxes are compared, each with all
+  /// boxes after it. A multiple of read_ahead, or at least `size`.
   std::size_t rows = std::numeric_limits<std::size_t>::max();
 
-  /// Where the boxes are floats of boxes of doubles: these, by id, and pairs must overlap in double. Else
-  /// null.
+  /// If the boxes were rounded from boxes of doubles: those boxes, by id. Pairs must then overlap in double.
+  /// Else null.
   const Box<D, double>* doubles = nullptr;
 
-  /// Counts the pairs compared, and may end the search by an exception; or null.
+  /// Counts the compared pairs, and may end the search by an exception. May be null.
   Checkpoint* checkpoint = nullptr;
 };
 
 /// The run from box `begin` on, with the boxes before `end` as rows. Both are multiples of read_ahead, unless
-/// `end` is the run's end. The pairs of consecutive parts, in order, are those of the whole run.
+/// `end` is the run's end. Consecutive parts have the pairs of the whole run, in the same order.
 template <int D>
 Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end, Checkpoint* checkpoint) {
   for (int axis = 0; axis < D; ++axis) {
@@ -65,7 +64,7 @@ Run<D> rows_of(Run<D> run, std::size_t begin, std::size_t end, Checkpoint* check
   return run;
 }
 
-/// Reports to a checkpoint, if there is one, the tests since the last report, at which there were `told`.
+/// Reports the tests since the last report to a checkpoint, if there is one. `told` counts reported tests.
 inline void tell(Checkpoint* checkpoint, std::uint64_t tests, std::uint64_t& told) {
   if (checkpoint == nullptr) [[likely]]
     return;
@@ -73,13 +72,13 @@ inline void tell(Checkpoint* checkpoint, std::uint64_t tests, std::uint64_t& tol
 }
 
 /// The bit of `dedup_mask` for a box in a search between two sets, where the first `left_count` boxes are the
-/// left set: boxes of one set share it, so they are no pairs. 0 if `left_count` is 0.
+/// left set. Boxes of one set share their bit, so they are not paired. 0 if `left_count` is 0.
 constexpr std::uint32_t side_bit(BoxId id, std::size_t left_count) noexcept {
   if (left_count == 0) return 0;
   return index(id) < left_count ? 1U << 30 : 1U << 31;
 }
 
-/// Where the boxes of a run are put.
+/// The arrays to write the boxes of a run to.
 template <int D>
 struct RunArrays {
   std::array<float*, D> min;
@@ -88,7 +87,7 @@ struct RunArrays {
   std::uint32_t* dedup_mask;
 };
 
-/// The memory of a run; it keeps what it has allocated.
+/// The memory of a run. Keeps its allocations for reuse.
 template <int D>
 class RunBuffer {
  public:
@@ -98,9 +97,9 @@ class RunBuffer {
 
   /// Makes room for `count` boxes, so that append() need not.
   void reserve(std::size_t count) {
-    // `dedup_mask_` grows last: where it has room all have, also after memory ran out in between.
+    // `dedup_mask_` grows last: if it has room, all arrays have, even after an allocation failed in between.
     if (count + read_ahead <= dedup_mask_.size()) return;
-    // With values, since kernels read ahead.
+    // Initialized, since kernels read ahead.
     for (int axis = 0; axis < D; ++axis) {
       min_[axis].resize(count + read_ahead, 0);
       max_[axis].resize(count + read_ahead, 0);
@@ -120,7 +119,7 @@ class RunBuffer {
     ++size_;
   }
 
-  /// Where to put boxes in any order, for which reserve() has made room; set_size() then tells how many.
+  /// The arrays, to write boxes to in any order, between reserve() and set_size().
   RunArrays<D> arrays() {
     RunArrays<D> arrays;
     for (int axis = 0; axis < D; ++axis) {
@@ -134,14 +133,14 @@ class RunBuffer {
 
   void set_size(std::size_t size) noexcept { size_ = size; }
 
-  /// Sorts a few boxes, at the places [begin, end), by min[0]; equal ones stay in order.
+  /// Sorts a few boxes, at the places [begin, end), by min[0]. The sort is stable.
   void sort(std::size_t begin, std::size_t end) {
     for (std::size_t i = begin + 1; i < end; ++i) {
       for (std::size_t j = i; j > begin && min_[0][j] < min_[0][j - 1]; --j) swap(j, j - 1);
     }
   }
 
-  /// The run; holds until the buffer is changed.
+  /// The run, valid until the buffer is changed.
   Run<D> view(const Box<D, double>* doubles, Checkpoint* checkpoint = nullptr, float slack = 0) {
     reserve(size_);
     for (std::size_t i = 0; i < read_ahead; ++i)

@@ -1,7 +1,7 @@
-// The SIMD kernels: a sorted run swept against itself or against another, and all of a run compared.
+// The SIMD kernels: they sweep a sorted run against itself or another run, or compare all boxes of a run.
 //
 // Written once with Highway, compiled for every instruction set it knows, chosen when the program runs. Hits
-// are written without a branch, since whether two candidates overlap is what no predictor can know: ids are
+// are written without a branch, since no predictor can know whether two candidates overlap: ids are
 // compressed to the front, a whole vector of pairs is stored, and the place to write advances by the number
 // of hits.
 #undef HWY_TARGET_INCLUDE
@@ -28,8 +28,7 @@ using Hits = NumberMask;
 template <typename LastTest>
 using Writer = PairWriter<Ids, LastTest>;
 
-/// Boxes of a run that are swept together: the same number on every instruction set, since it fixes the
-/// order.
+/// How many boxes of a run are swept together. The same on every instruction set, since it fixes the order.
 constexpr std::size_t together = read_ahead;
 static_assert(together == Writer<ByFloats>::at_once);
 
@@ -54,7 +53,7 @@ HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t a
   return hn::And(hits, hn::Eq(common, hn::Zero(Ids())));
 }
 
-/// The ids from `at` on, marked for the last test in double of the pairs with `bounds`.
+/// The ids from `at` on. Boxes that only touch `bounds` are marked for the last test in double.
 template <typename LastTest, int D, template <int> typename Bounds>
 HWY_INLINE IdVector ids_beside(const Bounds<D>& bounds, const Run<D>& run, std::size_t at) {
   const IdVector ids = load_ids(Ids(), run.id + at);
@@ -62,8 +61,8 @@ HWY_INLINE IdVector ids_beside(const Bounds<D>& bounds, const Run<D>& run, std::
   return marked(Ids(), ids, hn::RebindMask(Ids(), touch(bounds, LoadedBoxes<D>(run, at))));
 }
 
-/// Compares the query with the boxes from `begin` on that may start on axis 0 no later than it ends. Returns
-/// how many do.
+/// Compares the query with the boxes from `begin` on that may start on axis 0 no later than the query ends.
+/// Returns how many do.
 template <int D, typename LastTest>
 HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D>& run, std::size_t begin,
                                   Writer<LastTest>& pairs) {
@@ -74,7 +73,7 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
     tests += count_true(floats, tested);
     if constexpr (is_observing) observe_tests(query.box_id(), run.id + at, bits_of(tested));
     const Hits hits = overlaps(query, run, at);
-    // Where candidates are many, most vectors of them hold no hit.
+    // If there are many candidates, most vectors of them have no hit.
     if (all_false(Ids(), hits)) continue;
     pairs.room();
     pairs.write_of(query.id, ids_beside<LastTest>(query.bounds, run, at), hits);
@@ -82,9 +81,9 @@ HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D
   return tests;
 }
 
-/// Compares `together` boxes with the ones `distance` places behind each, then with the next ones, and so on
-/// until no window holds more or few do: `distance` is then how far it came. Windows are too short for the
-/// lanes to be one box's candidates. Returns the number of windows that may hold more.
+/// Compares each of `together` boxes with the box `distance` places after it, then with the next one, and so
+/// on until few boxes or none may have more candidates. `distance` is then where it stopped. Each lane has
+/// its own box, since one box has too few candidates to fill the lanes. Returns how many boxes may have more.
 template <int D, typename LastTest>
 HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::size_t& distance,
                                    std::uint64_t& tests, Writer<LastTest>& pairs) {
@@ -93,7 +92,7 @@ HWY_INLINE std::size_t sweep_group(const Run<D>& run, std::size_t begin, std::si
   const Floats floats;
   const FloatVector slack = hn::Set(floats, run.slack);
   for (;;) {
-    // No call in the loop below: vectors would have to be saved from it.
+    // No call in the loop below, since it would spill the vectors.
     const std::size_t stop = distance + pairs.room();
     LoadedBoxes<D> groups[parts];
     IdVector group_ids[parts];
@@ -135,7 +134,7 @@ template <int D, typename LastTest>
 std::uint64_t sweep_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
   Writer<LastTest> pairs(sink, last_test);
   std::uint64_t tests = 0;
-  // After the last box there is nothing.
+  // No box follows the last one.
   const std::size_t rows = run.size == 0 ? 0 : std::min(run.rows, run.size - 1);
   std::uint64_t told = 0;
   for (std::size_t begin = 0; begin < rows; begin += together) {
@@ -151,7 +150,7 @@ std::uint64_t sweep_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
 
 template <int D, typename LastTest>
 std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, PairSink& sink) {
-  // Each pair has a box that is taken first; the other one is then still to come in its run.
+  // One box of each pair is taken first; the other is then still to come in its run.
   Writer<LastTest> pairs(sink, last_test);
   std::uint64_t tests = 0;
   std::uint64_t told = 0;
@@ -232,7 +231,7 @@ std::uint64_t compare_between(const Run<D>& a, const Run<D>& b, PairSink& pairs)
 
 }  // namespace
 
-// What the dispatch below can name: no templates.
+// Names for the dispatch below, which cannot name templates.
 constexpr auto& sweep_run_2 = sweep_within<2>;
 constexpr auto& sweep_run_3 = sweep_within<3>;
 constexpr auto& sweep_runs_2 = sweep_between<2>;
