@@ -89,8 +89,8 @@ void BoxTable<D, Real>::append() noexcept {
   filters_.append();
 }
 
-/// Moves a box out of its enlarged one, and enlarges it anew. Apart from set(), which is then small enough
-/// for the compiler to inline it.
+/// Moves a box out of its enlarged one, and enlarges it anew. Separate from set(), so that set() is small
+/// enough to be inlined.
 template <int D, typename Real>
 void BoxTable<D, Real>::set_outside(std::uint32_t slot, const Box<D, Real>& box,
                                     const Point<D, Real>* velocity) noexcept {

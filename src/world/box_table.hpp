@@ -26,7 +26,7 @@ template <int D, typename Real>
 class BoxTable {
  public:
   /// Throws std::invalid_argument if a margin or the number of predicted frames is negative or not finite, or
-  /// if enlarged boxes are to make the pairs and there are none.
+  /// if enlarged boxes must make the pairs and no box is enlarged.
   explicit BoxTable(const WorldOptions& options);
 
   std::span<const Box<D, Real>> boxes() const noexcept { return boxes_; }
@@ -39,15 +39,15 @@ class BoxTable {
   /// Whether the tracker sees enlarged boxes.
   bool enlarges() const noexcept { return enlarges_; }
 
-  /// Whether it does, and the boxes themselves decide about its pairs.
+  /// Whether the tracker sees enlarged boxes, and the boxes themselves decide about its pairs.
   bool refines() const noexcept { return enlarges_ && boxes_make_pairs_; }
 
   /// What the tracker sees, and the list of what changed in it.
   std::span<const Box<D, Real>> shown() const noexcept { return enlarges_ ? enlarged_ : boxes_; }
   std::span<const BoxId> shown_changes() const noexcept { return enlarges_ ? moved_ : changed_; }
 
-  /// Throws InvalidInput, with `index`, if add() and set() must not take the box; an absent one is no box,
-  /// too. `whose` and `number` name it.
+  /// Throws InvalidInput, with `index`, if the box is absent, or invalid and not to be quarantined. `whose`
+  /// and `number` name it.
   void check(const Box<D, Real>& box, std::size_t index, const char* whose, std::size_t number) const {
     if (!is_present(box)) check_invalid(box, index, whose, number);
   }
@@ -56,25 +56,25 @@ class BoxTable {
   void check_velocity(const Point<D, Real>& velocity, std::size_t index, const char* whose,
                       std::size_t number) const;
 
-  /// Makes room for `added` calls of append(), and for a first filter if one is to come.
+  /// Makes room for `added` calls of append(), and for the first filter if one follows.
   void reserve(std::size_t added, bool with_filter);
 
-  /// Makes room for `count` calls of set(), reset(), set_filter() or remove(): they do not throw.
+  /// Makes room for `count` calls of set(), reset(), set_filter() or remove(), so that they do not throw.
   void reserve_changes(std::size_t count) {
     core::make_room(changed_, count);
     if (enlarges_) core::make_room(moved_, count);
   }
 
-  /// Begins to keep filters; reserve() has made room.
+  /// Begins to keep filters; reserve() must have made room.
   void use_filters() noexcept { filters_.use(boxes_.size()); }
 
   /// Appends a slot without a box.
   void append() noexcept;
 
-  /// Sets a slot's box, which check() has accepted, in the default floating-point environment. Where only
-  /// enlarged boxes make pairs, a move within one concerns nothing but queries.
+  /// Sets a slot's box, which check() has accepted, in the default floating-point environment. If only
+  /// enlarged boxes make pairs, a move within one affects only queries.
   void set(std::uint32_t slot, const Box<D, Real>& given, const Point<D, Real>* velocity) noexcept {
-    // Where invalid ones are not quarantined, it has been checked.
+    // Without quarantine, check() has thrown for an invalid box.
     const Box<D, Real> box = quarantines_ && !is_present(given) ? absent_box<D, Real>() : given;
     if (enlarges_ && !margins_.keeps(enlarged_[slot], box, velocity)) return set_outside(slot, box, velocity);
     boxes_[slot] = box;
@@ -98,7 +98,7 @@ class BoxTable {
   /// Makes the slot's box absent.
   void remove(std::uint32_t slot) noexcept;
 
-  /// At the end of an update: nothing has changed since. O(changes).
+  /// At the end of an update: clears the lists of changes. O(changes).
   void settle() noexcept;
 
   /// Drops the slots from `slots` on; no list may name one.
@@ -111,7 +111,7 @@ class BoxTable {
   std::size_t filter_bytes() const noexcept { return filters_.bytes(); }
   std::size_t list_bytes() const noexcept { return core::bytes_of(marks_, changed_, moved_); }
 
-  /// Takes the boxes of a snapshot, which have been checked: first the arrays, then the lists.
+  /// Takes the checked boxes of a snapshot: first the arrays, then the lists.
   void restore(std::vector<Box<D, Real>> boxes, std::vector<Box<D, Real>> enlarged);
   void restore_filters(std::vector<Filter> filters) noexcept { filters_.restore(std::move(filters)); }
   void restore_changes(std::vector<BoxId> changed, std::vector<BoxId> moved);
@@ -139,12 +139,12 @@ class BoxTable {
   bool enlarges_;
   bool boxes_make_pairs_;  // and not the enlarged ones
   bool quarantines_;
-  std::vector<Box<D, Real>> boxes_;     // absent where nothing lives
-  std::vector<Box<D, Real>> enlarged_;  // empty where boxes are not enlarged
+  std::vector<Box<D, Real>> boxes_;     // absent in slots without a box
+  std::vector<Box<D, Real>> enlarged_;  // empty if boxes are not enlarged
   std::vector<std::uint8_t> marks_;
-  SlotColumn<Filter> filters_;  // in use from the first one on that is not the standard one
+  SlotColumn<Filter> filters_;  // in use from the first filter on that is not the default
   std::vector<BoxId> changed_;
-  std::vector<BoxId> moved_;  // unused where boxes are not enlarged
+  std::vector<BoxId> moved_;  // unused if boxes are not enlarged
 };
 
 }  // namespace broadside::world

@@ -1,4 +1,4 @@
-// Bytes written and read in little-endian order, with a checksum at the end: see docs/snapshot-format.md.
+// ByteWriter, ByteReader: little-endian bytes with a checksum at the end. See docs/snapshot-format.md.
 #pragma once
 
 #include <bit>
@@ -65,10 +65,10 @@ class ByteWriter {
   std::size_t size_ = 0;
 };
 
-/// Takes numbers from bytes. Throws InvalidSnapshot where there are no more.
+/// Reads numbers from bytes. Throws InvalidSnapshot if too few bytes are left.
 class ByteReader {
  public:
-  /// `version` is that of the format, for parts that were written in another way once.
+  /// `version` is the version of the format, for parts that earlier versions wrote in another way.
   ByteReader(std::span<const std::byte> bytes, std::uint32_t version) : bytes_(bytes), version_(version) {}
 
   std::uint32_t version() const noexcept { return version_; }
@@ -86,8 +86,8 @@ class ByteReader {
     return std::bit_cast<T>(bits);
   }
 
-  /// A count of items that take at least `bytes_each` bytes each, which must be there: so a false count
-  /// cannot make the reader allocate more than its bytes justify.
+  /// Reads a count of items of at least `bytes_each` bytes each. Throws if fewer bytes are left, so that a
+  /// false count cannot make the reader allocate more than its bytes justify.
   std::size_t count(std::size_t bytes_each, const char* things) {
     const auto count = get<std::uint64_t>();
     need(bytes_each, count, things);

@@ -14,7 +14,8 @@ namespace {
 /// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
 
-/// Up to this part of the array in the log, places are searched for; with more, every pair is looked at.
+/// A merge searches for places if the array has this many pairs for each event of the log, or more. Else it
+/// visits every pair.
 constexpr std::size_t part_for_galloping = 8;
 
 /// Merges two sorted ranges without branches: no predictor could foresee which comes next.
@@ -33,8 +34,8 @@ void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair
 
 constexpr auto has_slots_before = [](const HandlePair& a, Pair b) { return slots_of(a) < b; };
 
-/// The first place in [from, to) that is not before `pair`, near `from` most of the time: steps that double,
-/// then a search between the last two.
+/// The first place in [from, to) that is not before `pair`: a galloping search, since it is mostly near
+/// `from`.
 const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to, Pair pair) {
   std::ptrdiff_t step = 1;
   const HandlePair* low = from;
@@ -134,7 +135,7 @@ std::span<const HandlePair> CurrentPairs::persisting(Generations generations) co
 
 void CurrentPairs::merge(Generations generations) const {
   if (log_.empty()) return;
-  // Everything that can throw comes first, and sorting last: it mixes old events with new ones.
+  // Everything that can throw comes first; of that, sorting comes last, since it mixes old and new events.
   const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
   const std::size_t most = is_long ? pairs_.size() + log_.size() : size_;
   if (pairs_.capacity() < most) pairs_.reserve(std::max(most, pairs_.capacity() + pairs_.capacity() / 2));
@@ -148,7 +149,7 @@ void CurrentPairs::merge(Generations generations) const {
 }
 
 /// Moves the pairs that the log has an odd number of times to its front, each once; returns how many. Gives
-/// pairs that ended and began again the handles of now, since slots may have been used again.
+/// pairs that ended and began again their current handles, since slots may have been reused.
 std::size_t CurrentPairs::keep_toggled(Generations generations) const {
   std::size_t toggled = 0;
   for (std::size_t i = 0; i < log_.size();) {
@@ -165,14 +166,14 @@ std::size_t CurrentPairs::keep_toggled(Generations generations) const {
   return toggled;
 }
 
-/// Takes the first `count` pairs of the log from the array, and puts those in that are not there: from the
-/// end on, without branches, as in merge_events(). There is room for all.
+/// Removes each of the first `count` pairs of the log from the array, or inserts it if it is not there: from
+/// the end on, without branches, as in merge_events(). There is room for all.
 void CurrentPairs::toggle(std::size_t count, Generations generations) const {
   std::size_t left = pairs_.size();
   pairs_.resize(left + count);
   HandlePair* const begin = pairs_.data();
   HandlePair* const end = begin + pairs_.size();
-  HandlePair* out = end;  // at least `count` places above those that are left
+  HandlePair* out = end;  // at least `count` places above the pairs that are left
   while (left > 0 && count > 0) {
     const HandlePair toggled = handles_of(log_[count - 1], generations);
     const HandlePair& held = begin[left - 1];
@@ -188,8 +189,8 @@ void CurrentPairs::toggle(std::size_t count, Generations generations) const {
   pairs_.resize(static_cast<std::size_t>(last - begin));
 }
 
-/// Takes those of the first `count` pairs of the log that are in the array out of it. The others, which have
-/// begun, go to the front of the log; returns how many.
+/// Removes each of the first `count` pairs of the log from the array if it is there. Moves the other pairs,
+/// which have begun, to the front of the log; returns how many there are.
 std::size_t CurrentPairs::drop_ended(std::size_t count) const {
   HandlePair* const begin = pairs_.data();
   const HandlePair* const end = begin + pairs_.size();
@@ -215,14 +216,14 @@ std::size_t CurrentPairs::drop_ended(std::size_t count) const {
   return begun;
 }
 
-/// Puts the first `count` pairs of the log into the array, from the end on. There is room for them.
+/// Inserts the first `count` pairs of the log into the array, from the end on. There is room for them.
 void CurrentPairs::insert_begun(std::size_t count, Generations generations) const {
   std::size_t left = pairs_.size();
   pairs_.resize(left + count);
   HandlePair* out = pairs_.data() + pairs_.size();
   while (count > 0) {
     const Pair pair = log_[--count];
-    // From the back, since that is where the place is near.
+    // Gallops from the back, since the place is near it.
     std::size_t step = 1;
     std::size_t high = left;
     while (step <= high && pair < slots_of(pairs_[high - step])) {

@@ -36,13 +36,13 @@ class CurrentPairs {
     return {events_.begun, events_.ended, events_.begun_data, events_.ended_data};
   }
 
-  /// Takes the events of an update out of `events`, where both lists are sorted. O(events), and where the log
-  /// has grown too long for the array, a pass over it. If it throws, nothing has changed.
+  /// Takes the events of an update out of `events`, both lists sorted. O(events), plus a pass over the array
+  /// if the log has grown too long for it. If it throws, nothing has changed.
   void take(PairEvents& events, Generations generations, const SlotColumn<std::uint64_t>& user_data);
 
   /// The pairs that hold, sorted by slots, and the ones among them that did not begin in the last update.
-  /// Only if pairs are kept. Valid until the next call of a member that is not const. O(events since it was
-  /// last asked), and a pass over the pairs if there were any.
+  /// Only if pairs are kept. Valid until the next call of a non-const member. O(events since the last call),
+  /// plus a pass over the pairs if there were any.
   std::span<const HandlePair> pairs(Generations generations) const;
   std::span<const HandlePair> persisting(Generations generations) const;
 
@@ -51,8 +51,8 @@ class CurrentPairs {
 
   std::size_t bytes() const;
 
-  /// Takes the pairs of a snapshot, sorted, which says that they are `size`, and the events of its last
-  /// update.
+  /// Takes the sorted pairs of a snapshot, their number `size` (even if they are not kept), and the events of
+  /// its last update.
   void restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
                Generations generations);
 

@@ -1,4 +1,4 @@
-// IgnoredPairTable: the pairs of boxes that never count, and which of them are new.
+// IgnoredPairTable: the pairs of boxes that never count, and which of them changed.
 #include "world/ignored_pair_table.hpp"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// IgnoredPairTable: the pairs of boxes that never count, and which of them are new.
+// IgnoredPairTable: the pairs of boxes that never count, and which of them changed.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace broadside::world {
 
 /// A set of pairs that also finds all pairs of one box, to forget them when the box is removed. Pairs are of
-/// slots. All O(1) unless they say otherwise; some 100 bytes a pair.
+/// slots. Each function is O(1) unless it says otherwise; about 100 bytes per pair.
 class IgnoredPairTable {
  public:
   std::size_t size() const noexcept { return pairs_.size(); }
@@ -24,21 +24,20 @@ class IgnoredPairTable {
   /// The pairs as a tracker takes them.
   const IgnoredPairs& pairs() const noexcept { return pairs_; }
 
-  /// The pairs that were put in or taken out since the last settle(), in that order.
+  /// The pairs that were inserted or erased since the last settle(), in that order.
   std::span<const Pair> changed() const noexcept { return changed_; }
 
-  /// Puts a pair in, or takes it out. Returns whether it was not so already. If it throws, nothing has
-  /// changed.
+  /// Inserts or erases a pair. Returns whether this changed the set. If it throws, nothing has changed.
   bool insert(Pair pair);
   bool erase(Pair pair);
 
-  /// Makes room for forgetting the pairs of any boxes: forget() does not throw.
+  /// Makes room to forget the pairs of any boxes, so that forget() cannot fail.
   void reserve_forgetting() { core::make_room(changed_, edges_.size()); }
 
-  /// Takes all pairs of a slot out. O(pairs of the slot).
+  /// Erases all pairs of a slot. O(pairs of the slot).
   void forget(std::uint32_t slot) noexcept;
 
-  /// At the end of an update: nothing has changed since.
+  /// At the end of an update: clears changed().
   void settle() noexcept { changed_.clear(); }
 
   /// Gives back the memory that the pairs do not need. O(pairs).

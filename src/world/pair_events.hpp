@@ -21,17 +21,17 @@ struct PairEvents {
     ended.clear();
   }
 
-  /// The events but for those that are in both lists: they were undone before they were delivered. Sorted.
+  /// The events without pairs in both lists, which were undone before they were delivered. Sorted.
   PairEvents netted() const;
 
-  /// The pairs that held before the events, which are sorted, if `pairs` hold after them; sorted as well.
+  /// The pairs that held before the events if `pairs` hold after them. All are sorted.
   std::vector<Pair> undone(const std::vector<Pair>& pairs) const;
 
   void shrink_to_fit() { core::shrink(begun, ended); }
   std::size_t bytes() const noexcept { return core::bytes_of(begun, ended); }
 };
 
-/// The pairs that are in one of the two and not in the other; all sorted.
+/// The pairs that are in exactly one of the two. All are sorted.
 std::vector<Pair> symmetric_difference(const std::vector<Pair>& a, const std::vector<Pair>& b);
 
 }  // namespace broadside::world

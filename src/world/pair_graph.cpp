@@ -1,4 +1,4 @@
-// PairGraph: a set of pairs that finds a pair, and all pairs of a box, at once.
+// PairGraph: a set of pairs with fast lookup of a pair and of all pairs of a box.
 #include "world/pair_graph.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace broadside::world {
 
 std::size_t PairGraph::home(Pair pair) const noexcept { return hash(pair) & (table_.size() - 1); }
 
-/// Where the pair is in a table that is not empty, or the free place where it would be.
+/// Where the pair is, or the free place where it would be. The table must not be empty.
 std::size_t PairGraph::place_of(Pair pair) const noexcept {
   std::size_t place = home(pair);
   while (table_[place] != none && pairs_[table_[place]] != pair) place = (place + 1) & (table_.size() - 1);
@@ -56,7 +56,7 @@ void PairGraph::erase(EdgeId edge) noexcept {
   const Pair pair = pairs_[edge];
   std::size_t hole = place_of(pair);
   const std::size_t mask = table_.size() - 1;
-  // The entries behind the hole move into it, unless that is before their home.
+  // Entries after the hole move into it, unless it is before their home.
   for (std::size_t place = (hole + 1) & mask; table_[place] != none; place = (place + 1) & mask) {
     const std::size_t distance = (place - home(pairs_[table_[place]])) & mask;
     if (distance >= ((place - hole) & mask)) table_[std::exchange(hole, place)] = table_[place];
@@ -64,7 +64,7 @@ void PairGraph::erase(EdgeId edge) noexcept {
   table_[hole] = none;
   for (const End side : {0U, 1U})
     join(links_[edge].previous[side], links_[edge].next[side], side == 0 ? pair.first : pair.second);
-  // The last edge takes the place.
+  // The last edge takes the id of the erased one.
   const auto last = static_cast<EdgeId>(size() - 1);
   if (edge != last) {
     const Pair moved = pairs_[last];

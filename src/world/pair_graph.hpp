@@ -1,4 +1,4 @@
-// PairGraph: a set of pairs that finds a pair, and all pairs of a box, at once.
+// PairGraph: a set of pairs with fast lookup of a pair and of all pairs of a box.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@ namespace broadside::world {
 
 /// Pairs are the edges of a graph of boxes. Arrays by edge hold them without gaps; each box has a list of its
 /// edges, and a hash table finds the edge of a pair (open addressing, linear probing, deletion by shifting
-/// back: Knuth, TAOCP 3, 6.4, algorithm R). All O(1) unless they say otherwise; 40 to 55 bytes a pair.
+/// back: Knuth, TAOCP 3, 6.4, algorithm R). Each function is O(1) unless it says otherwise; 40 to 55 bytes
+/// per pair.
 class PairGraph {
  public:
   /// An index below size(). Erasing an edge gives its id to the last one.
@@ -27,12 +28,12 @@ class PairGraph {
   std::size_t size() const noexcept { return pairs_.size(); }
   bool contains(Pair pair) const noexcept { return find(pair) != none; }
 
-  /// The pairs by edge, and a byte for each pair that is the owner's.
+  /// The pairs by edge, and a byte for each pair, for the owner's use.
   std::span<const Pair> pairs() const noexcept { return pairs_; }
   std::span<const std::uint8_t> marks() const noexcept { return marks_; }
   std::uint8_t& mark(EdgeId edge) noexcept { return marks_[edge]; }
 
-  /// Whether `stamp` is new to the edge, which keeps it.
+  /// Sets an edge's stamp. Returns whether it was a different one.
   bool renew_stamp(EdgeId edge, std::uint32_t stamp) noexcept {
     return std::exchange(links_[edge].stamp, stamp) != stamp;
   }
@@ -40,7 +41,7 @@ class PairGraph {
   /// Makes room for `size` pairs, and for boxes below `boxes`: inserting these does not throw.
   void reserve(std::size_t size, std::size_t boxes);
 
-  /// Puts in a pair that is not there. Throws std::bad_alloc, and then has changed nothing.
+  /// Inserts a new pair. If it throws std::bad_alloc, nothing has changed.
   EdgeId insert(Pair pair, std::uint8_t mark = 0);
 
   void erase(EdgeId edge) noexcept;

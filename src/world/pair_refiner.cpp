@@ -1,4 +1,4 @@
-// PairRefiner: makes the pairs of a world out of its tracker's, by the boxes themselves and a predicate.
+// PairRefiner: derives a world's pairs from its tracker's pairs, by the boxes themselves and a predicate.
 #include "world/pair_refiner.hpp"
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 namespace broadside::world {
 namespace {
 
-/// If more than one slot in this number changed, it pays to look at every edge in a row, which takes a
-/// fraction of the time an edge.
+/// If more than one slot in this many changed, it pays to review all edges in sequence, which takes a
+/// fraction of the time per edge.
 constexpr std::size_t slots_per_change = 4;
 
-/// Whether eight flags say what eight marks say, without a predicate.
+/// Whether eight overlap flags agree with eight marks, if there is no predicate.
 bool say_the_same(const std::uint8_t* flags, const std::uint8_t* marks) noexcept {
   std::uint64_t eight_flags;
   std::uint64_t eight_marks;
@@ -88,7 +88,7 @@ void PairRefiner::take_candidates(std::size_t slots) {
     graph.insert(pair);
     fresh.push_back(pair);
   }
-  // Events left by a failed update go before newer ones; a snapshot lists both by id.
+  // Events left by a failed update precede newer ones, but a snapshot lists both by id.
   if (is_retry) {
     std::ranges::sort(refined.ended);
     std::ranges::sort(fresh);
@@ -126,7 +126,7 @@ void PairRefiner::review_all(std::span<const Box<D, Real>> boxes) {
     if (by_boxes_) kernels::set_overlap_flags(boxes, some, flags.data());
     const std::uint8_t* const marks = state_.graph.marks().data() + begin;
     for (std::size_t i = 0; i < some.size(); ++i) {
-      // Nearly all are as they were.
+      // Nearly all are unchanged.
       if (!is_asking && i % 8 == 0 && i + 8 <= some.size() && say_the_same(&flags[i], marks + i))
         i += 7;
       else if (is_asking || marks[i] != flags[i] * edge_holds)
@@ -159,7 +159,7 @@ void PairRefiner::answer(Generations generations) {
   }
 }
 
-/// Makes events of what the edges have become.
+/// Turns the changes of edges into events.
 void PairRefiner::tell() {
   auto& [begun, ended] = state_.refined;
   core::make_room(begun, reviewed_.size());

@@ -1,4 +1,4 @@
-// PairRefiner: makes the pairs of a world out of its tracker's, by the boxes themselves and a predicate.
+// PairRefiner: derives a world's pairs from its tracker's pairs, by the boxes themselves and a predicate.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace broadside::world {
 
-/// The marks of candidates: bits, as in snapshots. A pair holds if its boxes themselves overlap and, since
-/// they do, the predicate accepted it; without a predicate what overlaps is accepted.
+/// The marks of candidates: bits, as in snapshots. A pair holds if its boxes themselves overlap and the
+/// predicate has accepted it since they began to. Without a predicate, overlapping pairs are accepted.
 inline constexpr std::uint8_t edge_overlaps = 1;
 inline constexpr std::uint8_t edge_accepted = 2;
 inline constexpr std::uint8_t edge_holds = edge_overlaps | edge_accepted;
@@ -59,18 +59,18 @@ class PairRefiner {
   /// Before a first predicate: takes the pairs that hold as accepted candidates.
   void adopt(std::span<const HandlePair> pairs, std::size_t slots);
 
-  /// Refines from now on, by `predicate`, which it swaps for the one before. It is to be asked about all
-  /// pairs.
+  /// Refines from now on, by `predicate`, which it swaps with the previous one. The next update asks it about
+  /// all pairs.
   void swap_predicate(PairPredicate& predicate) noexcept;
 
-  /// Takes over another one's predicate.
+  /// Takes over the predicate of another refiner.
   void take_predicate(PairRefiner& other) noexcept { predicate_.swap(other.predicate_); }
 
   /// Has the next update ask the predicate again: about the pairs of one of `slots` slots, or about all.
   void ask_again(std::uint32_t slot, std::size_t slots);
   void ask_again() noexcept { state_.asks_about_all |= has_predicate(); }
 
-  /// Makes the candidates' events the world's, which it returns, sorted; to be cleared when delivered.
+  /// Turns the candidates' events into the world's, which it returns, sorted. Clear them when delivered.
   template <int D, typename Real>
   PairEvents& refine(const BoxTable<D, Real>& boxes, Generations generations);
 
@@ -82,8 +82,8 @@ class PairRefiner {
 
   std::size_t bytes() const noexcept;
 
-  /// The pairs of the tracker's last whole update, sorted. If nothing is refined, they follow from `current`,
-  /// the sorted pairs that hold.
+  /// The pairs of the tracker's last complete update, sorted. If nothing is refined, they follow from
+  /// `current`, the sorted pairs that hold.
   std::vector<Pair> tracked(std::vector<Pair> current) const;
 
   /// All candidates in the graph, and the candidates that hold; sorted.
@@ -94,7 +94,7 @@ class PairRefiner {
   void restore(RefinerState state, std::size_t slots);
 
  private:
-  /// A candidate that an update looks at, and what it makes of it.
+  /// A candidate that an update reviews, and its new mark.
   struct ReviewedEdge {
     PairGraph::EdgeId edge;
     std::uint8_t new_mark;

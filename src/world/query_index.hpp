@@ -51,12 +51,11 @@ class QueryIndex {
   /// once.
   const BoxIndex<D, Real>& updated(const BoxTable<D, Real>& table);
 
-  /// Lists the slots in which one table of a world's boxes differs from another that takes its place.
-  /// O(slots).
+  /// Lists the slots in which `old` differs from `now`, the table of boxes that replaces it. O(slots).
   void mark_differences(const BoxTable<D, Real>& old, const BoxTable<D, Real>& now);
 
-  /// Drops the index if a rebuild costs about as much as an update, because `slots` slots are there and
-  /// queries have not used it for long. The next query builds it anew.
+  /// Drops the index if a rebuild for `slots` slots costs about as much as an update, because queries have
+  /// not used it for long. The next query builds it anew.
   void drop_outdated(std::size_t slots) noexcept {
     if (marked_.size() > slots / 2 + 1024) drop();
   }

@@ -27,12 +27,12 @@ class SlotColumn {
     if (is_used_) values_[slot] = value;
   }
 
-  /// Makes room for `added` slots beyond `slots`, and for a use() that `begins` then, so that neither throws.
+  /// Makes room for `added` slots beyond `slots`, and for use() if it `begins`, so that neither throws.
   void reserve(std::size_t slots, std::size_t added, bool begins) {
     if (begins || is_used_) core::make_room(values_, slots - values_.size() + added);
   }
 
-  /// Begins to keep values, of `slots` slots.
+  /// Begins to keep values, for `slots` slots.
   void use(std::size_t slots) {
     values_.resize(slots);
     is_used_ = true;

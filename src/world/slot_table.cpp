@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t last_generation = std::numeric_limits<std::uint32_t>::max();
 
-/// Fewer free slots than these are not worth dropping, and the memory of fewer is not worth giving back.
+/// Fewer free slots are not worth dropping, and the memory of fewer slots is not worth giving back.
 constexpr std::size_t min_dropped_slots = 64;
 constexpr std::size_t min_released_slots = 4096;
 
@@ -40,7 +40,7 @@ const Box<D, Real>* SlotTable<D, Real>::removed_box(std::uint32_t slot) const no
 
 template <int D, typename Real>
 void SlotTable<D, Real>::refuse(Handle handle, const char* action) const {
-  // A slot that is free has not yet issued a handle of its own generation.
+  // A free slot has not yet issued a handle of its current generation.
   const bool is_up_to_now = handle.slot < size() ? handle.generation < generations_[handle.slot] ||
                                                        (handle.generation == generations_[handle.slot] &&
                                                         states_[handle.slot] != SlotState::free)
@@ -126,7 +126,7 @@ bool SlotTable<D, Real>::trim() noexcept {
   if (free_.size() <= std::max(min_dropped_slots, size() / 4)) return false;
   const std::size_t before = size();
   while (!states_.empty() && states_.back() == SlotState::free) {
-    // Handles of this slot stay wrong if it comes back.
+    // Old handles of this slot stay invalid if it is appended again.
     first_generation_ = std::max(first_generation_, generations_.back());
     free_.erase(static_cast<std::uint32_t>(size() - 1));
     states_.pop_back();

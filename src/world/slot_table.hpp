@@ -45,8 +45,8 @@ struct RemovedBox {
   Box<D, Real> box;
 };
 
-/// Hands out slots under generations, so that no handle ever names a second box. New boxes get the lowest
-/// free slot, which keeps arrays by slot dense. All O(1) unless they say otherwise.
+/// Hands out slots with generations, so that no handle ever names a second box. New boxes get the lowest
+/// free slot, which keeps arrays by slot dense. Each function is O(1) unless it says otherwise.
 template <int D, typename Real>
 class SlotTable {
  public:
@@ -56,7 +56,7 @@ class SlotTable {
   explicit SlotTable(std::uint32_t first_generation) noexcept
       : table_generation_(first_generation), first_generation_(first_generation) {}
 
-  /// The number of slots, free ones among them.
+  /// The number of slots, including free ones.
   std::size_t size() const noexcept { return states_.size(); }
 
   /// The number of boxes in the world.
@@ -108,8 +108,8 @@ class SlotTable {
 
   Handle add() noexcept;
 
-  /// Takes boxes, which are given by slot, out of the table: all of them or, if a handle is refused, none.
-  /// Returns these removals. Throws InvalidHandle.
+  /// Removes the boxes of all handles or, if one handle is refused, none. `boxes` are by slot. Returns these
+  /// removals. Throws InvalidHandle.
   std::span<const Removed> remove(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes);
 
   /// The removals since the last update, and the removals that the last update reported.
@@ -118,15 +118,15 @@ class SlotTable {
   std::span<Removed> reported() noexcept { return reported_; }
   std::span<const Removed> reported() const noexcept { return reported_; }
 
-  /// At the end of an update: frees the slots that the last update reported, and takes the removed ones for
-  /// reported. O(removals).
+  /// At the end of an update: frees the slots that the previous update reported, and marks the removed ones
+  /// as reported. O(removals).
   void recycle() noexcept;
 
   /// Drops free slots at the end once many slots are free (hysteresis: a few that come and go cost nothing).
   /// Returns whether any was dropped.
   bool trim() noexcept;
 
-  /// Whether most of the slots are gone for which memory was taken.
+  /// Whether most of the slots that memory was taken for are gone.
   bool is_mostly_gone() const noexcept;
 
   /// Gives back the memory that the slots do not need. O(slots).
@@ -138,7 +138,7 @@ class SlotTable {
   }
   std::size_t removed_bytes() const noexcept { return core::bytes_of(removed_, reported_); }
 
-  /// Takes the slots of a snapshot, which has been checked.
+  /// Takes the checked slots of a snapshot.
   void restore(std::uint32_t first_generation, std::vector<std::uint32_t> generations,
                std::vector<SlotState> states, std::vector<Removed> removed, std::vector<Removed> reported);
 

@@ -40,13 +40,13 @@ void DecodedSnapshot<D, Real>::check_last_frame() const {
       refuse(pair, "is ignored now or was in the last frame; expected both, or a list that it is in");
     });
   };
-  // Without a set of them, the next update takes all for changed.
+  // Without a set of ignored pairs, the next update treats all of them as changed.
   if (!last_frame.has_ignored) return;
   expect_listed(parts->ignored.pairs(), last_frame.ignored);
   expect_listed(last_frame.ignored, parts->ignored.pairs());
 }
 
-/// Every box and filter that differs between the last frame and now is listed.
+/// Checks that every box and filter that differs between the last frame and now is listed.
 template <int D, typename Real>
 void DecodedSnapshot<D, Real>::check_differences() const {
   const Frame<D, Real> now = parts->frame();
@@ -87,7 +87,7 @@ void DecodedSnapshot<D, Real>::check_pending(bool is_settled, bool asks_predicat
   if (refiner.is_refining) check_marks(asks_predicate);
 }
 
-/// An update looks only at what changed: the marks of all other edges must be right as they are.
+/// Checks the marks of edges that did not change, since an update does not review them.
 template <int D, typename Real>
 void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
   const PairGraph& graph = parts->refiner.state().graph;

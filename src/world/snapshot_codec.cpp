@@ -1,5 +1,5 @@
-// SnapshotCodec: writes a world as bytes, and the frame around them. What stands within it is read by
-// SnapshotReader.
+// SnapshotCodec: writes a world as bytes, and reads the header and the checksum. SnapshotReader reads what is
+// between them.
 #include "world/snapshot_codec.hpp"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ void put_slots(ByteWriter& out, const WorldParts<D, Real>& parts) {
   put_list(out, boxes.moved());
 }
 
-/// The frame that the tracker has taken last, as what differs from the one that it is shown now.
+/// Writes the last frame that the tracker has taken, as its differences from the current one.
 template <int D, typename Real>
 void put_last_frame(ByteWriter& out, const Frame<D, Real>& last, const Frame<D, Real>& now) {
   out.put(static_cast<std::uint8_t>((last.filters.empty() ? 0 : snapshot::last_has_filters) |

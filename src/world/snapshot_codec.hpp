@@ -1,5 +1,4 @@
-// SnapshotCodec: writes a world as bytes, and reads and checks them. What they mean is in
-// docs/snapshot-format.md.
+// SnapshotCodec: writes a world as bytes, and reads and checks them. See docs/snapshot-format.md.
 #pragma once
 
 #include <cstddef>
@@ -17,22 +16,23 @@
 
 namespace broadside::world {
 
-/// What a snapshot says. The checks throw InvalidSnapshot.
+/// The content of a snapshot. The checks throw InvalidSnapshot.
 template <int D, typename Real>
 struct DecodedSnapshot {
   std::unique_ptr<WorldParts<D, Real>> parts;  ///< without a predicate
   Spec spec{};                                 ///< of the tracker
-  TakenFrame<D, Real> last_frame{};            ///< that the tracker took last
+  TakenFrame<D, Real> last_frame{};            ///< the last frame that the tracker took
 
-  /// The last frame and what differs from it: every difference is listed, and what the tracker saw is in
-  /// slots that exist and that no other box has since.
+  /// Checks that every difference from the last frame is listed, and that the boxes of the last frame are in
+  /// slots that exist and that no other box has taken since.
   void check_last_frame() const;
 
-  /// What has happened, and what is still to be delivered. `is_settled`: nothing is, as the snapshot says.
+  /// Checks what has happened and what is still to be delivered. `is_settled`: the snapshot says that nothing
+  /// is pending.
   void check_pending(bool is_settled, bool asks_predicate) const;
 
-  /// All pairs and events against the pairs that hold in the last frame; `tracked` is sorted. The only check
-  /// that takes a tracker, and so the only one that decode() leaves to its caller.
+  /// Checks all pairs and events against `tracked`: the pairs that hold in the last frame, sorted. Only this
+  /// check needs a tracker, so decode() leaves it to its caller.
   void check_pairs(const std::vector<Pair>& tracked) const;
 
  private:
@@ -46,12 +46,12 @@ class SnapshotCodec {
   using Parts = WorldParts<D, Real>;
   using Tracker = WorldTracker<D, Real>;
 
-  /// Writes the world that consists of these. In the default floating-point environment.
+  /// Writes the world with these parts. Call it in the default floating-point environment.
   static void encode(const Parts& parts, const Tracker& tracker, detail::Output<std::byte>& bytes);
 
-  /// Reads a snapshot for the world that consists of these. Throws InvalidSnapshot if the bytes are not a
-  /// whole one of the same dimension, type of coordinate and a known version, or contradict themselves, or if
-  /// just one of the two worlds has a predicate.
+  /// Reads a snapshot for the world with these parts. Throws InvalidSnapshot if the bytes are not a whole
+  /// snapshot of a known version with the same dimension and type of coordinate, if they contradict
+  /// themselves, or if just one of the two worlds has a predicate.
   static DecodedSnapshot<D, Real> decode(std::span<const std::byte> bytes, const Parts& parts,
                                          const Tracker& tracker);
 };

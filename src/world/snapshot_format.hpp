@@ -18,8 +18,8 @@
 namespace broadside::world::snapshot {
 
 inline constexpr std::array<unsigned char, 8> magic = {0x89, 'B', 'W', 'S', '\r', '\n', 0x1a, '\n'};
-/// The version written, and the first that is read. Version 2 had a margin and neither a relative one nor
-/// predicted frames; version 1, moreover, 32 bits for a filter's category and its mask.
+/// The version written, and the first that can be read. Version 2 had a margin, but no relative margin or
+/// predicted frames. Version 1 also had only 32 bits for a filter's category and for its mask.
 inline constexpr std::uint32_t version = 3;
 inline constexpr std::uint32_t first_version = 1;
 inline constexpr std::uint16_t byte_order = 0x0102;
@@ -80,7 +80,7 @@ struct Serializer<Pair> {
 
 template <>
 struct Serializer<Filter> {
-  static constexpr std::size_t bytes = 13;  // at least: of version 1
+  static constexpr std::size_t bytes = 13;  // at least: in version 1
   static void put(ByteWriter& out, const Filter& filter) {
     out.put(filter.category);
     out.put(filter.mask);

@@ -1,4 +1,4 @@
-// SnapshotReader: reads what stands within a snapshot, and checks it part by part.
+// SnapshotReader: reads the content of a snapshot, and checks it part by part.
 #include "world/snapshot_reader.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Pairs get_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   return pairs;
 }
 
-/// Sorted ones, each once.
+/// Sorted pairs of places below `count`, each once.
 Pairs get_sorted_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   Pairs pairs = get_pairs(in, count, things);
   expect(std::ranges::adjacent_find(pairs, std::ranges::greater_equal{}) == pairs.end(),
@@ -92,7 +92,7 @@ void SnapshotReader<D, Real>::read_options(const Parts& world, const WorldTracke
     decoded_.spec = tracker.spec();
     if (is_set(has_own_tracker) && tracker.is_own()) {
       decoded_.spec = core::current_spec(spec);
-      // Makes one, to see whether it can be made.
+      // Makes a tracker, to see whether it can be made.
       if (decoded_.spec != tracker.spec()) decoded_.spec = tracker.remade(decoded_.spec).spec();
     }
     decoded_.parts = std::make_unique<Parts>(options);
@@ -119,7 +119,7 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
     expect(states[slot] <= SlotState::retired, "a slot is in no state that there is");
     expect(states[slot] != SlotState::retired || generations[slot] == max_generation,
            "a slot is used up and has generations left");
-    // One that was invalid is live and absent.
+    // A quarantined box is live and absent.
     expect(states[slot] == SlotState::live || !is_present(boxes[slot]), "a slot is not live and has a box");
   }
   Parts& parts = *decoded_.parts;
@@ -164,7 +164,7 @@ std::vector<RemovedBox<D, Real>> SnapshotReader<D, Real>::read_removed(const std
   return list;
 }
 
-/// A list of slots that are paired, each once.
+/// A list of paired slots, each once.
 template <int D, typename Real>
 std::vector<BoxId> SnapshotReader<D, Real>::read_marked(const char* things) {
   const SlotTable<D, Real>& slots = decoded_.parts->slots;
@@ -208,7 +208,7 @@ void SnapshotReader<D, Real>::read_ignored() {
   decoded_.parts->ignored.restore(pairs, get_pairs(in_, slots.size(), "pairs ignored anew"));
 }
 
-/// Reads the frame that the tracker took last. Places outside the list of changes are as they were.
+/// Reads the last frame that the tracker took. Unlisted places are as in the current frame.
 template <int D, typename Real>
 void SnapshotReader<D, Real>::read_last_frame() {
   const Frame<D, Real> now = decoded_.parts->frame();
@@ -218,7 +218,7 @@ void SnapshotReader<D, Real>::read_last_frame() {
          "the last frame has flags that there are none of");
   const auto count = in_.get<std::uint64_t>();
   const std::vector<BoxId> places = get_places(in_, count, "boxes that changed");
-  // Each place that there is no more is among them: no claim takes more memory than its bytes justify.
+  // All places that no longer exist are listed, so no claim takes more memory than its bytes justify.
   expect(count <= now.boxes.size() + places.size(), "the last frame has more boxes than it says");
   boxes.assign(now.boxes.begin(), now.boxes.end());
   boxes.resize(static_cast<std::size_t>(count), absent_box<D, Real>());

@@ -1,4 +1,4 @@
-// SnapshotReader: reads what stands within a snapshot, and checks it part by part.
+// SnapshotReader: reads the content of a snapshot, and checks it part by part.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class SnapshotReader {
 
   SnapshotReader(ByteReader& in, Decoded& decoded) noexcept : in_(in), decoded_(decoded) {}
 
-  /// Reads all, for a world that consists of these. Throws InvalidSnapshot.
+  /// Reads everything, for a world with these parts. Throws InvalidSnapshot.
   void read(const Parts& world, const WorldTracker<D, Real>& tracker);
 
  private:

@@ -1,5 +1,5 @@
 // World: what each call does to the parts of a world. Each call first does all that can fail and then changes
-// something, so that one that throws can be tried again.
+// something, so that a call that throws can be tried again.
 #include "broadside/world.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ World<D, Real>::~World() = default;
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const core::DefaultEnvironment environment;
-  const Box<D, Real> added = box;  // the caller's may be one of ours, and those move when the arrays grow
+  const Box<D, Real> added = box;  // a copy: `box` may be in one of our arrays, which may grow
   state_->parts.boxes.check(added, 0, "for slot", state_->parts.slots.next());
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
   return state_->add(added, options);
@@ -186,7 +186,7 @@ void World<D, Real>::refilter() {
   state_->parts.refiner.ask_again();
 }
 
-/// The tracker's events are candidates; where there is a margin or a predicate, they are refined.
+/// The tracker's events are candidates. They are refined if there is a margin or a predicate.
 template <int D, typename Real>
 Events World<D, Real>::update() {
   world::WorldParts<D, Real>& parts = state_->parts;
@@ -221,7 +221,7 @@ std::span<const HandlePair> World<D, Real>::pairs() const {
 
 template <int D, typename Real>
 std::span<const HandlePair> World<D, Real>::persisting() const {
-  static_cast<void>(pairs());  // throws if there are none
+  static_cast<void>(pairs());  // throws if none are kept
   return state_->parts.current.persisting(state_->parts.slots.generations());
 }
 
@@ -308,7 +308,7 @@ WorldStatistics World<D, Real>::statistics() const {
 template <int D, typename Real>
 void World<D, Real>::shrink_to_fit() {
   state_->wants_release = true;
-  // Another tracker has to begin where this one is.
+  // The new tracker begins with the current frame, so no change may be pending.
   if (state_->parts.is_settled()) state_->release();
 }
 

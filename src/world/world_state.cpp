@@ -19,7 +19,7 @@ void WorldState<D, Real>::reserve(std::size_t count, bool with_filters, bool wit
   parts.boxes.reserve_changes(count);
   query_index.reserve(size + added);
   parts.user_data.reserve(size, added, with_user_data);
-  // Nothing is done yet, but from here on these are in use.
+  // Nothing is added yet, but from here on these are in use.
   if (with_filters) parts.boxes.use_filters();
   if (with_user_data) parts.user_data.use(size);
 }
@@ -49,7 +49,7 @@ void WorldState<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
     has_filters |= its.filter != Filter{};
     has_user_data |= its.user_data != 0;
   }
-  // Where the boxes given are the world's own, they move when its arrays grow.
+  // If the given boxes are in the world's own arrays, they move when these grow.
   std::vector<Box<D, Real>> copies;
   const std::less<const std::byte*> is_before;
   const std::span<const std::byte> own = std::as_bytes(table.boxes());
@@ -176,7 +176,7 @@ void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
   std::optional<WorldTracker<D, Real>> another;
   if (decoded.spec != tracker.spec()) another.emplace(tracker.remade(decoded.spec));
   WorldTracker<D, Real>& led = another ? *another : tracker;
-  // A new tracker knows no pairs; those of a world that neither refines nor keeps any have to be found.
+  // A new tracker knows no pairs. If a world neither refines nor keeps pairs, they have to be found.
   std::optional<std::vector<Pair>> known;
   if (another)
     known.emplace();

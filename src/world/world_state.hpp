@@ -22,7 +22,7 @@
 
 namespace broadside::world {
 
-/// The parts that a world's future depends on: its snapshots hold them. Arrays by slot are all as long as
+/// The parts that a world's future depends on: its snapshots hold them. All arrays by slot are as long as
 /// `slots`.
 template <int D, typename Real>
 struct WorldParts {
@@ -37,33 +37,32 @@ struct WorldParts {
   WorldOptions options;
   SlotTable<D, Real> slots;
   BoxTable<D, Real> boxes;
-  SlotColumn<std::uint64_t> user_data;  // in use from the first one on that is not 0
+  SlotColumn<std::uint64_t> user_data;  // in use from the first value on that is not 0
   IgnoredPairTable ignored;
   PairRefiner refiner;
   CurrentPairs current;
   bool has_updated = false;
-  bool update_failed = false;  // the last update did, or is in progress
+  bool update_failed = false;  // the last update failed, or is in progress
 
-  /// Whether nothing has changed since the last update, and that one did not fail.
+  /// Whether the last update did not fail and nothing has changed since.
   bool is_settled() const noexcept {
     return !update_failed && boxes.changed().empty() && ignored.changed().empty();
   }
 
-  /// What the tracker is to be shown.
+  /// The next frame for the tracker.
   Frame<D, Real> frame() const noexcept {
     return {boxes.shown(), boxes.shown_changes(), boxes.filters().values(), &ignored.pairs(),
             ignored.changed()};
   }
 };
 
-/// All that a world holds. Members do what World's of the same name
-/// say, after its checks.
+/// Everything that a world holds. Functions do what World's of the same name do, after World's checks.
 template <int D, typename Real>
 struct WorldState {
   WorldState(WorldTracker<D, Real> its_tracker, const WorldOptions& options)
       : parts(options), tracker(std::move(its_tracker)) {}
 
-  /// Makes room for `count` calls of add(), with a first filter and first user data if there are such.
+  /// Makes room for `count` calls of add(), and begins to use filters and user data if asked to.
   void reserve(std::size_t count, bool with_filters, bool with_user_data);
 
   /// Adds a box that has been checked.
@@ -72,8 +71,8 @@ struct WorldState {
   void add(BoxView<D, Real> boxes, std::span<Handle> handles, std::span<const BoxOptions> options);
   void shift_origin(const Point<D, Real>& origin);
 
-  /// Gives back memory that is not needed, after an update and before anything else changes: always, or if it
-  /// is due.
+  /// Gives back unused memory: always, or if it is due. To be called after an update, before anything else
+  /// changes.
   void release();
   void release_if_due() noexcept;
 

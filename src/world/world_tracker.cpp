@@ -1,4 +1,4 @@
-// WorldTracker: the tracker of a world, and the way from one frame to another that restore() takes.
+// WorldTracker: the tracker of a world, which restore() leads to another frame.
 #include "world/world_tracker.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& even
     else
       take(frame, begun_pairs, ended_pairs);
   } catch (...) {
-    // It will tell these again.
+    // The next update reports these again.
     events.begun.resize(begun_before);
     events.ended.resize(ended_before);
     throw;
@@ -40,7 +40,7 @@ void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& even
   if (begun_before + ended_before > 0) events = events.netted();
 }
 
-/// Takes any frame.
+/// Takes any frame, without the promises of Tracker::update_checked().
 template <int D, typename Real>
 void WorldTracker<D, Real>::take(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended) {
   statistics_ = std::visit([&](auto& tracker) { return tracker.update(frame, begun, ended); }, tracker_);
@@ -92,7 +92,7 @@ void WorldTracker<D, Real>::lead_to(const Taken& frame, std::optional<std::vecto
   way_back_.reset();
 }
 
-/// Brings the tracker back if a lead_to() left it elsewhere, or leaves it there and throws.
+/// Leads the tracker back if lead_to() left it elsewhere, or throws and leaves it there.
 template <int D, typename Real>
 void WorldTracker<D, Real>::lead_back() {
   if (!way_back_) return;
@@ -100,8 +100,8 @@ void WorldTracker<D, Real>::lead_back() {
   way_back_.reset();
 }
 
-/// Hands the tracker a frame in which only what differs from its last one is listed. Returns the events: the
-/// pairs that hold in one of the two, sorted.
+/// Gives the tracker a frame that lists only the differences from its last one. Returns the events: the
+/// pairs that hold in exactly one of the two, sorted.
 template <int D, typename Real>
 std::vector<Pair> WorldTracker<D, Real>::lead(const Taken& to) {
   const Frame<D, Real> from = tracker().last_frame();

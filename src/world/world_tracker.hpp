@@ -1,4 +1,4 @@
-// WorldTracker: the tracker of a world, and the way from one frame to another that restore() takes.
+// WorldTracker: the tracker of a world, which restore() leads to another frame.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@
 
 namespace broadside::world {
 
-/// A frame that a tracker has taken, with nothing listed.
+/// A frame that a tracker has taken, without its lists of changes.
 template <int D, typename Real>
 struct TakenFrame {
   std::vector<Box<D, Real>> boxes{};
@@ -43,7 +43,7 @@ struct TakenFrame {
   Frame<D, Real> frame() const noexcept { return {boxes, {}, filters, has_ignored ? &ignored : nullptr, {}}; }
 };
 
-/// Follows the frames of a world, by an algorithm of the library or by a tracker of the caller's.
+/// Follows the frames of a world, by an algorithm of the library or by the caller's tracker.
 template <int D, typename Real>
 class WorldTracker {
  public:
@@ -54,32 +54,32 @@ class WorldTracker {
   explicit WorldTracker(const WorldOptions& options);
   WorldTracker(Tracker<D, Real> tracker, const WorldOptions& options);
 
-  /// Whether it is by options.algorithm, so that another one can be made.
+  /// Whether it was made by options.algorithm, so that another one can be made.
   bool is_own() const noexcept { return is_own_; }
 
-  /// The canonical spec, the same for equivalent ones; the standard one if the tracker is the caller's.
+  /// The canonical spec, the same for equivalent specs; the default spec if the tracker is the caller's.
   const Spec& spec() const noexcept { return spec_; }
 
-  /// Takes the next frame and appends its events; if it throws, none.
+  /// Takes the next frame and appends its events. If it throws, it appends none.
   void update(const Frame<D, Real>& frame, PairEvents& events);
 
   /// The frame from which the next events start.
   Frame<D, Real> last_frame() const noexcept;
 
-  /// Replaces the tracker, if it is not the caller's, by a new one that knows `frame` and holds no more than
-  /// it needs.
+  /// Replaces the tracker, unless it is the caller's, by a new one that has taken `frame` and holds no spare
+  /// memory.
   void renew(const Frame<D, Real>& frame);
 
-  /// Another one by `spec`, which has taken no frame, with the same workers. Throws InvalidSpec.
+  /// A new tracker by `spec`, with the same workers, that has taken no frame. Throws InvalidSpec.
   WorldTracker remade(const Spec& spec) const;
 
-  /// Leads the tracker to a frame, and hands the pairs that hold there, sorted, to `check`. `known` is the
+  /// Leads the tracker to a frame, and passes the pairs that hold there, sorted, to `check`. `known` are the
   /// pairs that hold in last_frame(), if they are known. If anything throws, the tracker goes back where it
-  /// was: now or, where memory is too short for that, at the next update.
+  /// was: now or, if memory is too short for that, at the next update.
   void lead_to(const Taken& frame, std::optional<std::vector<Pair>> known,
                const std::function<void(const std::vector<Pair>&)>& check);
 
-  /// Its own index, if it has one of the boxes that it took last and is not on a way back.
+  /// The tracker's index of the boxes that it took last; null if it has none or is yet to be led back.
   const BoxIndex<D, Real>* box_index() const noexcept {
     return way_back_ != nullptr ? nullptr : tracker().box_index();
   }
@@ -95,7 +95,6 @@ class WorldTracker {
  private:
   using Plain = Tracker<D, Real>;
   using Shadowed = ShadowTracker<D, Real>;
-  /// Lean builds have no shadows.
   using Either = std::variant<Plain, Shadowed>;
 
   template <typename Source>
