@@ -1,5 +1,5 @@
-// What followers share: the changed boxes of an update as a list of MovedBox, and EventSinks, where a
-// structure writes the events of an update and the pairs that may be events.
+// Shared by the followers: append_moved() lists the changed boxes of an update, and EventSinks takes the
+// events that a structure finds and the pairs that may be events.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,9 @@
 
 namespace broadside::algorithm {
 
-/// Appends the boxes of `ids`, some of `change.changed`, whose box or filter differs and that are present
-/// before or now. Where the change wants candidates, all that are present are appended, each as if its filter
-/// had changed.
+/// Appends each box of `ids` (a part of `change.changed`) that was or is present, and has other bounds or
+/// another filter now. If `change.wants_candidates`, appends unchanged boxes too, and sets `filter_changed`
+/// for all.
 template <int D>
 void append_moved(const Change<D>& change, std::span<const BoxId> ids,
                   std::vector<core::MovedBox<D>>& moved) {
@@ -44,15 +44,15 @@ void append_moved(const Change<D>& change, std::span<const BoxId> ids,
   }
 }
 
-/// Looks at each pair's boxes and filters in both frames, and writes it to the sink it belongs to, if any.
-/// To be flushed before the update ends.
+/// Tests each pair in both frames, by boxes and filters, and writes it to `begun` or `ended` if it is an
+/// event. Flush it before the update ends.
 template <int D>
 class CandidateSink final : public PairSink {
  public:
   CandidateSink(const Change<D>& change, PairSink& begun, PairSink& ended)
       : change_(change), begun_(begun), ended_(ended) {}
 
-  /// The pairs looked at so far.
+  /// The number of pairs tested so far.
   std::uint64_t count() const noexcept { return count_; }
 
  private:
@@ -82,8 +82,9 @@ class CandidateSink final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-/// Without filters, what overlaps a box at rest is all there is to ask; else every pair is a candidate. Where
-/// the change wants candidates, all are written to `begun` as they are found.
+/// The sinks of an update. Without filters, pairs of a mover and a box at rest go straight to `begun` and
+/// `ended`; pairs of two movers are candidates. With filters, every pair is a candidate. If
+/// `change.wants_candidates`, every pair goes to `begun` untested.
 template <int D>
 class EventSinks {
  public:
@@ -102,7 +103,7 @@ class EventSinks {
   const core::ChangeSinks& sinks() const noexcept { return sinks_; }
   void flush() { candidates_.flush(); }
 
-  /// The pairs that had to be looked at again in both frames, up to the last flush().
+  /// The number of candidates tested, up to the last flush().
   std::uint64_t candidates() const noexcept { return candidates_.count(); }
 
  private:

@@ -1,10 +1,10 @@
-// What the algorithms cost that follow boxes: the tuned numbers of track::FollowPolicy, in one table.
+// The costs of finding and following by algorithm: the tuned numbers of track::FollowPolicy, in one table.
 //
-// In nanoseconds of one machine; only ratios within an algorithm matter. `ways` of bench/motion shows what
-// comes of them: auto over the better of following and finding anew, 0.1 to 100 % of the boxes moving, and a
-// line an algorithm with --algorithms. Measured with 10,000 to 100,000 boxes, uniform, mixed and clustered;
-// the share of moving boxes from which finding anew is not slower is 0.45 for brute force, 0.3 (2D) and 0.2
-// (3D) for trees and cells, and about 500 / (4000 + tests) for a sweep.
+// In nanoseconds of one machine; only ratios within an algorithm matter. `build/release/bench/motion ways`
+// shows the result: auto over the better of following and finding anew, with 0.1 to 100 % of the boxes moving
+// (and a line per algorithm with --algorithms). Measured with 10,000 to 100,000 boxes, uniform, mixed and
+// clustered. Finding anew is no slower once this share of the boxes moves: 0.45 for brute force, 0.3 (2D) and
+// 0.2 (3D) for trees and cells, about 500 / (4000 + tests) for a sweep.
 #pragma once
 
 #include "broadside/algorithm.hpp"
@@ -18,7 +18,7 @@ inline constexpr FollowCosts brute_force_following = {
 /// Up to this many boxes, comparing each mover with all others costs less than keeping cells.
 inline constexpr std::size_t boxes_for_brute_force = 320;
 
-/// Also what auto's own finding costs.
+/// Also the cost of auto's searches.
 template <int D>
 inline constexpr FindCosts grid_finding = {.box = D == 2 ? 40.0 : 65.0};
 template <int D>
@@ -52,9 +52,9 @@ inline constexpr FollowCosts bvh_following = {.start = 100,
                                               .test = 0.9,
                                               .further_test = 0.9};
 
-/// To auto, which finds anew by whatever costs least, trees are worth it where the grid's cells make some
-/// five hundred tests a mover: measured with 50,000 boxes, one in a hundred moving, in stacks of plates,
-/// lines and clusters.
+/// The costs of trees to auto, which finds anew by the cheapest algorithm: trees pay where the grid's cells
+/// make about 500 tests per mover. Measured with 50,000 boxes, 1 % moving, in stacks of plates, lines and
+/// clusters.
 inline constexpr FollowCosts quadtree_following_for_auto = {
     .start = 300, .mover = 600, .mover_alone = 300, .test = 2, .further_test = 2};
 inline constexpr FollowCosts bvh_following_for_auto = {

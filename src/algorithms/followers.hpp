@@ -19,7 +19,7 @@ std::unique_ptr<Follower<D>> make_grid_follower(const Settings& settings);
 template <int D>
 std::unique_ptr<Follower<D>> make_sweep_and_prune_follower(const Settings& settings);
 
-/// The axis to sweep along; -1: the best one for the boxes.
+/// The axis to sweep along, or -1 to choose the best one for the boxes.
 int axis_of(const Settings& settings);
 
 /// Keeps a quadtree, in 3D an octree.

@@ -1,4 +1,4 @@
-// The parts of outlines' captions.
+// Text helpers for the captions of outlines.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace broadside::algorithm {
 
-/// The number with three digits, such as "3.14" or "1e+06".
+/// The number with three significant digits, such as "3.14" or "1e+06".
 inline std::string three_digits(double number) { return core::text_of(number, 3); }
 
 /// "1 cell" or "3 cells".

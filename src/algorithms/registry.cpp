@@ -1,4 +1,4 @@
-// The one list of broad-phase algorithms, and how one is looked up and made.
+// The one list of broad-phase algorithms: registration and look-up.
 #include "algorithms/registry.hpp"
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace broadside {
 namespace {
 
-/// The list of algorithms after each registration; the last one counts. The earlier ones stay, because spans
-/// and references into them were given out.
+/// The list of algorithms after each registration; the last one counts. Earlier lists stay, because callers
+/// may hold spans and references into them.
 std::list<std::vector<Algorithm>>& lists() {
   static std::list<std::vector<Algorithm>> lists = {algorithm::linked_algorithms()};
   return lists;

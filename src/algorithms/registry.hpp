@@ -1,4 +1,4 @@
-// The library's algorithms, and how one is looked up and made.
+// The library's algorithms: looks one up and makes its searcher.
 #pragma once
 
 #include <memory>
@@ -9,30 +9,30 @@
 
 namespace broadside::algorithm {
 
-Algorithm automatic();  // of auto/
+Algorithm automatic();  // "auto"
 Algorithm brute_force();
 Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
 Algorithm bvh();
 
-/// The algorithms that BROADSIDE_ALGORITHMS lists, in its order: CMake writes this function.
+/// The algorithms in BROADSIDE_ALGORITHMS, in that order. CMake generates this function.
 std::vector<Algorithm> linked_algorithms();
 
-/// Whether it lists the algorithm. Unlike algorithms(), it may be asked while the list is made.
+/// Whether BROADSIDE_ALGORITHMS lists it. Unlike algorithms(), may be called while the list is being made.
 bool is_linked(std::string_view name) noexcept;
 
-/// The algorithm of that name. Throws InvalidSpec, naming the algorithms there are, if there is none.
+/// The algorithm of that name. If there is none, throws InvalidSpec, which lists the known names.
 const Algorithm& require_algorithm(std::string_view name);
 
-/// The values in `spec`, whose name is not looked at, read in the default floating-point environment. Throws
-/// InvalidSpec if one is wrong.
+/// Reads the values in `spec`, in the default floating-point environment. Ignores the name in `spec`. Throws
+/// InvalidSpec if a value is invalid.
 Settings settings_of(const Algorithm& algorithm, const Spec& spec);
 
 /// The number of threads that the settings ask for; 1 for an algorithm without the tunable `threads`.
 std::size_t threads_of(const Algorithm& algorithm, const Settings& settings);
 
-/// A searcher by the algorithm. Throws InvalidSpec if it does not do D dimensions.
+/// Makes the algorithm's searcher. Throws InvalidSpec if the algorithm does not support D dimensions.
 template <int D>
 std::unique_ptr<Searcher<D>> searcher(const Algorithm& algorithm, const Settings& settings);
 

@@ -1,4 +1,4 @@
-// Whether a sweep is worth its tests.
+// Decides whether a sweep is worth its tests.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace broadside::algorithm {
 
-/// The tests that a search may make for each of its boxes and for each pair. Up to these it costs no more
-/// than twice what evenly spread boxes do, so a search that gives up has lost little.
+/// The tests that a search may make per box and per pair before it gives up. Up to these limits it takes at
+/// most twice as long as with evenly spread boxes, so a search that gives up has lost little.
 inline constexpr std::uint64_t tests_per_box = 256;
 inline constexpr std::uint64_t tests_per_pair = 32;
 
-/// Where the boxes end that begin no later than `last`, looked for from `from` on in growing steps. Boxes may
-/// stand in their buckets in any order, so the count is exact to within a bucket.
+/// The end of the boxes that begin no later than `last`, by a galloping search from `from`. Boxes may be in
+/// any order within a bucket, so the result is exact to within a bucket.
 inline std::size_t end_of_reach(const float* minima, std::size_t size, std::size_t from, float last) {
   std::size_t step = 16;
   while (from + step < size && minima[from + step] <= last) {
@@ -27,7 +27,7 @@ inline std::size_t end_of_reach(const float* minima, std::size_t size, std::size
   return static_cast<std::size_t>(std::upper_bound(minima + std::min(from, size), end, last) - minima);
 }
 
-/// An upper bound of the tests that a sweep makes, by the greatest maximum of each few boxes. Stops beyond
+/// An upper bound of a sweep's tests, from the greatest maximum of each `together` boxes. Stops above
 /// `limit`.
 template <int D>
 std::uint64_t bound_of_tests(const kernels::Run<D>& run, std::uint64_t limit, std::size_t together) {
@@ -40,9 +40,9 @@ std::uint64_t bound_of_tests(const kernels::Run<D>& run, std::uint64_t limit, st
   return tests;
 }
 
-/// Whether a sweep of the run would make more than `limit` tests, few of which find a pair: counts the tests,
-/// to within a bucket of each box, and tries a sample of them where they are many. Cost: O(n log n) at most,
-/// O(n / 16) where tests are few.
+/// Whether a sweep of the run would make more than `limit` tests and few of them would find a pair. Counts
+/// the tests, to within a bucket per box, and tries a sample of them if they are many. Cost: O(n log n) at
+/// most, O(n / 16) where tests are few.
 template <int D>
 bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
@@ -51,8 +51,8 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   constexpr std::size_t max_tests_of_one = 4096;
   std::uint64_t tests = 0;
   std::uint64_t hits = 0;
-  // One box that overlaps all others, such as a floor, says nothing of these. It begins first, so the first
-  // place is not looked at, and the box with the most hits does not count.
+  // A box that overlaps all others, such as a floor, says nothing about them. It begins first, so the first
+  // place is not sampled, and the box with the most hits does not count.
   std::uint64_t tests_of_greatest = 0;
   std::uint64_t max_hits = 0;
   for (std::size_t i = 1; i <= looked_at; ++i) {

@@ -1,7 +1,7 @@
 // auto: looks at a sample of the boxes, and chooses the algorithm that suits them.
 //
-// The rules ask what the boxes are like, never a clock: the same boxes are always searched in the same way.
-// Their thresholds, and where these come from, are in thresholds.hpp.
+// The rules depend on the boxes alone, never on a clock: the same boxes are always searched in the same way.
+// thresholds.hpp has their thresholds, and says where these come from.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,20 +27,20 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Why an algorithm is chosen; which one, chosen_algorithm says.
+/// The reason for a choice. chosen_algorithm has the algorithm for each.
 enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
 
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
 
-/// The algorithm of a choice. A build without it has the grid, which does well with most boxes: one row of
-/// cells is a sweep.
+/// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
+/// one cell is a sweep.
 const Algorithm& algorithm_of(Choice choice) {
   const Algorithm* const chosen = find_algorithm(chosen_algorithm[static_cast<std::size_t>(choice)]);
   return chosen != nullptr ? *chosen : *find_algorithm("grid");
 }
 
-/// The settings of a choice: the default ones, but that a sweep uses one axis, since one in stripes cannot
+/// The settings of a choice: the defaults, except that a sweep uses one axis, since a sweep in stripes cannot
 /// give up.
 Settings settings_of(const Algorithm& algorithm) {
   if (algorithm.name == "sweep_and_prune")
@@ -48,13 +48,13 @@ Settings settings_of(const Algorithm& algorithm) {
   return {Spec{algorithm.name, {}}, algorithm.tunables};
 }
 
-/// Finishes a search that gave up, by a segment tree.
+/// Finishes a search that gave up, with a segment tree.
 template <int D>
 class SegmentSuccessor final : public Successor<D> {
  public:
   using IsMissing = typename Successor<D>::IsMissing;
 
-  /// Makes `join` when it is first needed; its memory serves later searches.
+  /// Makes `join` when it is first needed. Later searches use its memory again.
   SegmentSuccessor(const SearchInput<D>& input, PairSink& pairs, std::unique_ptr<SegmentJoin<D>>& join)
       : input_(input), pairs_(pairs), join_(join) {}
 
@@ -88,7 +88,7 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
-/// Chooses among searchers, which it keeps.
+/// Chooses among searchers, and keeps those it has used.
 template <int D>
 class AutoSearcher final : public Searcher<D> {
   using Limits = AutoThresholds<D>;
@@ -187,7 +187,7 @@ class AutoSearcher final : public Searcher<D> {
     return clustering_ >= Limits::clustered ? Choice::clusters : Choice::cells;
   }
 
-  /// Chooses for up to boxes_for_cells boxes, of which sorting a sample would take a good part of the time.
+  /// Chooses for up to boxes_for_cells boxes. Sorting a sample would take a good part of the time there.
   Choice choose_by_estimate(std::span<const Box<D>> boxes) {
     const std::size_t size = boxes.size();
     const auto half = static_cast<double>(size) / 2;
@@ -201,7 +201,7 @@ class AutoSearcher final : public Searcher<D> {
     std::ranges::sort(overlap);
     tests_ = half * overlap[0];
     if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return Choice::one_axis;
-    double expected = half;  // overlaps a box, were the axes independent: stacks of plates have far fewer
+    double expected = half;  // overlaps per box if axes were independent; stacks of plates have far fewer
     for (const double part : overlap) expected *= part;
     const bool are_stacked = size >= Limits::stacked_boxes_for_a_tree && expected >= Limits::many_overlaps;
     if (are_stacked || !shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
@@ -235,7 +235,7 @@ class AutoSearcher final : public Searcher<D> {
   double clustering_ = 0;
 };
 
-/// The follower of an algorithm with its default settings, at costs of its own.
+/// An algorithm's follower with default settings, at the given costs.
 template <int D>
 FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, std::size_t max_boxes = 0) {
   const auto make = [name](const Settings&) -> std::unique_ptr<Follower<D>> {
@@ -245,7 +245,7 @@ FollowerChoice<D> follower_of(std::string_view name, const FollowCosts& costs, s
   return {std::string(name), make, costs, max_boxes};
 }
 
-/// The later ones take over where the grid's cells make too many tests. A build may lack some.
+/// The trees take over where the grid's cells make too many tests. A build may lack some of these algorithms.
 template <int D>
 detail::Vector<FollowerChoice<D>> automatic_followers() {
   detail::Vector<FollowerChoice<D>> followers = {

@@ -1,5 +1,5 @@
-// OverlapEstimate: density and clustering, by testing a small sample all against all. It says less than a
-// sorted sample (core::Sample), and is faster.
+// OverlapEstimate: estimates density and clustering by testing a small sample all against all. It says less
+// than a sorted sample (core::Sample), but is faster.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@
 
 namespace broadside::algorithm {
 
-/// The same boxes always give the same sample. Cost O(most^2), without branches: about a microsecond for 64
-/// boxes. Parts are of the pairs in the sample; absent boxes overlap none.
+/// The same boxes always give the same sample. Cost: O(max_count^2), without branches: about a microsecond
+/// for 64 boxes. Results are shares of the pairs in the sample. An absent box overlaps at most infinite ones.
 template <int D>
 class OverlapEstimate {
  public:
   static constexpr std::size_t max_boxes = 96;
 
-  /// Samples `max_count` of the boxes, or fewer if there are fewer or `max_count` is above max_boxes.
+  /// Samples `max_count` of the boxes, but at most max_boxes.
   void take(std::span<const Box<D>> boxes, std::size_t max_count) {
     count_ = std::min({boxes.size(), max_count, max_boxes});
     for (std::size_t i = 0; i < count_; ++i) {
@@ -35,7 +35,7 @@ class OverlapEstimate {
     }
   }
 
-  /// Compares the sample all against all. Then the part of the pairs that overlaps on each axis, and on all
+  /// Compares the sample all against all. Sets the shares of its pairs that overlap on each axis and on all
   /// axes.
   void compare() {
     std::array<std::uint32_t, D> on_axis{};
@@ -60,8 +60,8 @@ class OverlapEstimate {
   const std::array<double, D>& overlap() const noexcept { return overlap_; }
   double overlap_on_all() const noexcept { return overlap_on_all_; }
 
-  /// The pairs near each other on all axes, over the number that independent axes would give: 1 where boxes
-  /// are spread evenly. Two boxes are near if their minima differ by at most `reach`.
+  /// The number of pairs that are near on all axes, over the number that independent axes would give: 1 if
+  /// boxes are spread evenly. Two boxes are near if their minima differ by at most `reach`.
   double clustering(const std::array<float, D>& reach) const {
     std::array<std::uint32_t, D> on_axis{};
     std::uint32_t on_all = 0;
@@ -81,11 +81,11 @@ class OverlapEstimate {
     const double pairs = static_cast<double>(count_ * (count_ - 1)) / 2;
     double expected = pairs;
     for (int axis = 0; axis < D; ++axis) expected *= on_axis[axis] / pairs;
-    // Up to four may be near each other by chance.
+    // Up to four pairs may be near by chance.
     return on_all / std::max(expected, 4.0);
   }
 
-  /// The distance between the least and the greatest minimum on each axis, of those that are finite.
+  /// The distance between the least and the greatest finite minimum on each axis.
   std::array<float, D> range() const {
     std::array<float, D> range;
     for (int axis = 0; axis < D; ++axis) {
@@ -109,7 +109,8 @@ class OverlapEstimate {
   double overlap_on_all_ = 0;
 };
 
-/// Statistics of the sides of some boxes. NaN where a mean is zero or infinite.
+/// Statistics of the sides of some boxes. An axis with a zero or infinite mean does not count in
+/// `unevenness`; `longest_over_shortest` may be infinite or NaN.
 struct ExtentStats {
   double unevenness;  ///< mean of the squared sides over the squared mean, on the axis where that is greatest
   double longest_over_shortest;  ///< the mean of the boxes' longest sides over that of their shortest

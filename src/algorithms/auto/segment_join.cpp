@@ -1,11 +1,11 @@
 // The streamed segment tree.
 //
 // A pair is found in the region that holds the greater of its two minima on each axis. A region is cut in two
-// at a median, on one axis; a box goes to each side that it touches. A box that covers its region on the cut
-// axis and begins before it overlaps there every box that begins in the region: it is joined with these on
+// at a median, on one axis; a box goes to each side that it touches. On the cut axis, a box that begins
+// before its region and covers it overlaps every box that begins in the region. It is joined with these on
 // the other axes alone, and not cut any further. So a long box is in few regions, where a plain tree of cells
-// would hold it in all that it touches. Where boxes can be disjoint on one axis only, a sweep along it tests
-// no pair that does not overlap.
+// would hold it in every cell that it touches. Where boxes can be disjoint on one axis only, a sweep along it
+// tests only pairs that overlap.
 #include "algorithms/auto/segment_join.hpp"
 
 #include <algorithm>
@@ -22,12 +22,12 @@ namespace {
 /// Up to this many boxes a sweep costs about what a further cut would.
 constexpr std::size_t leaf_size = 384;
 
-/// If one of two lists is as short as this, each of its boxes is swept against the other list.
+/// A node with a list of at most this many boxes is not cut but swept.
 constexpr std::size_t short_list = 64;
 
 constexpr std::size_t samples = 32;
 
-/// From this depth on, medians of samples have failed to halve the boxes, and exact ones are taken.
+/// At this depth, sample medians have failed to halve the boxes; exact medians are used from here on.
 constexpr int depth_of_medians = 48;
 
 }  // namespace
@@ -80,7 +80,7 @@ void SegmentJoin<D>::search(const Node& node) {
   stack_.resize(top);
 }
 
-/// All that begin in the region do so at one place: what does not end before it overlaps there.
+/// All boxes that begin here begin at one coordinate. Every box that reaches it overlaps them on this axis.
 template <int D>
 void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
   const auto reaches = [&](const Reference& reference) { return box(reference).max[cut.axis] >= cut.low; };
@@ -107,8 +107,8 @@ void SegmentJoin<D>::cut_in_two(const Node& node, const Cut& cut) {
   search({a.above, b.above, node.is_self, node.open, node.depth + 1});
 }
 
-/// Pushes a list's parts: what covers the region and begins before it, and of the rest what touches the two
-/// sides of the cut.
+/// Pushes a list's parts: the boxes that begin before the region and cover it, and for each side of the cut
+/// the others that touch it.
 template <int D>
 auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
   const std::size_t begin = stack_.size();
@@ -121,7 +121,7 @@ auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
     const float max = box(reference).max[cut.axis];
     const std::uint32_t has_begun = reference.dedup_mask >> cut.axis & 1U;
     const bool covers = has_begun != 0 && max >= cut.high;
-    // Written in any case, and kept if it belongs there: a branch could not be predicted.
+    // Always written, and kept only if it belongs there: a branch would be unpredictable.
     *out[0] = reference;
     out[0] += covers ? 1 : 0;
     *out[1] = reference;
@@ -129,7 +129,7 @@ auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
     *out[2] = {reference.place, reference.dedup_mask | (min < cut.at ? 1U << cut.axis : 0U)};
     out[2] += !covers && max >= cut.at ? 1 : 0;
   }
-  // Without the gaps between them.
+  // Closes the gaps between the parts.
   const auto count = [&](int i) {
     return static_cast<std::size_t>(out[i] - (first + static_cast<std::size_t>(i) * size));
   };
@@ -158,7 +158,7 @@ auto SegmentJoin<D>::push(const List& list, Wanted wanted) -> List {
   return {begin, end};
 }
 
-/// Chooses the axis on which a cut at the sample's median parts most boxes, or meets most that cover it.
+/// Chooses the axis on which the sample's median cuts the fewest boxes that do not cover the region.
 template <int D>
 auto SegmentJoin<D>::choose(const Node& node) -> Cut {
   std::array<Reference, samples> sampled;
@@ -193,8 +193,8 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
   return best;
 }
 
-/// Sets the least and the greatest minimum in the region, and moves the cut between them. False if no box
-/// begins in the region.
+/// Sets the least and the greatest minimum in the region, and moves the cut between them if it is not there.
+/// False if no box begins in the region.
 template <int D>
 bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
   float low = std::numeric_limits<float>::infinity();
@@ -208,7 +208,7 @@ bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
   cut.low = low;
   cut.high = high;
   if (!(cut.at > low && cut.at <= high)) {
-    // The median is the least: the cut goes behind it, to the least that is not the lowest.
+    // The median is the least minimum: cut at the next greater one.
     cut.at = high;
     for_minima(node, cut.axis, [&](float min) {
       if (min > low) cut.at = std::min(cut.at, min);
@@ -225,7 +225,7 @@ void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
   if (median > cut.low) cut.at = median;
 }
 
-/// Compares the node's boxes with each other, along an axis on which they may be disjoint.
+/// Sweeps the node's boxes along an axis on which they may be disjoint.
 template <int D>
 void SegmentJoin<D>::sweep(const Node& node) {
   const int axis = std::countr_zero(node.open);

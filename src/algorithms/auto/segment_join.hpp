@@ -1,6 +1,5 @@
 // A join with a bound for the worst case: the streamed segment tree of A. Zomorodian and H. Edelsbrunner,
-// "Fast software for box intersections" (2002), with a choice of the axis at each node and sweeps at the
-// leaves.
+// "Fast software for box intersections" (2002), with the axis chosen at each node and a sweep at the leaves.
 //
 // auto hands a search over to it when another algorithm makes far too many tests.
 #pragma once
@@ -22,24 +21,23 @@
 
 namespace broadside::algorithm {
 
-/// Cost: O((n + k) log^D n) whatever the boxes, where medians of samples halve them. Memory: O(n log n), kept
-/// from one search to the next.
+/// Cost for n boxes and k pairs: O((n + k) log^D n), as long as sample medians halve the boxes. Memory, kept
+/// from one search to the next: O(n log n).
 template <int D>
 class SegmentJoin {
  public:
-  /// Reports each overlapping pair once, or with `left_count` > 0 each pair of one of the first `left_count`
-  /// boxes and one of the others. Boxes are all present; `doubles` and
-  /// `checkpoint` as in a run.
+  /// Reports each overlapping pair once; if `left_count` > 0, only pairs of one of the first `left_count`
+  /// boxes and one of the others. All boxes are present; `doubles` and `checkpoint` are as in a Run.
   Statistics join(std::span<const Box<D>> boxes, std::size_t left_count, const Box<D, double>* doubles,
                   Checkpoint& checkpoint, PairSink& pairs);
 
  private:
   using Reference = core::SortedReference;
 
-  /// References that follow each other on the stack, in the order of the sorted boxes.
+  /// Consecutive references on the stack, in the order of the sorted boxes.
   using List = core::Range;
 
-  /// The lists of a node: its pairs are those of `a` with `b`, or of `a` with itself.
+  /// A node's lists. Its pairs are between `a` and `b` or, if `is_self`, within `a`.
   struct Node {
     List a;
     List b;
@@ -50,7 +48,7 @@ class SegmentJoin {
     std::size_t size() const { return is_self ? a.size() : a.size() + b.size(); }
   };
 
-  /// Where a node is cut, and what minima lie in its region.
+  /// Where a node is cut, and the least and the greatest minimum in its region.
   struct Cut {
     int axis;
     float at;

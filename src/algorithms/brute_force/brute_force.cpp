@@ -13,10 +13,10 @@
 namespace broadside::algorithm {
 namespace {
 
-/// The work for a box in algorithms other than this one, in boxes compared.
+/// Parallel measures work in boxes of other algorithms: this many tests take as long as one.
 constexpr std::size_t tests_per_box = 128;
 
-/// Boxes that one thread compares with all others at a time.
+/// Boxes that a worker compares with all others at a time.
 constexpr std::size_t rows_at_once = 64;
 
 template <int D>

@@ -1,8 +1,8 @@
 // BruteForceFollower: each changed box against all others. Section VI-A of the paper.
 //
-// The paper's flag and previous state are in the Change; what is kept here is one copy of all boxes as a
-// structure of arrays. Changed boxes are taken one after the other, and each one's place is brought up to
-// date when it has been compared, so an event of two changed boxes shows when the second one is taken.
+// The Change has the paper's flag and previous state; this class keeps one copy of all boxes as a structure
+// of arrays. It takes the changed boxes one after the other and updates a box's place after comparing it, so
+// an event of two changed boxes shows at the second one's turn.
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +15,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Boxes that are compared with all changed ones at a time, while they are in the nearest cache.
+/// Boxes that are compared with all changed ones at a time, while they are in the L1 cache.
 constexpr std::size_t boxes_at_once = 1024;
 
 template <int D>

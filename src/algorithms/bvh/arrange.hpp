@@ -1,4 +1,4 @@
-// The order of boxes, or nodes, that are to lie together in a tree of sixteen children to a node.
+// Orders boxes or nodes so that neighbours in space share a parent, in a tree of sixteen children to a node.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@ struct NumberedBox {
   std::uint32_t number;
 };
 
-/// Twice the centre on an axis, limited so that sums do not overflow. Never NaN, even for an invalid box.
+/// Twice the centre on an axis, clamped so that sums do not overflow. Never NaN, even for an invalid box.
 template <int D>
 float middle(const Box<D>& box, int axis) {
   const auto limited = [](float value) { return std::min(std::max(-0x1p120f, value), 0x1p120f); };
   return limited(box.min[axis]) + limited(box.max[axis]);
 }
 
-/// Orders boxes by their middles along an axis, then by number, so the order is the same everywhere.
+/// Orders boxes by their centres along an axis, then by number, so the order is the same everywhere.
 template <int D>
 struct BeforeAlong {
   int axis;
@@ -40,7 +40,7 @@ struct BeforeAlong {
   }
 };
 
-/// The axis on which the middles of some boxes, at least one, are spread widest.
+/// The axis on which the centres are spread most widely. There is at least one box.
 template <int D>
 int widest_axis(std::span<const NumberedBox<D>> boxes) {
   int widest = 0;
@@ -59,8 +59,8 @@ int widest_axis(std::span<const NumberedBox<D>> boxes) {
   return widest;
 }
 
-/// Halves by the middles along the axis on which these are spread widest, recursively. Halves are
-/// whole numbers of full subtrees.
+/// Halves the leaves recursively, along the axis on which their centres are spread most widely. The first
+/// half is a whole number of full subtrees.
 template <int D>
 void halve(std::span<NumberedBox<D>> leaves) {
   if (leaves.size() <= kernels::fan_out) return;
@@ -73,9 +73,9 @@ void halve(std::span<NumberedBox<D>> leaves) {
   halve(leaves.subspan(half));
 }
 
-/// Brings packed leaves, at least one, into an order in which each sixteen, and each sixteen of these, lie
-/// together: in the order in which they were packed, sixteen are a long row. Those far larger than most come
-/// last, since they would widen the bounds of all others they were with. Cost: O(n log n).
+/// Orders packed leaves, at least one, so that each sixteen lie together, and each sixteen of these groups
+/// do. In the packer's order, sixteen leaves are a long row. Leaves far larger than most come last, since
+/// they would widen the bounds of the nodes they share. Cost: O(n log n).
 template <int D>
 void arrange(std::span<NumberedBox<D>> leaves) {
   const auto size_of = [](const NumberedBox<D>& leaf) {

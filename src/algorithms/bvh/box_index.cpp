@@ -1,4 +1,4 @@
-// BoxIndex: checks of what is asked, around the tree that answers; and the distance.
+// BoxIndex: checks the arguments of queries, which the tree answers. Also distance_squared().
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -24,12 +24,11 @@
 namespace broadside::algorithm {
 namespace {
 
-/// The least leaves that one of several threads joins at a time: enough that the way to them from the root
-/// costs nothing.
+/// The fewest leaves that a worker joins at a time: enough that the descent to them costs next to nothing.
 constexpr std::size_t min_leaves_per_part = 64;
 
-/// A search that may give up does so in each part by itself, behind a leaf. It is in no more parts than this,
-/// since a leaf may meet all others.
+/// In a search that may give up, each part does so by itself, after a leaf. It has at most this many parts,
+/// since a leaf may be joined with all others before its part gives up.
 constexpr std::size_t max_parts = 64;
 
 template <int D>
@@ -83,12 +82,12 @@ class BvhSearcher final : public Searcher<D> {
   }
 
  private:
-  /// Says which pairs are left. A leaf is joined with all behind it.
+  /// Says which pairs are missing. A pair is found at the earlier of its two leaves.
   void hand_over(std::size_t boxes, Successor<D>& successor) {
     leaf_of_.assign(boxes, 0);
     for (std::size_t place = 0; place < tree_.levels[0].size; ++place) {
       const float min = tree_.levels[0].min[0][place];
-      if (min == min)  // else it holds no box
+      if (min == min)  // NaN: no box here
         leaf_of_[index(tree_.id[place])] = static_cast<std::uint32_t>(place / kernels::fan_out);
     }
     successor.finish([this](const Box<D>&, BoxId a, const Box<D>&, BoxId b) {
@@ -113,8 +112,8 @@ class BvhSearcher final : public Searcher<D> {
         });
   }
 
-  /// Each part may make as many tests as its boxes and pairs account for. Those that are not done then go on,
-  /// in order, with what the others have left.
+  /// Each part may make as many tests as its boxes and pairs account for. Unfinished parts then continue, in
+  /// order, with the tests that the others have left.
   Statistics join_or_give_up(PairSink& pairs, bool& gave_up) {
     parts_.resize(part_count());
     const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t max_tests,
@@ -152,7 +151,7 @@ class BvhSearcher final : public Searcher<D> {
   std::vector<std::vector<std::uint32_t>> scratch_;  // by worker
   std::size_t leaves_per_part_ = min_leaves_per_part;
   std::vector<kernels::JoinWork> parts_;  // of a search that may give up
-  std::vector<std::uint32_t> leaf_of_;    // by id, after one that did
+  std::vector<std::uint32_t> leaf_of_;    // by id, after a search gave up
 };
 
 template <int D>

@@ -1,9 +1,9 @@
-// BvhFollower: boxes that moved are looked up in a dynamic bounding volume hierarchy and moved, and some that
-// left the bounds of their leaf are inserted anew.
+// BvhFollower: moves boxes in a dynamic bounding volume hierarchy and finds the pairs that begin or end. Some
+// boxes that leave the bounds of their leaf are reinserted.
 //
-// Boxes move one after the other: each is compared with all others as these stand at its turn. So a pair of
-// boxes that both moved may be seen to begin and to end again; only such pairs are tested twice. When the
-// boxes that moved are compared with far more others than after the last build, the tree is built anew.
+// Boxes move one after the other: each is compared with all others as they are at its turn. So a pair of two
+// movers may seem to begin and to end again; only such pairs are tested twice. When movers take far more
+// tests than after the last build, the tree is built anew.
 #include <algorithm>
 #include <span>
 #include <vector>
@@ -17,19 +17,19 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Of the boxes that leave the bounds of their leaf, one in this many is reinserted; for the others the
-/// bounds grow. Of 1, 2, 4, 8, 16 and 32, the greater were the faster for 20,000 drifting boxes (2D and 3D, 1
-/// to 25 % moving: 1 took some 1.3 times as long as 8), but they leave more to the next build.
+/// One in this many boxes that leave the bounds of their leaf is reinserted; for the others the bounds grow.
+/// Of 1, 2, 4, 8, 16 and 32, greater values were faster for 20,000 drifting boxes (2D and 3D, 1 to 25 %
+/// moving: 1 took about 1.3 times as long as 8), but they leave more to the next build.
 constexpr std::uint64_t departures_per_insertion = 8;
 
-/// Boxes that must have moved before their tests are judged.
+/// The number of movers to count before their tests are judged.
 constexpr std::uint64_t movers_to_judge = 512;
 
-/// Boxes that are moved in one call of the kernel, so that they stay in the cache.
+/// The number of boxes per call of the kernel: few enough to stay in the cache.
 constexpr std::size_t moves_at_once = 2048;
 
-/// Takes the pairs that begin, or end, at one box's turn. Where the change wants candidates, all are written
-/// to `begun` as they are found.
+/// Takes the pairs that begin (if `begins`) or end at one box's turn. If `change.wants_candidates`, writes
+/// them all to `begun` untested.
 template <int D>
 class ToggleSink final : public PairSink {
  public:
@@ -85,7 +85,7 @@ class BvhFollower final : public Follower<D> {
     begins.flush();
     ends.flush();
     judge(tests, movers);
-    // The state's own filters, which stay until the next frame.
+    // The tracker keeps these filters until the next frame.
     tree_index_.take_filters(change.filters_now);
     return Statistics{.tests = tests, .references = tree_.size(), .cells = tree_.nodes()};
   }
@@ -97,7 +97,7 @@ class BvhFollower final : public Follower<D> {
   }
 
  private:
-  /// Builds the tree anew from the boxes as they were, with new ones where they are now.
+  /// Builds the tree anew from the boxes as they were, and arrivals as they are now.
   void build(const Change<D>& change) {
     packed_.assign(change.before.begin(), change.before.end());
     for (const BoxId id : change.changed) {
@@ -108,7 +108,7 @@ class BvhFollower final : public Follower<D> {
     is_worse_ = false;
   }
 
-  /// New boxes are inserted where they are now, and then count as moved there.
+  /// Inserts arrivals where they are now; they count as moved there. Sets the slots of all movers.
   void insert_arrivals() {
     for (const kernels::MovedBox<D>& box : moved_) {
       if (!box.was_present && tree_.slot(box.id) == kernels::no_slot) tree_.insert(box.id, box.now);
@@ -116,9 +116,9 @@ class BvhFollower final : public Follower<D> {
     for (kernels::MovedBox<D>& box : moved_) box.slot = tree_.slot(box.id);
   }
 
-  /// After boxes moved: removes boxes that went, refits bounds, and reinserts all boxes that jumped and some
-  /// of those that left their leaves. Removals come first: no other step may meet a lane without a box among
-  /// a node's children.
+  /// After boxes moved: removes departed boxes, refits bounds, and reinserts all boxes that jumped and some
+  /// boxes that left their leaves. Removals come first, since no other step may meet an empty lane among a
+  /// node's children.
   void mend() {
     for (const kernels::MovedBox<D>& box : moved_) {
       if (!box.is_present) tree_.remove(box.id);
@@ -126,14 +126,15 @@ class BvhFollower final : public Follower<D> {
     for (std::size_t i = 0; i < moved_.size(); ++i) {
       if (!moved_[i].is_present) continue;
       const bool left = (calls_for_[i] & kernels::left_leaf) != 0;
-      if (left && (!overlap(moved_[i].before, moved_[i].now) || ++departures_ % departures_per_insertion == 0))
+      if (left &&
+          (!overlap(moved_[i].before, moved_[i].now) || ++departures_ % departures_per_insertion == 0))
         tree_.reinsert(moved_[i].id);
       else if (calls_for_[i] != 0)
         tree_.refit(moved_[i].id);
     }
   }
 
-  /// Compares the tests a mover takes now with those it took after the last build.
+  /// Compares the tests per mover now with the tests per mover after the last build.
   void judge(std::uint64_t tests, std::size_t movers) {
     moves_ += movers;
     judged_tests_ += tests;
@@ -147,8 +148,8 @@ class BvhFollower final : public Follower<D> {
     judged_tests_ = judged_movers_ = 0;
   }
 
-  /// Whether a build pays: many boxes come; or, once as many have moved as there are, searches visit too many
-  /// leaves or most lanes are empty.
+  /// Whether a build pays: many boxes arrive; or as many have moved as there are, and movers take too many
+  /// tests or most lanes are empty.
   bool needs_rebuild(const Change<D>& change) const {
     std::size_t arrivals = 0;
     for (const BoxId id : change.changed)
@@ -158,20 +159,20 @@ class BvhFollower final : public Follower<D> {
            (is_worse_ || tree_.nodes() * kernels::fan_out > 4 * tree_.size() + 4096);
   }
 
-  BoxIndex<D> index_;  // answers queries by tree_
+  BoxIndex<D> index_;  // answers queries from tree_
   BvhIndex<D, float>& tree_index_ = BvhIndex<D, float>::of(index_);
   DynamicBvh<D>& tree_ = tree_index_.tree();
   std::vector<Box<D>> packed_;
   std::vector<kernels::MovedBox<D>> moved_;
-  std::vector<std::uint8_t> calls_for_;  // of moved_: bits of follow()
+  std::vector<std::uint8_t> calls_for_;  // for each of moved_: bits set by follow()
 
   std::uint64_t judged_tests_ = 0;
   std::uint64_t judged_movers_ = 0;
-  std::uint64_t usual_tests_ = 0;   // counted right after the last build ...
-  std::uint64_t usual_movers_ = 0;  // ... for this many movers
-  std::size_t moves_ = 0;           // since then
+  std::uint64_t usual_tests_ = 0;   // right after the last build
+  std::uint64_t usual_movers_ = 0;  // likewise
+  std::size_t moves_ = 0;           // since the last build
   bool is_worse_ = false;
-  std::uint64_t departures_ = 0;  // of boxes from their leaf, without a jump
+  std::uint64_t departures_ = 0;  // boxes that left their leaf without a jump
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Conservative rounding: boxes of doubles as boxes of floats that contain them, about an origin.
+// Conservative rounding: boxes of floats that contain boxes of doubles, relative to an origin.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace broadside::algorithm {
 
-/// A float less than `value` by at least half of its last place, or -inf; at most 2^100, so that what is
-/// computed with it does not overflow.
+/// A float below `value` by at least half a unit in the last place, or -inf. At most 2^100, so that
+/// computations with it do not overflow.
 inline float rounded_down(double value) noexcept {
   constexpr double most = 0x1p100;
   if (value >= most) return static_cast<float>(most);
@@ -27,7 +27,7 @@ inline float rounded_down(double value) noexcept {
   return std::bit_cast<float>(nearest > 0 ? bits - 1 : bits + 1);
 }
 
-/// The same to the other side.
+/// The same for a float above `value`.
 inline float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
 /// Origin and power-of-two scale are chosen for each axis.
@@ -38,7 +38,7 @@ class ConservativeRounding {
   void fit(std::span<const Box<D, double>> boxes) { fit_ = core::fit_linear<D>(boxes); }
 
   Box<D> box(const Box<D, double>& box) const noexcept {
-    // A difference that overflows is not to be scaled to more than it is.
+    // A difference that overflows is clamped, so that scaling it does not exceed the true value.
     constexpr double most = std::numeric_limits<double>::max();
     Box<D> rounded;
     for (int axis = 0; axis < D; ++axis) {

@@ -1,8 +1,9 @@
-// The dynamic bounding volume hierarchy that the tracker and BoxIndex search: sixteen children to a node.
+// The dynamic bounding volume hierarchy of BvhFollower and BoxIndex.
 //
-// Maintained as A. Guttman's "R-trees: a dynamic index structure for spatial searching" (SIGMOD 1984) is,
-// measured by sums of extents as in N. Beckmann et al., "The R*-tree" (SIGMOD 1990), and not by a surface
-// area heuristic (SAH), so that boxes without area or with infinite extents are compared as well.
+// Maintained as an R-tree (A. Guttman, "R-trees: a dynamic index structure for spatial searching", SIGMOD
+// 1984). Bounds are measured by the sum of their extents (N. Beckmann et al., "The R*-tree", SIGMOD 1990),
+// not by a surface area heuristic (SAH), so that boxes without area or with infinite extents are compared as
+// well.
 #include "algorithms/bvh/dynamic_bvh.hpp"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ using kernels::no_slot;
 
 namespace {
 
-/// Whether bounds that `box` was in may be smaller without it.
+/// Whether bounds that contain `box` may shrink without it.
 template <int D>
 bool touches_border(const Box<D>& bounds, const Box<D>& box) {
   bool touches = false;
@@ -46,7 +47,7 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   }
   size_ = packed_.size();
   if (size_ == 0) return;
-  // With room for what splits add until the next build.
+  // With room for the nodes that splits add until the next build.
   const std::size_t leaves = size_ / fan_out;
   nodes_.reserve(leaves + leaves / 3 + 16);
   info_.reserve(nodes_.capacity());
@@ -56,7 +57,7 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   root_ = children_.front().number;
 }
 
-/// Puts the boxes into leaves as they are packed.
+/// Puts the boxes into leaves, in the packer's order.
 template <int D>
 void DynamicBvh<D>::add_leaves() {
   packer_.pack(packed_, parallel_);
@@ -75,7 +76,7 @@ void DynamicBvh<D>::add_leaves() {
   }
 }
 
-/// Puts each sixteen of children_ into a node; these are then the children.
+/// Puts each sixteen of children_ into a node. The nodes are the new children_.
 template <int D>
 void DynamicBvh<D>::add_level() {
   std::size_t to = 0;
@@ -130,8 +131,8 @@ void DynamicBvh<D>::insert(BoxId id, const Box<D>& box) {
   add_child(number & ~leaf_bit, {box, index(id)});
 }
 
-/// Adds a child to a full node: those that lie on one side of the axis along which they differ most remain,
-/// the others go into a new node beside it.
+/// Adds a child to a full node by splitting it: sorts the children along the axis on which their centres are
+/// spread most widely, keeps the first half and moves the others to a new sibling.
 template <int D>
 void DynamicBvh<D>::split(std::uint32_t node, const Child& added) {
   std::array<Child, fan_out + 1> children;
@@ -190,7 +191,7 @@ void DynamicBvh<D>::remove_at(std::uint32_t slot) {
   refit_above(node);
 }
 
-/// Sets the bounds of a node whose children changed, and of those above it.
+/// Sets the bounds of a node whose children changed, and of its ancestors.
 template <int D>
 void DynamicBvh<D>::refit_above(std::uint32_t node) {
   for (std::uint32_t up = info_[node].parent; up != no_slot; up = info_[up / fan_out].parent) {

@@ -1,4 +1,4 @@
-// The dynamic bounding volume hierarchy that its follower and BoxIndex search: sixteen children to a node.
+// DynamicBvh: the dynamic bounding volume hierarchy of BvhFollower and BoxIndex. Sixteen children per node.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ namespace broadside::algorithm {
 template <int D>
 class DynamicBvh {
  public:
-  /// Starts over with these boxes, some of which may be absent; ids are places in the array.
+  /// Starts over with these boxes. Some may be absent; ids are places in the array.
   void build(std::span<const Box<D>> boxes, const Workers& workers = {});
 
-  /// Moves a box, inserts one, or removes it if `box` is absent. Cost: a path from the root, a few times.
+  /// Moves or inserts a box, or removes it if `box` is absent. Cost: a few walks along a path from the root.
   void set(BoxId id, const Box<D>& box);
 
   /// The parts of set(), for a caller that moves many boxes between them.
@@ -48,8 +48,7 @@ class DynamicBvh {
     insert(id, box);
   }
 
-  /// Where the box is: its node * fan_out + lane, or no_slot. Insertions and removals
-  /// change it.
+  /// Where the box is: node * fan_out + lane, or no_slot. Insertions and removals change it.
   std::uint32_t slot(BoxId id) const noexcept {
     return index(id) < slots_.size() ? slots_[index(id)] : kernels::no_slot;
   }
@@ -61,10 +60,10 @@ class DynamicBvh {
   std::size_t size() const noexcept { return size_; }
   std::size_t nodes() const noexcept { return nodes_.size() - free_.size(); }
 
-  /// For searches; only if there is a box.
+  /// The tree for searches. There must be a box.
   kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
 
-  /// To move boxes in; until the next insertion.
+  /// The tree for kernels::follow(). Valid until the next insertion.
   kernels::WritableBvh<D> writable() {
     for (std::vector<std::uint32_t>& list : lists_) {
       if (list.size() < nodes_.size() + 2 * kernels::fan_out)
@@ -73,7 +72,7 @@ class DynamicBvh {
     return {nodes_.data(), info_.data(), root_, {lists_[0].data(), lists_[1].data()}};
   }
 
-  /// How many children the node has, in its first lanes.
+  /// The number of a node's children, which are in its first lanes.
   std::size_t child_count(std::uint32_t node) const noexcept {
     return info_[node & ~kernels::leaf_bit].count;
   }
@@ -121,7 +120,7 @@ class DynamicBvh {
 
   BvhPacker<D> packer_;
   core::Parallel parallel_;
-  // For building: the boxes and their ids, and what the next level's nodes hold.
+  // For building: the boxes, their ids, and the children of the next level's nodes.
   std::vector<Box<D>> packed_;
   std::vector<std::uint32_t> ids_;
   std::vector<Child> children_;

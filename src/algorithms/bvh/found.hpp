@@ -1,4 +1,4 @@
-// Sinks for the kernels' searches: they filter boxes found, test them in double, and hand them on to the
+// Sinks for the query kernels: they filter the boxes found, test them in double, and pass them on to the
 // caller.
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace broadside::algorithm {
 
-/// Hands what a function makes of the boxes on to a visitor: `take_one(boxes, i, to)` sets `to` to what is
-/// found with box i of `boxes`, and returns whether it is.
+/// Passes results on to a visitor: `take_one(boxes, i, to)` returns whether box i of `boxes` is a result, and
+/// then sets `to` to it.
 template <typename Found, typename TakeOne>
 class VisitedBoxes final : public kernels::FoundBoxes {
  public:
@@ -40,7 +40,7 @@ class VisitedBoxes final : public kernels::FoundBoxes {
   std::array<Found, max_found + 2 * kernels::fan_out> result_;
 };
 
-/// The first box that a cast meets; of several, the one with the least id.
+/// The first box that a cast hits; of several hit at once, the one with the least id.
 template <int D, typename Real>
 class First final : public kernels::FoundBoxes {
  public:

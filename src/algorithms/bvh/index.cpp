@@ -17,7 +17,7 @@ using kernels::fan_out;
 using kernels::FoundBoxes;
 using kernels::leaf_bit;
 
-/// The parameter in the tree: 2^exponent times the caller's.
+/// A cast's parameter in the tree: 2^exponent times the caller's.
 template <typename Real>
 float in_tree(Real t_max, int exponent) {
   if constexpr (is_float<Real>)
@@ -31,7 +31,7 @@ float in_tree(Real t_max, int exponent) {
 template <int D, typename Real>
 void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
   core::check_frame(frame, size_, dirty_);
-  const bool rebuild = std::exchange(dirty_, true);  // until the end of this update
+  const bool rebuild = std::exchange(dirty_, true);  // stays true if this update throws
   take_filters_of(frame, rebuild);
   changed_.clear();
   if (!rebuild) list_changes(frame);
@@ -93,7 +93,7 @@ void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
   }
 }
 
-/// The cast as the kernels take it, the parameter being 2^exponent times the caller's.
+/// The cast as the kernels take it. Its parameter is 2^exponent times the caller's. Sets `exponent`.
 template <int D, typename Real>
 kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, int& exponent) const {
   kernels::CastQuery<D> query{in_tree(cast.box), {}, {}, {}, is_float<Real>};
@@ -107,8 +107,8 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
     }
     if (greatest != none) exponent = greatest;
   }
-  // Beyond these, a parameter computed by the definition, or an inverse, may overflow or lose its last
-  // places, and the tree's bounds would decide what the definition does not.
+  // Beyond these limits, an inverse, or a parameter computed by the definition, may overflow or lose its last
+  // places. The axis is then left undecided, so that the tree's bounds do not overrule the definition.
   constexpr Real least = is_float<Real> ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
   constexpr int max_exponent = 800;
   for (int axis = 0; axis < D; ++axis) {
@@ -184,9 +184,9 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
   query.weight.fill(1);
   query.point = in_tree(Box<D, Real>{point, point});
   query.max = std::numeric_limits<float>::infinity();
-  Real unit = 1;                    // the caller's squared distance 1 as one in the tree
+  Real unit = 1;                    // the caller's squared distance 1, in the tree
   if constexpr (!is_float<Real>) {  // distances in the tree must not exceed the true ones
-    // Beyond these, the definition's squares may overflow or lose their last places.
+    // Beyond this limit, the definition's squares may overflow or lose their last places.
     constexpr int max_exponent = 400;
     int exponent = max_exponent;
     for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
@@ -227,7 +227,7 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
       else
         found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
     }
-    // The nearest one last, where it is taken from.
+    // The nearest comes last, since the last one is taken next.
     std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),
                       [](const Waiting& a, const Waiting& b) {
                         return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;

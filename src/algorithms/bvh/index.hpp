@@ -1,5 +1,5 @@
-// BvhIndex: what is behind a BoxIndex, a dynamic bounding volume hierarchy that follows frames and answers
-// queries.
+// BvhIndex: the implementation of BoxIndex, a dynamic bounding volume hierarchy that follows frames and
+// answers queries.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,8 @@ Real squared_distance(const Point<D, Real>& point, const Box<D, Real>& box) noex
   return sum;
 }
 
-/// Floats are searched exactly by the kernels. Boxes of doubles are in the tree as floats about an origin, by
-/// conservative rounding; what the kernels find there is tested again by the definitions, in double.
+/// The kernels search floats exactly. Boxes of doubles are in the tree as floats about an origin, by
+/// conservative rounding; what the kernels find is tested again in double, by the queries' definitions.
 template <int D, typename Real>
 class BvhIndex {
  public:
@@ -45,12 +45,11 @@ class BvhIndex {
   static BvhIndex& of(BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
   static const BvhIndex& of(const BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
 
-  /// Takes a frame: BoxIndex::update().
+  /// Does the work of BoxIndex::update().
   void update(const Frame<D, Real>& frame);
 
-  /// For a follower of floats that moves the boxes in the tree itself, instead of update(). It then says
-  /// which filters the boxes have now: none, or one for each. They must stay where they are until the next
-  /// call.
+  /// For a follower of floats that moves the boxes in the tree itself, instead of update(). It then passes
+  /// the boxes' filters: none, or one for each. The array must stay valid until the next call.
   DynamicBvh<D>& tree() noexcept { return tree_; }
   const DynamicBvh<D>& tree() const noexcept { return tree_; }
   void take_filters(std::span<const Filter> filters) noexcept {
@@ -58,7 +57,7 @@ class BvhIndex {
     dirty_ = false;
   }
 
-  /// The queries of BoxIndex, with valid arguments; the box is not absent.
+  /// The queries of BoxIndex. Arguments must be valid, and the box not absent.
   bool find_overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor, const QueryOptions& options) const;
   bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                  const QueryOptions& options) const;
@@ -70,8 +69,8 @@ class BvhIndex {
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
   }
 
-  /// For the kernels' sinks: whether a query may find the box, and the parameter at which box `found.ids[i]`
-  /// is hit.
+  /// For the kernels' sinks: whether a query may find the box, and the parameter at which a cast hits box
+  /// `found.ids[i]`, if it does.
   bool may_find(BoxId id, const QueryOptions& options) const noexcept {
     if (options.except && id == *options.except) return false;
     return options.filter == nullptr ||
@@ -87,7 +86,7 @@ class BvhIndex {
   }
 
  private:
-  /// Whether there is nothing to find: no box, or the last update did not end.
+  /// Whether there is nothing to find: no box, or the last update failed.
   bool is_empty() const noexcept { return dirty_ || tree_.size() == 0; }
 
   void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
@@ -104,14 +103,14 @@ class BvhIndex {
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
 
   DynamicBvh<D> tree_;
-  std::vector<Box<D, Real>> exact_;  // by id; of doubles alone
+  std::vector<Box<D, Real>> exact_;  // by id; only for doubles
   ConservativeRounding<D> rounding_;
 
   std::span<const Filter> filters_;  // of the last frame; empty if it had none
   std::vector<Filter> own_filters_;  // the array behind filters_ after update()
-  std::vector<BoxId> changed_;       // with those that need not be listed
+  std::vector<BoxId> changed_;       // the frame's list, and places added or cut off at the end
   std::size_t size_ = 0;             // of the last frame
-  bool dirty_ = true;                // the last update did not end, or there was none
+  bool dirty_ = true;                // the last update failed, or there was none
 };
 
 }  // namespace broadside::algorithm

@@ -1,5 +1,5 @@
-// The memory of a packed tree of bounds: its leaves' places, which are filled from outside, and the levels
-// over them.
+// PackedLevels: the memory of a packed tree of bounds. A packer fills the places of its leaves; the levels
+// above follow from them.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@
 
 namespace broadside::algorithm {
 
-/// As many places as leaves that are to hold `size` boxes have.
+/// `size` rounded up to the places of whole leaves.
 constexpr std::size_t whole_leaves(std::size_t size) {
   return (size + kernels::fan_out - 1) / kernels::fan_out * kernels::fan_out;
 }
 
-/// Between start() and build() each place gets a box or is left. Several threads may put boxes at once.
+/// Between start() and build(), put() or leave() each place. Several threads may put boxes at once.
 template <int D>
 class PackedLevels {
  public:
@@ -31,7 +31,7 @@ class PackedLevels {
   PackedLevels(const PackedLevels&) = delete;
   PackedLevels& operator=(const PackedLevels&) = delete;
 
-  /// Starts over with `places` places, a multiple of `kernels::fan_out`. No allocation beyond growth.
+  /// Starts over with `places` places, a multiple of `kernels::fan_out`. Allocates only to grow.
   void start(std::size_t places) {
     resize(0, places);
     grown(ids_, places);
@@ -47,7 +47,7 @@ class PackedLevels {
     ids_[place] = id;
   }
 
-  /// The places from `begin` to before `end` hold nothing.
+  /// Leaves the places [begin, end) empty.
   void leave(std::size_t begin, std::size_t end) { gaps_.push_back({begin, end}); }
 
   /// The places before `places` hold the left set.
@@ -90,7 +90,7 @@ class PackedLevels {
     std::array<core::LargeArray<float>, D> max;
   };
 
-  /// The elements of `memory`, at least `size` of them, to be set.
+  /// At least `size` elements of `memory`, with unspecified values.
   template <typename Element>
   static Element* grown(core::LargeArray<Element>& memory, std::size_t size) {
     if (memory.size() < size) core::renew(memory, size);
@@ -112,7 +112,7 @@ class PackedLevels {
     }
   }
 
-  /// Makes `size` the size of a level, whose elements are then to be set.
+  /// Sets the size of a level. Its elements are then unspecified.
   void resize(std::size_t level, std::size_t size) {
     LevelMemory& memory = memory_[level];
     for (int axis = 0; axis < D; ++axis) {
@@ -122,7 +122,7 @@ class PackedLevels {
     tree_.levels[level].size = size;
   }
 
-  std::vector<core::Range> gaps_;  // places that hold nothing
+  std::vector<core::Range> gaps_;  // empty places
   std::array<LevelMemory, kernels::max_levels> memory_;
   core::LargeArray<BoxId> ids_;
   kernels::PackedBvh<D> tree_{};

@@ -1,11 +1,10 @@
 // Packs boxes into a tree of bounds: sixteen boxes to a leaf, sixteen children to a node.
 //
 // The builder follows S. Leutenegger et al., "STR: a simple and efficient algorithm for R-tree packing" (ICDE
-// 1997): boxes are cut into slabs of equally many along the first axis, slabs into strips along the next one,
-// strips into leaves along the last; how many of each, so that leaves have the shape of a typical box. They
-// are put in order by counting, in buckets of equal width: bounds are taken of what came out, so that a
-// bucket's disorder costs time, never a pair. Boxes far larger than most would widen the bounds of every leaf
-// they are in: they have leaves of their own, by classes of size, behind the others in the same tree.
+// 1997): boxes are cut into slabs of equal numbers along the first axis, slabs into strips along the next
+// one, strips into leaves along the last. The numbers of slabs and strips are chosen so that leaves have the
+// shape of a typical box. Boxes are ordered by a counting sort, in buckets of equal width. Bounds are
+// computed afterwards, so disorder within a bucket costs time, never a pair.
 #include "algorithms/bvh/packer.hpp"
 
 #include <algorithm>
@@ -22,14 +21,14 @@ namespace {
 
 using kernels::fan_out;
 
-/// Sizes beyond which a box belongs to the next class, in units of a typical one.
+/// Sizes above which a box belongs to the next class, in units of a typical box.
 constexpr std::array<float, 4> class_borders = {4, 32, 256, 2048};
 constexpr std::size_t classes = class_borders.size() + 1;
 
 constexpr std::size_t max_bvh_buckets = 2048;
 
-/// The root of `value` >= 0 of that degree, 1 to 3, in operations that are rounded alike everywhere: which
-/// leaf a box is in must not depend on the machine.
+/// The root of `value` >= 0 of degree 1, 2 or 3, by operations that round alike everywhere: a box's leaf must
+/// not depend on the machine.
 double root(double value, int degree) {
   if (degree == 1 || !(value > 0)) return value;
   if (degree == 2) return std::sqrt(value);
@@ -38,7 +37,7 @@ double root(double value, int degree) {
   return guess;
 }
 
-/// Up to so many buckets of equal width for the coordinates on one axis; one if these are all the same.
+/// At most `max_count` buckets of equal width for the coordinates [low, high]; one bucket if low == high.
 core::CellAxis buckets_of(float low, float high, std::size_t max_count) {
   const float width = high - low;
   if (!(width > 0) || max_count < 2) return {.low = low};
@@ -57,7 +56,7 @@ void BvhPacker<D>::pack(std::span<const Box<D>> boxes, core::Parallel& parallel,
   levels_.build(parallel);
 }
 
-/// Sorts the boxes into entries_: by set and class, and in these roughly along the first axis.
+/// Sorts the boxes into entries_: by set, by class, and within a class roughly along the first axis.
 template <int D>
 void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left) {
   std::array<float, D> inverse;
@@ -103,17 +102,17 @@ void BvhPacker<D>::partition(std::span<const Box<D>> boxes, core::Parallel& para
   sort_heavy_buckets(ends, parallel);
 }
 
-/// The axis with the most cuts comes last, where order is finest.
+/// The axis with the most cuts comes last, where the order is finest.
 template <int D>
 void BvhPacker<D>::choose_axes(std::size_t boxes) {
   std::iota(axes_.begin(), axes_.end(), 0);
   const std::array<double, D> parts = parts_of(whole_leaves(boxes) / fan_out, 1);
-  // Not a stable sort, which takes memory.
+  // Not a stable sort, which would allocate.
   std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
 }
 
-/// Sorts the boxes within heavy buckets: where a few buckets hold most boxes, buckets alone hardly put them
-/// in order.
+/// Sorts the boxes within heavy buckets: where a few buckets hold most boxes, the buckets alone leave them
+/// almost unsorted.
 template <int D>
 void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core::Parallel& parallel) {
   const std::size_t max_unsorted = std::max<std::size_t>(1024, entries_.size() / 64);
@@ -132,7 +131,7 @@ void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core:
   });
 }
 
-/// The distance of neighbours on an axis, were `count` boxes spread evenly.
+/// The distance between neighbours on an axis if `count` boxes were spread evenly.
 template <int D>
 float BvhPacker<D>::spacing(std::size_t count, int axis) const {
   const float range = sample_[axis].high - sample_[axis].low;
@@ -206,8 +205,8 @@ void BvhPacker<D>::place_slab(std::span<const Entry> slab, std::size_t place, st
   }
 }
 
-/// Into how many parts each axis is cut, so that leaves have the shape of a box `size` times the typical
-/// one.
+/// The number of parts into which each axis is cut, so that leaves have the shape of a box `size` times the
+/// typical one.
 template <int D>
 std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) const {
   std::array<double, D> ratios;
@@ -218,8 +217,8 @@ std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) con
   }
   std::array<double, D> parts;
   parts.fill(1);
-  // An axis on which most boxes overlap separates nothing. One that is too short for a single cut leaves
-  // its share to the others.
+  // An axis on which most boxes overlap is not cut: that would separate nothing. An axis too short for a
+  // single cut leaves its share to the others.
   std::array<bool, D> cut;
   for (int axis = 0; axis < D; ++axis) cut[axis] = ratios[axis] > 2;
   for (int round = 0; round < D; ++round) {
@@ -243,8 +242,7 @@ std::array<double, D> BvhPacker<D>::parts_of(std::size_t leaves, float size) con
   return parts;
 }
 
-/// Calls `put(i, place)` for each of `count` entries, of which `entry(i)` is one, with its place in their
-/// order along an axis.
+/// Calls `put(i, place)` for each i below `count`, with the place of `entry(i)` in the order along an axis.
 template <int D>
 template <typename EntryOf, typename Put>
 void BvhPacker<D>::order(std::size_t count, int axis, Scratch& scratch, EntryOf entry, Put put) const {

@@ -23,9 +23,9 @@ namespace broadside::algorithm {
 
 /// Builds trees and holds the last one built.
 ///
-/// Boxes far larger than most have leaves of their own, by classes of size, behind the others: they would
-/// widen the bounds of every leaf they were in. Each class begins with a new leaf, so that up to fifteen
-/// places at its end hold nothing.
+/// Boxes far larger than most would widen the bounds of every leaf they were in. They have leaves of their
+/// own, by class of size, after the others. Each class begins with a new leaf, so up to fifteen places at its
+/// end are empty.
 template <int D>
 class BvhPacker {
  public:
@@ -33,13 +33,13 @@ class BvhPacker {
   BvhPacker(const BvhPacker&) = delete;
   BvhPacker& operator=(const BvhPacker&) = delete;
 
-  /// Builds the tree over `boxes`, all of which are present; there is at least one. A box's id is its place
-  /// in the array. Where `left_count` is not 0, the boxes before it have leaves and nodes' children of their
-  /// own, before the others. What was built before is gone. The tree does not depend on the number of
-  /// workers. Cost: some passes over the boxes, no allocation beyond growth.
+  /// Builds the tree over `boxes`: at least one, all present. A box's id is its place in the array. If
+  /// `left_count` is not 0, the first `left_count` boxes have leaves of their own, before the others.
+  /// Discards the last tree. The tree does not depend on the number of workers. Cost: a few passes over the
+  /// boxes; allocates only to grow.
   void pack(std::span<const Box<D>> boxes, core::Parallel& parallel, std::size_t left_count = 0);
 
-  /// The tree built last. A caller that changes its levels must keep what PackedBvh promises.
+  /// The tree built last. A caller that changes its levels must keep the invariants of PackedBvh.
   const kernels::PackedBvh<D>& tree() const noexcept { return levels_.tree(); }
 
   /// The bytes held; about half are only needed while building.
@@ -53,7 +53,7 @@ class BvhPacker {
  private:
   using Entry = core::SortedBox<D>;
 
-  /// What a worker orders boxes with.
+  /// A worker's memory for ordering boxes.
   struct Scratch {
     std::vector<std::uint16_t> buckets;
     std::vector<std::uint32_t> order;
@@ -74,10 +74,10 @@ class BvhPacker {
 
   core::Sample<D> sample_;
   std::array<int, D> axes_{};              // slabs are cut along the first one, and leaves along the last one
-  std::array<float, D> typical_{};         // a box's usual extents, or more where boxes are sparse
-  core::LargeArray<std::uint16_t> keys_;   // a box's bucket
+  std::array<float, D> typical_{};         // a typical box's extents, or more where boxes are sparse
+  core::LargeArray<std::uint16_t> keys_;   // by box: its group and bucket
   std::vector<std::uint32_t> counts_;      // by range and bucket
-  std::vector<std::uint32_t> group_ends_;  // where in entries_ a set's and class's boxes end
+  std::vector<std::uint32_t> group_ends_;  // where the boxes of each set and class end in entries_
   core::LargeArray<Entry> entries_;
   std::vector<Scratch> scratch_;  // by worker
   PackedLevels<D> levels_;

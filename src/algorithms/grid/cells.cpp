@@ -1,9 +1,9 @@
 // HierarchicalCells.
 //
-// A box is in one cell, that of its minimum, on the level for its size. So a search looks into the cells from
-// the box's minimum, less the level's greatest extent, to its maximum. All blocks of a cell but the first are
-// full: a box is put into the first, or into a new one before it, and where one is taken from another block,
-// one of the first fills the hole.
+// A box is in one cell: that of its minimum, on the level for its size. So a search looks into the cells from
+// the box's minimum, minus the level's greatest extent, to its maximum. All blocks of a cell but the first
+// are full: a box is added to the first block, or to a new one before it, and a box removed from another
+// block is replaced by one from the first.
 #include "algorithms/grid/cells.hpp"
 
 #include <bit>
@@ -29,7 +29,7 @@ void HierarchicalCells<D>::build(std::span<const Box<D>> boxes, std::span<const 
   fill(boxes);
 }
 
-/// Inserts `boxes`: slot_ says which cell each is in, and counts_ how many are in each.
+/// Inserts `boxes`: slot_ has the cell of each box, and counts_ the number of boxes in each cell.
 template <int D>
 void HierarchicalCells<D>::fill(std::span<const Box<D>> boxes) {
   first_.assign(counts_.size(), no_slot);
@@ -38,8 +38,8 @@ void HierarchicalCells<D>::fill(std::span<const Box<D>> boxes) {
   boxes_ = 0;
   levels_.clear();
 
-  // In the order of cells: neighbours in space are neighbours in memory. A cell's first block is the last one
-  // there, and the one that need not be full.
+  // In the order of cells, so that neighbours in space are neighbours in memory. A cell's first block is its
+  // last one in memory, and the only one that need not be full.
   const auto blocks_for = [](std::uint32_t count) {
     return (count + std::uint32_t{block_size} - 1) / std::uint32_t{block_size};
   };
@@ -51,7 +51,7 @@ void HierarchicalCells<D>::fill(std::span<const Box<D>> boxes) {
     for (std::uint32_t block = 0; block < own; ++block) pool_.add_block(first_[cell], cell);
     if (own > 0) counts_[cell] += (first_[cell] + 1 - own) * std::uint32_t{block_size};
   }
-  // counts_ is now the end of each cell's slots, from which they are given out.
+  // counts_ now has the end of each cell's slots. Slots are assigned from there down.
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!is_present(boxes[i])) continue;
     slot_[i] = --counts_[slot_[i]];
@@ -129,7 +129,7 @@ void HierarchicalCells<D>::drop_stale() {
   stale_.clear();
 }
 
-/// Keeps every block of a cell but the first full, and none that is empty.
+/// Makes every block of a cell but the first full again, and removes empty ones.
 template <int D>
 void HierarchicalCells<D>::close_hole(std::uint32_t slot) {
   const std::uint32_t block = slot / block_size;

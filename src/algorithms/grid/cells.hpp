@@ -1,4 +1,4 @@
-// HierarchicalCells: what GridFollower keeps, a hierarchical grid: levels of cells with blocks of
+// HierarchicalCells: the hierarchical grid that GridFollower keeps. Levels have cells, cells have blocks of
 // sixteen boxes.
 #pragma once
 
@@ -21,37 +21,37 @@ namespace broadside::algorithm {
 template <int D>
 class HierarchicalCells {
  public:
-  /// Cells of the first level are `cell` wide, or chosen by the boxes.
+  /// Cells of the first level are `cell` wide; by default, the boxes decide.
   explicit HierarchicalCells(std::optional<double> cell) : levels_(cell) {}
 
-  /// Lays out cells that suit `like` and inserts the boxes of `boxes` that are present, each under its place.
+  /// Lays out cells that suit `like`, and inserts the present boxes of `boxes`; ids are places in the array.
   /// O(n).
   void build(std::span<const Box<D>> boxes, std::span<const Box<D>> like);
 
-  /// The memory for ids below `count`.
+  /// Makes room for ids below `count`.
   void reserve(std::size_t count) {
     if (slot_.size() < count) core::resize_by_eighths(slot_, count);
   }
 
-  /// Moves a box, or one of the two that is there: until settle() its entry covers where it was and where it
-  /// is, so a query for either finds it. What is left where it was goes with drop_stale(). O(1).
+  /// Moves, inserts or removes a box. Until settle(), its entries cover where it was and where it is, so a
+  /// query for either finds it. An entry left behind in another cell stays until drop_stale(). O(1).
   void move(core::MovedBox<D>& box);
 
-  /// Bring what a box's move() or settle() reads into the cache: first its slot, and later what is there.
+  /// Prefetch what a box's move() or settle() reads: first its slot, and later the entry there.
   void prefetch_slot(BoxId id) const { kernels::prefetch(slot_.data() + index(id)); }
   void prefetch_entry(BoxId id) const { pool_.prefetch(slot_[index(id)]); }
 
-  /// The same for a box that stays in its cell, while other threads move and settle others like it; else
-  /// nothing is done, and the box's `slot` stays unset.
+  /// move() for a box that stays in its cell and fits its level; does nothing for another box, and leaves its
+  /// `slot` unset. Other threads may move_within_cell() or settle() other boxes at the same time.
   void move_within_cell(core::MovedBox<D>& box);
 
-  /// Says that the box, which has moved before, is at rest here. Other threads may settle others.
+  /// Shrinks the entry of a box that moved earlier to where it now rests. Other threads may settle others.
   void settle(BoxId id, const Box<D>& box) {
     pool_.unmark_beside_others(slot_[index(id)]);
     pool_.set(slot_[index(id)], box);
   }
 
-  /// Removes entries of boxes that have moved elsewhere or are gone. O(their number).
+  /// Removes the entries that boxes left behind. O(number of entries).
   void drop_stale();
 
   kernels::CellsView<D> view() const { return {levels_.all(), first_.data(), pool_.view()}; }
@@ -67,7 +67,7 @@ class HierarchicalCells {
   void fill(std::span<const Box<D>> boxes);
   void insert(BoxId id, const Box<D>& box, std::size_t level);
 
-  /// The box is gone from here, but is found until drop_stale().
+  /// Marks the box's entry as stale. Searches find it until drop_stale().
   void remove(BoxId id, const Box<D>& before) {
     const std::uint32_t slot = slot_[index(id)];
     pool_.mark(slot);
@@ -75,7 +75,7 @@ class HierarchicalCells {
     stale_.push_back(slot);
   }
 
-  /// Whether a box that is there belongs to the cell that it is in.
+  /// Whether a box that was present stays in its cell.
   bool stays(const core::MovedBox<D>& box, std::size_t level) const {
     return box.was_present &&
            levels_[level].cell(box.now.min) == pool_.head(slot_[index(box.id)] / kernels::block_size).owner;
@@ -87,8 +87,8 @@ class HierarchicalCells {
   CellLevels<D> levels_;
   std::vector<std::uint32_t> first_;  // by cell: its first block, the only one that may have room
   kernels::BlockPool<D> pool_;
-  std::vector<std::uint32_t> slot_;   // by id, of boxes that are there
-  std::vector<std::uint32_t> stale_;  // slots to be given up
+  std::vector<std::uint32_t> slot_;   // by id, for present boxes
+  std::vector<std::uint32_t> stale_;  // slots for drop_stale() to free
   std::vector<std::uint32_t> counts_;
   std::size_t boxes_ = 0;
 };

@@ -1,10 +1,10 @@
-// Grid: uniform cells over all axes but one, and a sweep along that one in each. The cells are an array
-// fitted to the boxes, not a spatial hash.
+// Grid: uniform cells over all axes but one, and a sweep along the remaining axis in each cell. The cells are
+// an array fitted to the boxes, not a spatial hash.
 //
-// Section III of the paper, without its limits: the cells clamp what lies outside them, so no world is
-// declared. A box is put into the cell that holds its minimum, and goes on from there to the others that it
-// reaches while these are swept, so what is kept is one copy of each box. No pair is found twice: it is
-// reported in the one cell that holds the greater of the two boxes' minima on every gridded axis.
+// Section III of the paper, without its limits: the outermost cells take in what lies beyond, so no world is
+// declared. A box is stored in the cell that holds its minimum, and again in each further slab that it
+// reaches; the sweep carries it on to the other cells. Each pair is reported once: in the cell that holds the
+// greater of the two minima on every gridded axis.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,7 +84,7 @@ class GridSearcher final : public Searcher<D> {
     Box<D> cell;
     cell.min.fill(-infinity);
     cell.max.fill(infinity);
-    // The last cell's border is NaN: it goes on without end, like the first one.
+    // The last cell's border is NaN: the cell is unbounded, like the first one.
     const auto end = [](float border) {
       return std::isnan(border) ? std::numeric_limits<float>::infinity() : border;
     };
@@ -104,7 +104,7 @@ class GridSearcher final : public Searcher<D> {
   }
 
  private:
-  /// Cells are swept in order, slab by slab; in each slab up to where it gave up.
+  /// Whether the pair's cell was not swept: each slab sweeps its cells in order, up to where it gives up.
   bool is_missing(const Box<D>& a, const Box<D>& b) const {
     Box<D> corner = a;
     for (int axis = 0; axis < D; ++axis) corner.min[axis] = std::max(a.min[axis], b.min[axis]);
@@ -113,7 +113,7 @@ class GridSearcher final : public Searcher<D> {
     return cell >= swept_to_[layout_.slab_of(row)];
   }
 
-  /// The slab's share of the tests for all boxes, by the boxes inserted into it.
+  /// The slab's share of all permitted tests, in proportion to the boxes inserted into it.
   std::uint64_t max_tests_of(std::size_t slab, std::size_t boxes) const {
     const std::size_t length = layout_.row_length();
     const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
@@ -140,7 +140,7 @@ class GridSearcher final : public Searcher<D> {
            axis_name(axes[1]) + " and " + axis_name(axes[D - 1]) + ", each" + swept;
   }
 
-  /// As far as the sample reaches on the swept axis, and a little more: a sample misses the ends.
+  /// The sample's range on the swept axis and a little more, since a sample misses the ends.
   SweptRange swept_range() const {
     const core::AxisSample& swept = sample_[layout_.axes()[0]];
     const float more = (swept.high / 16 - swept.low / 16);
@@ -183,7 +183,7 @@ class GridSearcher final : public Searcher<D> {
       visit(layout_.slab_begin(slab) * length + cell % length, 1U << layout_.axes()[D - 1]);
   }
 
-  /// Sets begin_ to where each cell's boxes will begin, and next_ to where those of each range will.
+  /// Sets begin_ to where each cell's boxes will begin, and next_ to the same for each range.
   void count_boxes(std::span<const Box<D>> boxes) {
     const std::size_t cells = layout_.cells();
     next_.assign(parallel_.range_count() * cells, 0);

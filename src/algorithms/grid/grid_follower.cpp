@@ -1,10 +1,10 @@
-// GridFollower.
+// GridFollower: follows boxes in a hierarchical grid.
 //
-// Boxes are taken batch after batch: each is moved to its new cell, its entry made to cover where it was and
-// where it is, and then compared with what is near. So of two that move, the later one sees all of the
-// earlier one, and no pair is missed; of one that moves and one that rests, both boxes are known exactly, and
-// only a difference is written. Several threads share a batch: first they move its boxes, then they search
-// for them, so that no entry changes while it is read.
+// Movers are taken in batches: each is moved to its new cell, with entries that cover its old and its new
+// box, and then compared with the boxes near it. So of two movers, the later one sees both boxes of the
+// earlier one, and no pair is missed. A mover and a box at rest are both known exactly, so only changes are
+// written. Several threads share a batch: first they move its boxes, then they search, so that no entry
+// changes while it is read.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -23,15 +23,15 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Boxes that are moved before the kernel searches for them: few enough that what was written is still in the
-/// cache, and enough that several threads can share them and that their cache misses overlap. Not by the
-/// number of threads, which may not decide how many tests there are.
+/// Movers per batch: few enough that their entries are still in the cache when the kernel searches, and
+/// enough that several threads can share them and that their cache misses overlap. Independent of the number
+/// of threads, which must not change the number of tests.
 constexpr std::size_t batch = 8192;
 
-/// How many boxes of a search take as long as one that moves.
+/// A mover takes as long as this many boxes of a search.
 constexpr std::size_t boxes_per_mover = 2;
 
-/// Queries to average over before the cells are judged too slow.
+/// Queries to average over before the cells may be judged too slow.
 constexpr std::uint64_t telling_queries = 1024;
 
 constexpr BoxId id_of(BoxId id) { return id; }
@@ -40,7 +40,7 @@ BoxId id_of(const core::MovedBox<D>& box) {
   return box.id;
 }
 
-/// Prefetches what the boxes need that come some steps after number i: more steps than memory takes.
+/// Prefetches for boxes some steps after number i: enough steps to hide the memory's latency.
 template <int D, typename Boxes>
 void prefetch_ahead(const HierarchicalCells<D>& cells, const Boxes& boxes, std::size_t i) {
   constexpr std::size_t steps = 8;
@@ -48,8 +48,8 @@ void prefetch_ahead(const HierarchicalCells<D>& cells, const Boxes& boxes, std::
   if (i + steps < boxes.size()) cells.prefetch_entry(id_of(boxes[i + steps]));
 }
 
-/// Cost of an update: O(boxes that changed and what is near them), and now and then O(n), when the cells no
-/// longer suit the boxes, and their searches have cost that much more than usual.
+/// Cost of an update: O(changed boxes and boxes near them). Sometimes O(n): once the cells no longer suit the
+/// boxes and searches have cost that much more than usual, the cells are laid out anew.
 template <int D>
 class GridFollower final : public Follower<D> {
  public:
@@ -87,16 +87,16 @@ class GridFollower final : public Follower<D> {
   }
 
  private:
-  /// What each of several threads moves and finds.
+  /// A range of a batch: its movers and what a search for them found.
   struct Part {
     std::vector<core::MovedBox<D>> boxes;
     std::vector<Pair> begun;
     std::vector<Pair> ended;
     core::ChangeWork work;
-    std::uint64_t candidates = 0;  // pairs looked at in both frames
+    std::uint64_t candidates = 0;  // pairs tested in both frames
   };
 
-  /// Sets the boxes that moved before and do not now to where they are at rest.
+  /// Settles the boxes that moved in the last update and do not move in this one.
   void settle(const Change<D>& change) {
     parallel_.for_ranges(moved_.size(), [&](core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -109,8 +109,8 @@ class GridFollower final : public Follower<D> {
     moving_.clear();
   }
 
-  /// Lists these boxes in parts_ and moves them, each to its cell: several threads those that stay in theirs,
-  /// and then one the others.
+  /// Lists these boxes in parts_ and moves them: first several threads the boxes that stay in their cells,
+  /// then one thread the others.
   void move(const Change<D>& change, std::span<const BoxId> ids) {
     parallel_.for_numbered_ranges(ids.size(), [&](std::size_t number, core::Range range, std::size_t) {
       std::vector<core::MovedBox<D>>& boxes = parts_[number].boxes;
@@ -129,7 +129,7 @@ class GridFollower final : public Follower<D> {
     }
   }
 
-  /// Finds what the boxes in parts_ meet.
+  /// Finds the events of the boxes in parts_.
   void search(const Change<D>& change, PairSink& begun, PairSink& ended) {
     const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
       EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
@@ -160,7 +160,7 @@ class GridFollower final : public Follower<D> {
     }
   }
 
-  /// Whether the cells were laid out for far more or fewer boxes than there are, or are found to be slow.
+  /// Whether the cells were laid out for far more or fewer boxes than there are, or have proved slow.
   bool needs_rebuild(const Change<D>& change) const {
     std::size_t boxes = cells_.boxes();
     // Arrivals and departures are counted only where enough boxes changed to matter.
@@ -197,16 +197,16 @@ class GridFollower final : public Follower<D> {
     }
   }
 
-  /// Those of this update.
+  /// The parts of this update.
   std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
 
   HierarchicalCells<D> cells_;
-  std::vector<BoxId> moved_;  // whose entries cover more than where they are
+  std::vector<BoxId> moved_;  // boxes whose entries also cover where they were
   std::vector<BoxId> moving_;
   core::Parallel parallel_;
-  std::vector<Part> parts_;  // of those that move, by range
+  std::vector<Part> parts_;  // by range of a batch
   std::size_t built_for_ = 0;
-  double usual_blocks_ = 0;  // a query, since the cells were laid out
+  double usual_blocks_ = 0;  // per query, since the cells were laid out
   std::uint64_t first_queries_ = 0;
   double excess_ = 0;  // blocks looked at beyond what is usual
 };

@@ -1,4 +1,4 @@
-// Where a grid's cells lie.
+// Chooses a grid's axes and cells.
 #include "algorithms/grid/layout.hpp"
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Up to here every cell's number is a float exactly.
+/// Up to this many, a cell's number is exact as a float.
 constexpr double max_cells = 1 << GridLayout<2>::cell_bits;
 
-/// Fewer boxes than this a cell, and looking at cells costs more than they save.
+/// With fewer boxes per cell, looking at cells costs more than they save.
 constexpr double min_boxes_per_cell = 16;
 
-/// Likewise, the maximum number of cells that a box may be in on average.
+/// The maximum number of cells that a box may be in, on average, if the caller sets the size of cells.
 constexpr double max_references_per_box = 64;
 
 /// The cost, in tests of two boxes, of inserting a box into one more cell, beyond the tests there.
 constexpr double grid_reference_cost = 20;
 
-/// Slabs are for threads: enough to share out, each of some rows, since boxes that reach into another are
-/// inserted there again.
+/// Threads share out the slabs. There are enough of them, but each has several rows, since a box that reaches
+/// another slab is inserted there again.
 constexpr std::size_t max_slabs = 16;
 constexpr std::size_t min_rows_per_slab = 4;
 
@@ -65,7 +65,7 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
       const double size = size_on(on_axis);
       cells[axis] = range > 0 && size < range ? std::floor(std::min(range / size, max_for_boxes)) : 1;
     }
-    // Too many cells in all: the longer side gives way first.
+    // Halves the axis with the most cells while there are too many in all.
     for (;;) {
       double product = 1;
       for (const double cells_on_axis : cells) product *= cells_on_axis;
@@ -96,8 +96,8 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
     return;
   }
 
-  // A box is in one cell, and in one more with the chance extent / size on each axis; each time it is tested
-  // with those that begin in the cell while it lasts.
+  // On each axis a box is in one cell, and in another with probability extent / size. In each it is tested
+  // with the boxes of the cell that begin before it ends.
   const double swept = boxes * sample[axes_[0]].overlap / 2;
   const auto cost = [&](const std::array<double, gridded>& cells) {
     double references = 1;
@@ -134,7 +134,7 @@ void GridLayout<D>::set(const core::Sample<D>& sample, const std::array<double, 
     const core::AxisSample& on_axis = sample[axes_[axis + 1]];
     cells_[axis] = static_cast<std::uint32_t>(cells[axis]);
     cell_count_ *= cells_[axis];
-    // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+    // Neither zero nor infinite: the product with an infinite or a zero distance would be NaN.
     const double range = range_of(on_axis);
     const double per_unit = range > 0 ? cells_[axis] / range : 1;
     cell_axes_[axis] = {.low = on_axis.low,

@@ -1,4 +1,4 @@
-// Where a grid's cells lie: which axes have cells, how many, and in which cell a coordinate is.
+// GridLayout: which axes of a grid have cells, how many, and which cell a coordinate lies in.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace broadside::algorithm {
 
-/// Where cells are asked for by their size, there may be this many for each box.
+/// The maximum number of cells per box if the caller sets their size.
 inline constexpr double max_cells_per_box = 4;
 
-/// Cells over all axes but the one that is swept. On each of them they are equally wide, and those at the
-/// ends take in what lies beyond. The cells of the first of these axes make a row; in 3D there are rows one
-/// above the other, in 2D a cell is a row. Some rows together are a slab, which can be searched by itself.
+/// Cells over all axes but the swept one. On each axis they are equally wide, and the outermost ones take in
+/// what lies beyond. In 3D, the cells along the first gridded axis form a row, and rows lie one above the
+/// other; in 2D, a cell is a row. Consecutive rows form a slab, which can be searched by itself.
 template <int D>
 class GridLayout {
  public:
@@ -28,11 +28,11 @@ class GridLayout {
   /// The maximum number of bits in a cell's number.
   static constexpr int cell_bits = 20;
 
-  /// Chooses axes and cells for `count` boxes by what a search would cost; or cells `cell` wide, unless there
-  /// would be too many.
+  /// Chooses axes and cells for `count` boxes by the estimated cost of a search; or cells `cell` wide, unless
+  /// there would be too many.
   void choose(const core::Sample<D>& sample, std::size_t count, std::optional<double> cell);
 
-  /// The axes of the caller's boxes: first the swept one, then those with cells.
+  /// The axes of the caller's boxes: first the swept one, then the gridded ones.
   const std::array<int, D>& axes() const noexcept { return axes_; }
 
   std::size_t cells() const noexcept { return cell_count_; }
@@ -46,22 +46,21 @@ class GridLayout {
   /// The slab that a row is in.
   std::size_t slab_of(std::size_t row) const { return slab_of_[row]; }
 
-  /// The cell that a coordinate has on the axis `axes()[1 + axis]`.
+  /// The cell that a coordinate lies in on the axis `axes()[1 + axis]`.
   std::uint32_t cell_of(float coordinate, int axis) const { return cell_axes_[axis](coordinate); }
 
-  /// The row and, in it, the cell that hold a box's minimum.
+  /// The row that a box's minimum lies in, and its cell within the row.
   std::size_t row_of(const Box<D>& box) const { return cell_of(box.min[axes_[D - 1]], gridded - 1); }
   std::size_t column_of(const Box<D>& box) const { return D == 2 ? 0 : cell_of(box.min[axes_[1]], 0); }
 
-  /// The least coordinate that lies in the cell after `cell`; NaN after the last one, so that nothing reaches
-  /// it.
+  /// The least coordinate in the next row or column; NaN for the last one, so that no box reaches it.
   float row_border(std::size_t row) const { return borders_[gridded - 1][row]; }
   float column_border(std::size_t column) const { return borders_[0][column]; }
 
-  /// How wide the cells on an axis are: axis `axes()[1 + axis]`.
+  /// The width of the cells on the axis `axes()[1 + axis]`.
   float cell_size(int axis) const { return 1 / cell_axes_[axis].per_unit; }
 
-  /// The border of a row's slab.
+  /// The least coordinate in the slab after a row's slab; NaN for the last one.
   float slab_border(std::size_t row) const { return slab_border_[row]; }
 
  private:

@@ -1,4 +1,4 @@
-// How many levels there are, and how long their cells.
+// Chooses the number of levels and the size of their cells.
 #include "algorithms/grid/levels.hpp"
 
 #include "algorithms/grid/layout.hpp"
@@ -6,15 +6,15 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Boxes a cell: fewer make for more cells to look into, more for more boxes to compare.
+/// Boxes per cell: with fewer there are more cells to look into, with more there are more boxes to compare.
 constexpr double boxes_per_cell = 10;
 
-/// With more others in a typical box's cell, smaller cells pay.
+/// If a typical box's cell has more boxes than this, smaller cells pay.
 constexpr double max_load_factor = 40;
 
 constexpr std::size_t max_sampled = 1024;
 
-/// The least whole number whose power of D is at least `count`.
+/// The least whole number whose D-th power is at least `count`.
 template <int D>
 std::size_t whole_root(std::size_t count) {
   std::size_t root = 1;
@@ -54,7 +54,7 @@ void CellLevels<D>::choose(std::span<const Box<D>> like) {
   measure(like);
 }
 
-/// How many boxes there are on each level, and how long they are.
+/// Counts the boxes on each level, and measures the longest ones.
 template <int D>
 void CellLevels<D>::measure(std::span<const Box<D>> like) {
   for (Level& level : levels_) level.extent = {};
@@ -69,7 +69,7 @@ void CellLevels<D>::measure(std::span<const Box<D>> like) {
       if (extent > levels_[level].extent[axis]) levels_[level].extent[axis] = extent;
     }
   }
-  // Of two numbers the rounded difference may be less than the true one, but the next number is not.
+  // A rounded difference may be less than the true one, but the next float is not.
   for (Level& level : levels_) {
     for (float& extent : level.extent)
       extent = std::nextafter(extent, std::numeric_limits<float>::infinity());
@@ -89,8 +89,8 @@ std::uint32_t CellLevels<D>::lay_out() {
   return cells;
 }
 
-/// Sets the cells of a level: as many as suit its boxes, but none shorter than they are; smaller ones from
-/// call to call, where shrink_crowded_cells() has said so.
+/// Sets the cells of a level: as many as suit its boxes, but none shorter than the longest box. The cells get
+/// smaller from call to call if shrink_crowded_cells() asked for it.
 template <int D>
 void CellLevels<D>::lay_out_level(std::size_t index) {
   Level& level = levels_[index];

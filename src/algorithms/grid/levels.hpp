@@ -1,5 +1,5 @@
-// CellLevels: the levels of a hierarchical grid, cells of one length each, for boxes of about one size
-// (C. Ericson, Real-Time Collision Detection, 7.2).
+// CellLevels: the levels of a hierarchical grid. The cells of a level have one size, for boxes of about one
+// size (C. Ericson, Real-Time Collision Detection, 7.2).
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace broadside::algorithm {
 template <int D>
 class CellLevels {
  public:
-  /// Cells of the first level are `cell` wide, those of each further one four times as wide; or chosen by the
-  /// boxes.
+  /// Cells of the first level are `cell` wide, those of each further level four times as wide. By default,
+  /// the boxes decide.
   explicit CellLevels(std::optional<double> cell) : cell_(cell) {}
 
   using Level = kernels::CellLevel<D>;
@@ -32,15 +32,15 @@ class CellLevels {
   /// Chooses levels that suit `like`. O(n).
   void choose(std::span<const Box<D>> like);
 
-  /// Lays out the cells of the levels chosen, smaller ones where shrink_crowded_cells() has said so. Returns
-  /// how many there are on all levels.
+  /// Lays out the cells of the chosen levels, smaller ones if shrink_crowded_cells() asked for them. Returns
+  /// the number of cells on all levels.
   std::uint32_t lay_out();
 
-  /// Makes a level's cells smaller from the next layout on if a typical box shares its cell with too many
-  /// others, by `counts` of boxes in each cell. Returns whether a level's was. O(cells).
+  /// Makes the cells of a level smaller, from the next lay_out() on, if a typical box shares its cell with
+  /// too many others. `counts` are the boxes per cell. Returns whether any level changed. O(cells).
   bool shrink_crowded_cells(std::span<const std::uint32_t> counts);
 
-  /// Says that there are no boxes on any level.
+  /// Sets the number of boxes on each level to 0.
   void clear() {
     for (Level& level : levels_) level.boxes = 0;
   }
@@ -63,7 +63,7 @@ class CellLevels {
     return is_widened && index + 1 < count_;
   }
 
-  /// Says that the level has a box as long as this one. The last one is searched whole, whatever is on it.
+  /// Notes that the level has a box of this size. The last level needs no note: it is always searched whole.
   void widen(std::size_t index, const Box<D>& box) {
     if (!is_widened(index, box)) return;
     Level& level = levels_[index];
@@ -85,8 +85,8 @@ class CellLevels {
   std::size_t bytes() const noexcept { return sampled_.capacity() * sizeof(Box<D>); }
 
  private:
-  /// How much longer than a typical box those of the first level may be, and those of each further level
-  /// than those of the one before.
+  /// Boxes of the first level are up to `first_border` times as long as a typical box, and boxes of each
+  /// further level up to `level_ratio` times as long as those of the level before.
   static constexpr float first_border = 2;
   static constexpr float level_ratio = 4;
 

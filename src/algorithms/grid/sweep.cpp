@@ -1,8 +1,8 @@
 // Sweeps the cells of a grid, slab by slab.
 //
-// A cell's boxes are brought into order by a counting sort by buckets of the swept axis: one pass to count,
-// one to scatter. Within a bucket they stay as they came, which the kernels allow for (Run::slack). Where
-// buckets would be too uneven for that, boxes are sorted.
+// A cell's boxes are ordered by a counting sort into buckets of the swept axis: one pass counts, one
+// scatters. Within a bucket they keep the order in which they came, which the kernels allow for (Run::slack).
+// If the buckets are too uneven, the boxes are sorted instead.
 #include "algorithms/grid/sweep.hpp"
 
 #include <algorithm>
@@ -22,13 +22,13 @@ namespace {
 constexpr std::size_t min_buckets = 16;
 constexpr std::size_t max_buckets = 1 << 13;
 
-/// Boxes beyond the range are in the buckets at the ends. Up to this many there are sorted one by one.
+/// Boxes beyond the range are in the end buckets. Up to this many there are sorted by insertion.
 constexpr std::size_t max_beyond = 32;
 
-/// The mean number of other boxes in a box's bucket from which it pays to sort them all.
+/// If a box shares its bucket with more boxes than this on average, it pays to sort all boxes.
 constexpr std::size_t max_in_bucket = 48;
 
-/// In a cell of at least this many boxes, counting those that reach the next cell costs less than room for
+/// In a cell of more than this many boxes, counting those that reach the next cell costs less than room for
 /// all.
 constexpr std::size_t many_boxes = 1024;
 
@@ -78,7 +78,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
           cells.boxes.subspan(cells.begin[swept_to_], cells.begin[swept_to_ + 1] - cells.begin[swept_to_]);
       lists[1] = columns_[column].list();
       if constexpr (D == 3) lists[2] = along_.list();
-      // Pairs are counted once tests are many.
+      // Pairs are counted only once there are many tests.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
       const bool is_counting = work > max_tests;
       if (is_counting && work > max_tests + max_tests / 4 + tests_per_pair * counted.count())
@@ -104,7 +104,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   next_along_.size = 0;
   if (count == 0) return true;
   if (checkpoint_ != nullptr) checkpoint_->count(count);  // with many cells, a box has many references
-  // Room for one more than there may be: where none goes on, one is written all the same.
+  // One more than may reach the border, since a box is written before it is known to go on.
   next_up_.reserve(max_reaching(lists, count, axes_[D - 1], row_border) + 1);
   if constexpr (D == 3) next_along_.reserve(max_reaching(lists, count, axes_[1], column_border) + 1);
   bucket_of_.resize(std::max(bucket_of_.size(), count));
@@ -112,7 +112,7 @@ bool GridSweep<D>::sweep_cell(const Lists& lists, float column_border, float row
   starts_.assign(buckets.count(), 0);
   std::uint16_t* bucket_of = bucket_of_.data();
   for (std::size_t i = 0; i < lists.size(); ++i) {
-    // A box goes along the row where it is met first, and up from everywhere.
+    // A box from the row before is not carried along this row: each cell of that row passes it up.
     if (D == 3 && i != 1)
       count_and_pass_on<true>(lists[i], buckets, column_border, row_border, bucket_of);
     else
@@ -143,7 +143,7 @@ template <int D>
 typename GridSweep<D>::Buckets GridSweep<D>::cut(const SweptRange& range, std::size_t count) {
   const auto count_in_range = static_cast<float>(std::bit_ceil(std::clamp(count, min_buckets, max_buckets)));
   const float length = range.high - range.low;
-  // Neither zero nor infinite, which an infinite or a zero distance would turn into a NaN.
+  // Neither zero nor infinite: the product with an infinite or a zero distance would be NaN.
   const float per_unit = std::clamp(length > 0 ? count_in_range / length : 1,
                                     std::numeric_limits<float>::min(), std::numeric_limits<float>::max());
   // A bucket's width and what rounding may add to it.
@@ -168,7 +168,7 @@ void GridSweep<D>::count_and_pass_on(std::span<const CellEntry<D>> list, const B
     const auto bucket = static_cast<std::uint16_t>(buckets.of(entry.box.min[swept]));
     *bucket_of++ = bucket;
     ++counts[bucket];
-    // Written in any case and kept if it goes on: a branch could not be predicted.
+    // Always written, and kept only if it goes on: a branch would be unpredictable.
     *up = entry;
     up->dedup_mask |= 1U << row_axis;
     up += entry.box.max[row_axis] >= row_border ? 1 : 0;
@@ -192,7 +192,7 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
     run_.sort(count - after, count);
     return buckets.slack;
   }
-  // The range between the cell's own ends may do better than that of all boxes.
+  // Buckets over the cell's own range may be more even than over the range of all boxes.
   constexpr float infinity = std::numeric_limits<float>::infinity();
   SweptRange own{infinity, -infinity};
   for (const auto& list : lists) {
@@ -211,7 +211,7 @@ float GridSweep<D>::order(const Lists& lists, std::size_t count, const Buckets& 
         ++starts_[*bucket_of++];
       }
     }
-    // Where all begin at one place, there is nothing to be gained by sorting them.
+    // If all boxes begin at one coordinate, sorting gains nothing.
     if (own.low == own.high || are_even(count)) {
       scatter(lists);
       return narrower.slack;

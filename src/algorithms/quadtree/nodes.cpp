@@ -1,5 +1,5 @@
-// The quadtree that stays: built, split and merged. Section V of the paper; nodes are split as the searcher
-// splits them, at medians, so clusters and outliers do not deepen the tree.
+// Builds, splits and merges the nodes. Section V of the paper; as in the searcher, nodes are split at
+// medians, so clusters and outliers do not deepen the tree.
 #include "algorithms/quadtree/nodes.hpp"
 
 #include <limits>
@@ -42,7 +42,7 @@ std::uint32_t QuadtreeNodes<D>::insert(std::uint32_t node, const Box<D>& box, Bo
   return put_in_chain(node, box, id);
 }
 
-/// Puts a box into the first slot of a node's chain that is free.
+/// Puts a box into the first free slot of a node's chain.
 template <int D>
 std::uint32_t QuadtreeNodes<D>::put_in_chain(std::uint32_t node, const Box<D>& box, BoxId id) {
   std::uint32_t& first = nodes_[node].block;
@@ -95,7 +95,7 @@ void QuadtreeNodes<D>::tidy(std::span<const Box<D>> boxes) {
   shrunk_.clear();
 }
 
-/// Inserts the boxes of ids_ from `begin` on into a node that is an empty leaf, and removes them from ids_.
+/// Moves the boxes of ids_ from `begin` on into an empty leaf, and splits it if they are too many.
 template <int D>
 void QuadtreeNodes<D>::fill(std::uint32_t node, std::size_t begin, std::span<const Box<D>> boxes) {
   const std::size_t count = ids_.size() - begin;
@@ -113,7 +113,7 @@ void QuadtreeNodes<D>::fill(std::uint32_t node, std::size_t begin, std::span<con
   nodes_[node].whole = split.whole;
   const std::uint32_t children = add_children(node);
   nodes_[node].children = children;
-  // The children's boxes stand above the node's, those of the first child uppermost, which is filled first.
+  // The children's boxes go on top of the node's. The first child's come last, since it is filled first.
   std::array<std::size_t, child_count> next;
   std::size_t top = ids_.size();
   for (std::uint32_t child = child_count; child-- > 0; top += sizes[child]) next[child] = top;
@@ -130,7 +130,7 @@ void QuadtreeNodes<D>::fill(std::uint32_t node, std::size_t begin, std::span<con
   ids_.resize(begin);
 }
 
-/// Sets where a node is to be split. False if no axis would separate its boxes.
+/// Chooses where to split a node. False if no axis would separate its boxes, or at the maximum depth.
 template <int D>
 bool QuadtreeNodes<D>::choose_split(QuadtreeNode<D>& node, std::span<const std::uint32_t> ids,
                                     std::span<const Box<D>> boxes) const {
@@ -141,7 +141,7 @@ bool QuadtreeNodes<D>::choose_split(QuadtreeNode<D>& node, std::span<const std::
     const auto sample = [&](std::size_t i) -> const Box<D>& {
       return boxes[ids[(2 * i + 1) * ids.size() / (2 * samples)]];
     };
-    // A split must lie in the region, else the children's would not.
+    // A split must lie in the node's region, or the children's regions would not.
     for (std::size_t i = 0; i < samples; ++i) minima[i] = std::max(sample(i).min[axis], node.low[axis]);
     std::ranges::sort(minima);
     const float at = minima[samples / 2];
@@ -162,8 +162,8 @@ bool QuadtreeNodes<D>::choose_split(QuadtreeNode<D>& node, std::span<const std::
   return splits && node.depth < max_depth;
 }
 
-/// Sets masks_ to the children that each box of ids_ from `begin` on touches, 0 for one that stays, and how
-/// many boxes each child gets. False if splitting would not separate the boxes.
+/// Sets masks_ to the children that each box of ids_ from `begin` on touches (0 if it stays), and `sizes` to
+/// the boxes per child. False if splitting would not separate the boxes or would make too many references.
 template <int D>
 bool QuadtreeNodes<D>::partition(const QuadtreeNode<D>& node, std::size_t begin,
                                  std::span<const Box<D>> boxes, Sizes& sizes) {
@@ -185,7 +185,7 @@ bool QuadtreeNodes<D>::partition(const QuadtreeNode<D>& node, std::size_t begin,
     largest = std::max(largest, size);
     sum += size;
   }
-  // Boxes still to be inserted elsewhere count too, by their references so far.
+  // homes_ also counts the boxes still to be inserted elsewhere; references_ counts only references so far.
   return kept <= count / 2 && largest <= count / 8 * 7 && sum <= 3 * count &&
          references_ + sum <= max_references * homes_.size();
 }
@@ -232,7 +232,7 @@ std::uint32_t QuadtreeNodes<D>::add_children(std::uint32_t parent) {
   return first;
 }
 
-/// Moves a node's boxes to ids_. Those at home there have no home then.
+/// Moves a node's boxes to ids_. Boxes at home in the node have no home afterwards.
 template <int D>
 void QuadtreeNodes<D>::drain(std::uint32_t node) {
   QuadtreeNode<D>& from = nodes_[node];
@@ -250,8 +250,7 @@ void QuadtreeNodes<D>::drain(std::uint32_t node) {
   }
 }
 
-/// Makes a node a leaf if what is in its children, all of them leaves, and in itself are few boxes. Returns
-/// whether it is one now.
+/// Makes a node a leaf if its children are leaves and it and they hold few boxes. Returns whether it did.
 template <int D>
 bool QuadtreeNodes<D>::merge(std::uint32_t node, std::span<const Box<D>> boxes) {
   const std::uint32_t children = nodes_[node].children;

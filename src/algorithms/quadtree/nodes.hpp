@@ -1,5 +1,4 @@
-// The quadtree that stays from frame to frame: its nodes, which boxes are in them, and how they split and
-// merge.
+// QuadtreeNodes: the quadtree that stays from frame to frame. Nodes hold boxes, split and merge.
 #pragma once
 
 #include <algorithm>
@@ -20,18 +19,18 @@ namespace broadside::algorithm {
 /// Sentinel: "no child" or "no parent".
 inline constexpr std::uint32_t no_node = 0xffffffffU;
 
-/// A region and how it is split. The root's is all of space: no world is declared.
+/// A region and how it is split. The root's region is all of space, so no world is declared.
 template <int D>
 struct QuadtreeNode {
-  std::array<float, D> low;    ///< boxes that end before are not in the node,
-  std::array<float, D> high;   ///< nor are those that begin here or later
+  std::array<float, D> low;    ///< no box in the node ends before this
+  std::array<float, D> high;   ///< no box in the node begins here or later
   std::array<float, D> split;  ///< NaN on an axis that is not split
-  std::array<float, D> large;  ///< a box that touches all children and is as large on every axis stays here
+  std::array<float, D> large;  ///< a box this large on every axis stays here if it touches all children
   std::uint32_t parent = no_node;
   std::uint32_t children = no_node;  ///< the first of 2^D; no_node for a leaf
   std::uint32_t block = kernels::no_slot;
   std::uint32_t count = 0;     ///< boxes in the node itself
-  std::uint32_t split_at = 0;  ///< a leaf that could not be split is tried again with more boxes than this
+  std::uint32_t split_at = 0;  ///< an unsplittable leaf is tried again above this count
   std::uint32_t depth = 0;
 
   bool is_leaf() const { return children == no_node; }
@@ -48,7 +47,7 @@ struct QuadtreeNode {
     return mask;
   }
 
-  /// Whether a box that touches the children of `mask` stays in the node: it would be in them all.
+  /// Whether a box that touches the children in `mask` stays in the node: it is large and touches them all.
   bool keeps(const Box<D>& box, std::uint32_t mask) const {
     bool all = true;
     for (int axis = 0; axis < D; ++axis) {
@@ -58,25 +57,25 @@ struct QuadtreeNode {
     return all && mask == whole;
   }
 
-  /// Whether a box touches nothing but the node's region.
+  /// Whether a box lies within the node's region.
   bool contains(const Box<D>& box) const {
     bool inside = true;
     for (int axis = 0; axis < D; ++axis) inside &= box.min[axis] >= low[axis] && box.max[axis] < high[axis];
     return inside;
   }
 
-  std::uint32_t whole = 0;  ///< the children on either side of the axes that are split
+  std::uint32_t whole = 0;  ///< the children that may hold boxes: on an unsplit axis, the lower ones
 };
 
-/// The first node that a box is in, in the order of a descent: from here it is looked for.
+/// The first node that holds a box, in the order of a descent. A search for the box starts here.
 struct QuadtreeHome {
   std::uint32_t node = no_node;
   std::uint32_t slot : 31 = 0;
   std::uint32_t several : 1 = 0;  ///< whether it may be in other nodes too, or is not in a leaf
 };
 
-/// The tree. A box is inserted into every leaf that it touches, as in the paper, except one so large that it
-/// would be in many: see QuadtreeNode::keeps.
+/// The tree. A box is inserted into every leaf that it touches, as in the paper, unless it is so large that
+/// it would be in many: see QuadtreeNode::keeps().
 template <int D>
 class QuadtreeNodes {
  public:
@@ -85,7 +84,7 @@ class QuadtreeNodes {
 
   explicit QuadtreeNodes(std::uint32_t capacity) : capacity_(capacity) {}
 
-  /// Builds the tree anew of all present boxes.
+  /// Builds the tree anew from all present boxes.
   void build(std::span<const Box<D>> boxes);
 
   /// Makes room for ids below `boxes`.
@@ -94,23 +93,23 @@ class QuadtreeNodes {
   const QuadtreeNode<D>& operator[](std::uint32_t node) const { return nodes_[node]; }
   QuadtreeHome& home(std::uint32_t id) { return homes_[id]; }
 
-  /// A box's slot in a node.
+  /// A box's slot in a node, or no_slot.
   std::uint32_t find(std::uint32_t node, BoxId id) const;
 
   std::uint32_t insert(std::uint32_t node, const Box<D>& box, BoxId id);
   void erase(std::uint32_t node, std::uint32_t slot);
   kernels::BlockPool<D>& pool() { return pool_; }
 
-  /// Splits nodes that have become too full and merges those that have emptied, since the last call.
+  /// Splits leaves that have become too full since the last call, and merges nodes that have emptied.
   void tidy(std::span<const Box<D>> boxes);
 
-  /// The number of boxes that are not in leaves; while it is 0, no search has to look for them.
+  /// The number of boxes kept in inner nodes. While it is 0, searches can skip these nodes.
   std::size_t kept() const noexcept { return kept_; }
   std::size_t references() const noexcept { return references_; }
   std::size_t node_count() const noexcept { return nodes_.size() - child_count * free_.size(); }
 
-  /// Whether the tree has become too deep, or its boxes are in too many nodes. Splitting keeps that limit,
-  /// but boxes that grow may exceed it.
+  /// Whether the tree has become too deep, or its boxes are in too many nodes. Splitting respects
+  /// max_references, but boxes that grow may exceed it.
   bool needs_rebuild() const noexcept { return is_too_deep_ || references_ > max_references * homes_.size(); }
 
   std::size_t bytes() const noexcept {
@@ -138,7 +137,7 @@ class QuadtreeNodes {
   void split(std::uint32_t node, std::span<const Box<D>> boxes) {
     ids_.clear();
     drain(node);
-    std::ranges::sort(ids_);  // so that what a node has seen before does not show
+    std::ranges::sort(ids_);  // so that the result does not depend on the node's history
     fill(node, 0, boxes);
   }
 
@@ -146,7 +145,7 @@ class QuadtreeNodes {
 
   std::uint32_t capacity_;
   std::vector<QuadtreeNode<D>> nodes_;
-  std::vector<std::uint32_t> free_;  // first children
+  std::vector<std::uint32_t> free_;  // the first child of each free group of siblings
   kernels::BlockPool<D> pool_;  // a node's boxes: a chain, in which a box keeps its slot until it is erased
   std::vector<QuadtreeHome> homes_;
   std::size_t references_ = 0;
@@ -155,8 +154,8 @@ class QuadtreeNodes {
 
   std::vector<std::uint32_t> grown_;   // leaves that may be too full
   std::vector<std::uint32_t> shrunk_;  // inner nodes whose children may have emptied
-  std::vector<std::uint32_t> ids_;     // a stack of boxes still to be inserted, node above node
-  std::vector<std::uint8_t> masks_;    // of the uppermost node's: the children that each one touches, or 0
+  std::vector<std::uint32_t> ids_;     // a stack of boxes still to be inserted, the current node's on top
+  std::vector<std::uint8_t> masks_;    // for the boxes on top: the children that each touches, or 0
 };
 
 }  // namespace broadside::algorithm

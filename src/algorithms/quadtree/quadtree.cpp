@@ -1,15 +1,15 @@
 // Quadtree, in 3D an octree: nodes split until they hold few boxes, which are then swept.
 //
 // Section V of the paper, without its limits. A node is split at the median of a sample of its boxes' minima,
-// not at a world's centre, so no world is declared and clusters do not deepen the tree. An axis that would
-// not separate is not split, and a node that would not shrink is a leaf, so coincident boxes end the
-// recursion. A box that covers the middle of its node stays there and is swept against the node's other
-// boxes; any other goes into each child that it touches. No pair is found twice: it is reported in the one
-// node that holds the greater of the two minima on every axis.
+// not at the centre of a world, so no world is declared and clusters do not deepen the tree. An axis that
+// would not separate the boxes is not split, and a node whose children would be nearly as large is a leaf, so
+// the recursion ends at coincident boxes. A box that covers the middle of its node stays there and is swept
+// against the node's other boxes; any other box goes into each child that it touches. Each pair is reported
+// once: in the node that holds the greater of the two minima on every axis.
 //
-// The tree is never stored: a node is a stretch of one stack of references, each stretch in the order of the
-// sweep. Where several threads search, the uppermost nodes are split by one of them, and the stretches that
-// come of it are copied, in the order in which one thread would search them.
+// The tree is never stored: a node is a range on a stack of references, in the order of the sweep. With
+// several threads, one of them splits the uppermost nodes and copies the resulting ranges, in the order in
+// which a single thread would search them.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -35,13 +35,13 @@
 namespace broadside::algorithm {
 namespace {
 
-/// One thread splits nodes until each thread has this many.
+/// One thread splits nodes until there are about this many parts per worker.
 constexpr std::size_t parts_per_worker = 3;
 
-/// With a checkpoint a part has no more boxes than this, and little is split by one thread.
+/// With a checkpoint, a part has at most this many boxes, enough that a single thread splits little.
 constexpr std::size_t max_between_checkpoints = 16'384;
 
-/// Boxes in a leaf: up to about this many, a sweep costs what a further split would.
+/// Boxes per leaf: up to about this many, a sweep costs no more than a further split.
 template <int D>
 constexpr std::size_t default_capacity = D == 2 ? 128 : 256;
 
@@ -110,7 +110,7 @@ class QuadtreeSearcher final : public Searcher<D> {
  private:
   using Split = QuadtreeSplit<D>;
 
-  /// The memory of one thread.
+  /// The memory of one worker.
   struct Worker {
     QuadtreeStack<D> stack;
     kernels::RunBuffer<D> run;
@@ -119,20 +119,20 @@ class QuadtreeSearcher final : public Searcher<D> {
     Checkpoint* checkpoint;
   };
 
-  /// Something to be searched: a node with all below it or, if some are kept, only the boxes kept at a node,
-  /// which come first, and its others.
+  /// A unit of work. If `kept_count` is 0, a node and everything below it. Otherwise the boxes kept at a
+  /// node, which come first, against each other and against the node's other boxes.
   struct Part {
-    std::size_t end;  // among the references of all parts
+    std::size_t end;  // in part_references_
     std::size_t kept_count;
   };
 
-  /// A node's region, by the caller's axes; axis a of the sorted boxes is axes[a] of these.
+  /// A node's region in the caller's axes. Axis a of the sorted boxes is the caller's axis axes[a].
   struct Region {
     std::array<int, D> axes;
     Box<D> box;
   };
 
-  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  /// Appends the regions of the node and its descendants to the levels. Returns how many of them are leaves.
   std::size_t lay_out(Worker& worker, std::size_t begin, std::size_t end, const Region& region,
                       std::size_t depth, decltype(Outline<D>::levels)& levels) const {
     if (levels.size() == depth) levels.emplace_back();
@@ -157,7 +157,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     return leaves;
   }
 
-  /// Makes parts of the node and those below it, in the order in which search_node() would meet them.
+  /// Makes parts of the node and its descendants, in the order in which search_node() would visit them.
   void expand(Worker& worker, std::size_t begin, std::size_t end, std::size_t largest) {
     const std::size_t count = end - begin;
     if (count < 2) return;
@@ -182,7 +182,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     worker.stack.references.resize(top);
   }
 
-  /// Appends those of a node's references whose places in the node are `wanted` to the parts'.
+  /// Appends the node's references whose places in the node are `wanted` to part_references_.
   template <typename Wanted>
   void copy(const Worker& worker, std::size_t begin, std::size_t end, Wanted wanted) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -204,8 +204,9 @@ class QuadtreeSearcher final : public Searcher<D> {
     sweep_kept(worker, 0, references.size(), pairs);
   }
 
-  /// Reports the pairs of the node whose references are [begin, end) of the stack. Leaves the stack as it
-  /// was. The depth is at most logarithmic in the number of boxes: a child has at most 7/8 of its parent's.
+  /// Reports the pairs of the node whose references are [begin, end) on the stack. Leaves the stack as it
+  /// was. The depth is at most logarithmic in the number of boxes, since a child has at most 7/8 as many as
+  /// its parent.
   void search_node(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
     const std::size_t count = end - begin;
     if (count < 2) return;
@@ -227,7 +228,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     worker.stack.references.resize(top);
   }
 
-  /// Sweeps the boxes kept at a node among themselves and against the node's others.
+  /// Sweeps the boxes kept at a node against each other and against the node's other boxes.
   void sweep_kept(Worker& worker, std::size_t begin, std::size_t end, PairSink& pairs) const {
     gather(worker, begin, end, worker.kept_run,
            [&worker](std::size_t i) { return worker.stack.children[i] == 0; });
@@ -239,7 +240,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     worker.statistics.tests += kernels::sweep(kept, worker.run.view(doubles_, worker.checkpoint), pairs);
   }
 
-  /// Fills `run` with those of the node's references whose places in the node are `wanted`.
+  /// Fills `run` with the node's boxes whose places in the node are `wanted`.
   template <typename Wanted>
   void gather(const Worker& worker, std::size_t begin, std::size_t end, kernels::RunBuffer<D>& run,
               Wanted wanted) const {
@@ -261,7 +262,7 @@ class QuadtreeSearcher final : public Searcher<D> {
   std::vector<Worker> workers_;
   std::vector<Part> parts_;
   std::vector<core::SortedReference> part_references_;
-  const Box<D, double>* doubles_ = nullptr;  // those of the search that runs
+  const Box<D, double>* doubles_ = nullptr;  // of the current search
 };
 
 template <int D>

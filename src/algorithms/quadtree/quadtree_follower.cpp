@@ -1,12 +1,12 @@
 // QuadtreeFollower: the quadtree, in 3D an octree, stays from frame to frame.
 //
-// Sections VI-A and VI-D of the paper, in the fastest of their ways: a box that moves is looked for relative
-// to where it was, from its node up through parents until a node contains its old and its new place, and from
-// there down. While it stays in one leaf, no entry moves. Whatever it may overlap is in the nodes that it was
-// and is in: there it is compared with everything.
+// Sections VI-A and VI-D of the paper, in their fastest variant. A mover's descent starts near where it was:
+// up through the parents to the first node that contains its old and its new box, and down from there. While
+// it stays in one leaf, no entry moves. Everything that it may overlap is in the nodes that it was and is in,
+// so it is compared with all boxes there.
 //
-// A frame has three parts. Movers are inserted wherever they go, as bounds of the old and the new box; then
-// all of them are compared; then they leave where they were. So two movers find each other.
+// An update has three steps: movers are inserted wherever they go, as the bounds of the old and the new box;
+// all are compared; then they are removed from where they were. So two movers find each other.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -21,7 +21,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// Smaller than the searcher's, which sweeps a leaf once for all of its boxes.
+/// Smaller than the searcher's capacity: the searcher sweeps a leaf only once for all of its boxes.
 constexpr std::uint32_t default_following_capacity = 32;
 
 template <int D>
@@ -47,8 +47,8 @@ class QuadtreeFollower final : public Follower<D> {
     checkpoint_ = &checkpoint;
     EventSinks<D> events(change, begun, ended, &checkpoint);
     std::uint64_t tests = 0;
-    // An empty tree is filled in rounds that double it, so that no leaf is overfull for long: all movers at
-    // once would be compared with each other.
+    // An empty tree is filled in rounds that double it, so that no leaf is overfull for long. In a single
+    // round, all movers would be compared with each other.
     constexpr std::uint32_t first_few = 256;
     const auto count = static_cast<std::uint32_t>(movers_.size());
     std::uint32_t end = tree_.references() == 0 ? std::min(first_few, count) : count;
@@ -67,7 +67,7 @@ class QuadtreeFollower final : public Follower<D> {
  private:
   static constexpr std::uint32_t bit(std::uint32_t mask, std::uint32_t child) { return mask >> child & 1U; }
 
-  /// Which boxes of a mover are, or could touch something, in a node and below.
+  /// Whether a mover's old box, its new box, or a box that it touches may be in a node or below it.
   struct Parts {
     std::uint32_t before;
     std::uint32_t now;
@@ -87,7 +87,7 @@ class QuadtreeFollower final : public Follower<D> {
     std::uint32_t stays;
   };
 
-  /// Takes some of the movers, by their numbers. Returns how many boxes they were compared with.
+  /// Processes the movers numbered [begin, end). Returns the number of tests.
   std::uint64_t take(std::uint32_t begin, std::uint32_t end, EventSinks<D>& events, const Change<D>& change) {
     entries_.clear();
     looks_.clear();
@@ -109,7 +109,7 @@ class QuadtreeFollower final : public Follower<D> {
     return work.tests;
   }
 
-  /// Inserts a mover wherever it is not yet, and notes which nodes to look at.
+  /// Inserts a mover into the nodes that it enters, and notes which nodes to search.
   void insert(std::uint32_t number) {
     const core::MovedBox<D>& mover = movers_[number];
     home_ = tree_.home(index(mover.id));
@@ -136,7 +136,7 @@ class QuadtreeFollower final : public Follower<D> {
       tree_.home(index(mover.id)).several = 1;
   }
 
-  /// Descends from a node to all that the mover was in, will be in or may find something near it in.
+  /// Descends from a node to all nodes that held the mover, will hold it, or may hold boxes that it touches.
   void visit(std::uint32_t number, std::uint32_t at, const Parts& parts) {
     const QuadtreeNode<D>& node = tree_[at];
     const core::MovedBox<D>& mover = movers_[number];
@@ -164,7 +164,7 @@ class QuadtreeFollower final : public Follower<D> {
   /// Makes sure that a mover is in a node.
   void place(std::uint32_t number, std::uint32_t node, const Parts& parts) {
     const core::MovedBox<D>& mover = movers_[number];
-    checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // the blocks that a walk passes
+    checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // the blocks in the node's chain
     std::uint32_t slot;
     if (parts.before == 0)
       slot = tree_.insert(node, mover.bounds, mover.id);
@@ -183,7 +183,7 @@ class QuadtreeFollower final : public Follower<D> {
     entries_.push_back({node, slot, number, stays});
   }
 
-  /// Makes the tasks, after every mover was inserted: else one would not find another inserted after it.
+  /// Makes the tasks, once every mover is inserted: otherwise a mover would miss another inserted after it.
   void look_all() {
     tasks_.clear();
     const auto look = [this](std::uint32_t mover, std::uint32_t node) {
@@ -191,7 +191,7 @@ class QuadtreeFollower final : public Follower<D> {
     };
     for (const Look& at : looks_) look(at.mover, at.node);
     if (tree_.kept() == 0) return;
-    // Boxes that stay in the nodes above may touch anything below.
+    // Boxes kept in the nodes above may touch anything below.
     for (const Look& below : above_) {
       for (std::uint32_t at = tree_[below.node].parent; at != no_node; at = tree_[at].parent)
         look(below.mover, at);
@@ -203,11 +203,11 @@ class QuadtreeFollower final : public Follower<D> {
   std::vector<core::MovedBox<D>> movers_;
   std::vector<Entry> entries_;
   std::vector<Look> looks_;
-  std::vector<Look> above_;  // for each mover the uppermost node it has looked at
+  std::vector<Look> above_;  // for each mover, the uppermost node to search
   std::vector<kernels::BlockTask> tasks_;
   Checkpoint* checkpoint_ = nullptr;  // of this update
 
-  // The mover that is being inserted: where it was at home, and in how many nodes it stays.
+  // Of the mover being inserted: its former home, and the number of nodes in which it stays.
   QuadtreeHome home_;
   std::uint32_t places_ = 0;
 };

@@ -1,5 +1,5 @@
-// How a node of the quadtree that is never stored is split: where, which boxes go into which children, and
-// the stack on which these stand.
+// QuadtreeStack: the nodes of the quadtree that is never stored, as ranges of references on a stack, and how
+// they are split.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace broadside::algorithm {
 
-/// Where a node is split; axes not in the list are not.
+/// Where a node is split, on the first `axis_count` of `axes`.
 template <int D>
 struct QuadtreeSplit {
   static constexpr std::uint32_t max_children = 1U << D;
@@ -39,19 +39,18 @@ struct QuadtreeSplit {
   }
 };
 
-/// A stack of references, of which a node's are a stretch, and that of its boxes' children.
+/// A stack of references, a range for each node, and the children of each reference of the node split last.
 template <int D>
 class QuadtreeStack {
  public:
   using Split = QuadtreeSplit<D>;
   using Boxes = std::span<const core::SortedBox<D>>;
 
-  // Inline here and below: since several searches and the outline call them, g++ 12 would not do it by
-  // itself.
+  // always_inline here and below: g++ 12 would not inline these by itself, since several functions call them.
 
-  /// Splits the node whose references are [begin, end), which has boxes: chooses on which axes and where, and
-  /// says in children() what goes where. False if no axis would separate the boxes, or if a child would be
-  /// nearly as large as the node.
+  /// Splits the node whose references are [begin, end), at least one: chooses the axes and where to cut them,
+  /// and sets `children`. False if no axis would separate the boxes, or if a child would be nearly as large
+  /// as the node.
   [[gnu::always_inline]] bool split(const Boxes& boxes, std::size_t begin, std::size_t end, Split& split) {
     return choose(boxes, begin, end, split) && partition(boxes, begin, end, split);
   }
@@ -82,8 +81,8 @@ class QuadtreeStack {
   }
 
   core::LargeArray<core::SortedReference> references;
-  std::vector<std::uint8_t> children;  ///< by reference of the node split last: bit c if it goes into child c
-  std::size_t kept_count = 0;          ///< how many of them stay at the node: those without children
+  std::vector<std::uint8_t> children;  ///< by reference of the node split last: bit c if it goes to child c
+  std::size_t kept_count = 0;          ///< how many of them go to no child and stay at the node
 
  private:
   static constexpr std::size_t samples = 31;
@@ -113,9 +112,9 @@ class QuadtreeStack {
     return split.axis_count > 0;
   }
 
-  /// The children of a box are those in whose regions it has a part: lower ones if it begins before the
-  /// split, upper ones if it does not end before it. Sets the children of each reference, none for a box kept
-  /// at the node, and the sizes. False if a child would be nearly as large as the node.
+  /// Sets the children of each reference, none for a box kept at the node, and the sizes. A box goes to each
+  /// child whose region it touches: to lower ones if it begins before the split, to upper ones unless it ends
+  /// before the split. False if a child would be nearly as large as the node.
   bool partition(const Boxes& boxes, std::size_t begin, std::size_t end, Split& split) {
     // For each axis, the children on its lower and on its upper side.
     constexpr std::array<std::uint32_t, 3> lower = {0x55, 0x33, 0x0f};

@@ -9,7 +9,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// The greatest of some numbers, NaN not counting: by several chains, since one waits for itself.
+/// The greatest of some numbers, ignoring NaN. Several independent chains hide the latency of each step.
 float greatest(const float* numbers, std::size_t count) {
   constexpr std::size_t chains = 8;
   std::array<float, chains> most;
@@ -23,7 +23,7 @@ float greatest(const float* numbers, std::size_t count) {
   return *std::max_element(most.begin(), most.end());
 }
 
-/// Moves the element at `from` to `to`, and those between by one.
+/// Moves the element at `from` to `to`, and shifts the elements between by one.
 template <typename T>
 void move_element(std::vector<T>& elements, std::size_t from, std::size_t to) {
   T* const all = elements.data();
@@ -35,8 +35,8 @@ void move_element(std::vector<T>& elements, std::size_t from, std::size_t to) {
   all[to] = moved;
 }
 
-/// The first place in [0, size) for which `is_behind` does not hold, which holds for all before it; looked
-/// for from `near` on in both directions, in growing steps.
+/// The first place in [0, size) for which `is_behind` is false, or `size`; it must be true for all places
+/// before. Gallops from `near` in growing steps, up or down, then bisects.
 template <typename IsBehind>
 std::size_t gallop(std::size_t size, std::size_t near, IsBehind is_behind) {
   std::size_t low = 0;
@@ -120,7 +120,7 @@ template <int D>
 std::size_t SweepOrder<D>::move(std::size_t from, const Box<D>& box) {
   const SweepKey to_key{box.min[0], kept_.id[from]};
   std::size_t to = find(to_key, from);
-  // The search has counted the box itself where it goes up.
+  // If the box moves up, find() counted the box itself.
   if (to > from) --to;
   if (to != from) {
     for (int axis = 0; axis < D; ++axis) {

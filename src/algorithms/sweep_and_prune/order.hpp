@@ -1,4 +1,4 @@
-// Boxes kept in the order of a sweep from frame to frame.
+// SweepOrder: boxes kept in the order of a sweep from frame to frame.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace broadside::algorithm {
 
-/// A box's place in the order: by where it begins on the swept axis, and of equal ones by id.
+/// A box's key in the order: where it begins on the swept axis, then its id.
 struct SweepKey {
   float min;
   BoxId id;
@@ -26,7 +26,7 @@ struct SweepKey {
   }
 };
 
-/// Where a box of a new order comes from: a place of the old one, or it is new.
+/// A box of a new order, and where it comes from: a place in the old order, or is_new.
 struct SweepEntry {
   static constexpr std::uint32_t is_new = 0xffffffffU;
 
@@ -36,23 +36,23 @@ struct SweepEntry {
   friend bool operator<(const SweepEntry& a, const SweepEntry& b) { return a.key < b.key; }
 };
 
-/// Boxes as a structure of arrays, sorted by SweepKey. Axis 0 is the swept one: boxes must be handed in with
+/// Boxes as a structure of arrays, sorted by SweepKey. Axis 0 is the swept one: the caller passes boxes with
 /// their axes in the sweep's order.
 ///
-/// How far boxes reach is kept for blocks of them and for blocks of blocks, so that those which begin before
-/// a box and reach into it are found however long others are.
+/// The greatest maximum is kept for each block of boxes and for each block of blocks. With these, boxes that
+/// begin before a box and reach into it are found fast, however long other boxes are.
 template <int D>
 class SweepOrder {
  public:
   std::size_t size() const noexcept { return size_; }
   SweepKey key(std::size_t place) const { return {kept_.min[0][place], kept_.id[place]}; }
 
-  /// The place of the first box that does not come before `key`: of the box itself where it is there. By
-  /// binary search, in the neighbourhood of `near` first.
+  /// The place of the first box that does not come before `key`: the box's own place if it is there. By
+  /// binary search or, with `near`, by galloping search from there.
   std::size_t find(const SweepKey& key, std::size_t near) const;
   std::size_t find(const SweepKey& key) const;
 
-  /// Makes the boxes those of `entries`, which are in order. `box_of(id)` is a new one's box.
+  /// Replaces the order by `entries`, which are sorted. `box_of(id)` is the box of a new entry.
   template <typename BoxOf>
   void assign(std::span<const SweepEntry> entries, BoxOf box_of) {
     other_.resize(entries.size());
@@ -66,15 +66,15 @@ class SweepOrder {
 
   Box<D> box(std::size_t place) const { return kept_.box(place); }
 
-  /// Gives the box at `place` other bounds and moves it to where it belongs, and those between by one.
-  /// Returns how many these are.
+  /// Sets the bounds of the box at `place` and moves it to where it belongs. The boxes between shift by one
+  /// place; returns their number.
   std::size_t move(std::size_t place, const Box<D>& box);
 
-  /// Lets the box at `place` overlap nothing, until it is left out of a new order.
+  /// Makes the box at `place` overlap nothing, until assign() leaves it out.
   void remove(std::size_t place) { kept_.max[0][place] = std::numeric_limits<float>::quiet_NaN(); }
 
-  /// Writes what the moved box, whose axes are in the sweep's order, begins to overlap or ceases to. `near`
-  /// is a place near its own. Returns how many boxes were compared.
+  /// Writes the pairs that the moved box, with its axes in the sweep's order, begins or ends. `near` is a
+  /// place near its own. Returns the number of tests.
   std::uint64_t find_changes(const core::MovedBox<D>& moved, std::size_t near,
                              const core::ChangeSinks& sinks) const;
 
@@ -86,7 +86,7 @@ class SweepOrder {
  private:
   static constexpr std::size_t fan = 64;  // boxes in a block, and blocks in a block of blocks
 
-  /// Those among the boxes that may touch [min, max] on the swept axis.
+  /// The same among the boxes that may touch [min, max] on the swept axis.
   std::uint64_t find_changes(const core::MovedBox<D>& moved, float min, float max, std::size_t near,
                              const core::ChangeSinks& sinks) const;
 
@@ -96,7 +96,7 @@ class SweepOrder {
 
   std::size_t size_ = 0;
   kernels::KeptRun<D> kept_;
-  kernels::KeptRun<D> other_;  // while a new order is made
+  kernels::KeptRun<D> other_;  // for making a new order
   std::vector<float> reach_;
   std::vector<float> high_reach_;
   kernels::Run<D> run_{};

@@ -1,5 +1,5 @@
-// Sweep and prune: boxes sorted along one axis, each compared with those that begin before it ends; and the
-// same in stripes of a second axis.
+// Sweep and prune: sorts boxes along one axis and compares each with those that begin before it ends,
+// optionally in stripes of a second axis.
 //
 // Section IV of the paper. The axis is the one on which a sample of the boxes overlaps least. Where that
 // leaves many candidates, a second axis is cut into stripes that hold equally many boxes, and each stripe is
@@ -78,7 +78,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
   }
 
  private:
-  /// Chooses the swept axis, the striped one and so on, and the stripes.
+  /// Chooses the order of the axes (swept, striped, the rest) and the stripes.
   std::array<int, D> choose_axes(std::span<const Box<D>> boxes) {
     sample_.take(boxes);
     const std::array<int, D> axes = sample_.axes_from(axis_);
@@ -89,8 +89,8 @@ class SweepAndPruneSearcher final : public Searcher<D> {
 
   /// Sets the borders between stripes, none if one axis is enough.
   void choose_stripes(std::size_t boxes, const core::AxisSample& swept, const core::AxisSample& striped) {
-    // Of S stripes with borders where boxes begin, a box touches S / 2 times the axis's overlap more than
-    // one; and a sweep compares the square of a stripe's boxes.
+    // With S stripes that have borders where boxes begin, a box touches 1 + (S - 1) / 2 * overlap of them.
+    // The tests of a stripe's sweep grow with the square of its boxes.
     const auto cost = [&](std::size_t stripes) {
       const auto count = static_cast<double>(boxes);
       const double references = count * (1 + static_cast<double>(stripes - 1) * striped.overlap / 2);
@@ -189,7 +189,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
   core::SortedBoxes<D> sorted_;
   std::vector<float> borders_;  // a stripe's first coordinate, from the second stripe on
   std::vector<Place> places_;
-  // By range and stripe: how many boxes; then where the next one is listed, which is at last the list's end.
+  // By range and stripe: first how many boxes, then where the next one is listed, at last the list's end.
   core::LargeArray<std::size_t> ends_;
   core::LargeArray<std::uint32_t> listed_;  // places of boxes, stripe by stripe
   core::Parallel parallel_;

@@ -1,8 +1,8 @@
-// SweepAndPruneFollower: boxes stay in order along an axis, and movers change places.
+// SweepAndPruneFollower: keeps boxes sorted along an axis, and moves movers within the order.
 //
-// Section VI-C of the paper, in the fastest of its ways: a mover is compared with the boxes that
-// touch its old or its new box on the axis, and then put into its new place by binary search, so that only
-// the boxes between its two places make way.
+// Section VI-C of the paper, in its fastest variant: a mover is compared with the boxes that touch its old or
+// its new box on the axis, and then moved to its new place, found by binary search. Only the boxes between
+// the two places shift.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -16,7 +16,7 @@
 namespace broadside::algorithm {
 namespace {
 
-/// After this many tests, and this many a box, another look at the axes pays.
+/// After this many tests, plus this many per box, another look at the axes pays.
 constexpr std::uint64_t tests_between_looks = 1'000'000;
 constexpr std::uint64_t tests_of_a_box_between_looks = 64;
 
@@ -68,7 +68,7 @@ class SweepAndPruneFollower final : public Follower<D> {
  private:
   Box<D> turned(const Box<D>& box) const { return core::turned(box, axes_); }
 
-  /// Removes boxes that went from the order, and merges new ones in.
+  /// Removes departed boxes from the order and merges arrivals into it.
   void merge(const Change<D>& change) {
     entries_.clear();
     coming_.clear();
@@ -103,14 +103,14 @@ class SweepAndPruneFollower final : public Follower<D> {
     tests_ = 0;
   }
 
-  /// Of those of a few boxes that are present.
+  /// Samples a few of the present boxes.
   void sample(const Change<D>& change) {
     sampled_.clear();
     core::for_present_sample(change.now, 256, [this](const Box<D>& box) { sampled_.push_back(box); });
     sample_.take(sampled_);
   }
 
-  /// Now and then, after work that pays for it: whether another axis would be much better by now.
+  /// From time to time, once enough tests pay for it, checks whether another axis has become much better.
   void compare_axes(const Change<D>& change, std::uint64_t tests) {
     tests_ += tests;
     if (axis_ >= 0 || tests_ < tests_of_a_box_between_looks * order_.size() + tests_between_looks) return;
