@@ -1,4 +1,4 @@
-// What the functions of the C interface share, and those about versions and errors.
+// Shared by the functions of the C API, and its functions about versions and errors.
 #include "bindings/c/faces.hpp"
 
 #include <exception>
@@ -13,7 +13,7 @@ broadside_status written(broadside_error* error, broadside_status status, const 
   error->status = status;
   error->index = index;
   std::size_t length = std::min(std::strlen(message), sizeof(error->message) - 1);
-  // Not in the middle of a character: what follows its first byte begins with the bits 10.
+  // Do not cut within a character: in UTF-8, all bytes but its first begin with the bits 10.
   if (message[length] != 0) {
     while (length > 0 && (static_cast<unsigned char>(message[length]) & 0xc0U) == 0x80U) --length;
   }

@@ -1,4 +1,4 @@
-// What the functions of the C interface share: errors, kinds, and the caller's arrays as the library's types.
+// Shared by the functions of the C API: errors, kinds, and the caller's arrays as the library's types.
 #pragma once
 
 #include <algorithm>
@@ -22,10 +22,10 @@
 
 namespace broadside::c {
 
-/// Thrown where a callback asks to stop.
+/// Thrown if a callback asks to stop.
 struct StopAsked {};
 
-/// Thrown where a buffer of the caller's has too little room, once the caller knows how much is needed.
+/// Thrown if the caller's buffer has too little room, after the caller was told how much is needed.
 struct TooSmall : std::invalid_argument {
   TooSmall(std::size_t room, const char* what, std::uint64_t needed)
       : std::invalid_argument("there is room for " + std::to_string(room) + " " + what +
@@ -35,7 +35,7 @@ struct TooSmall : std::invalid_argument {
 /// Writes the exception in flight to `error`, if that is not null, and returns its status.
 broadside_status status_of_exception(broadside_error* error) noexcept;
 
-/// Runs `body`; no exception leaves.
+/// Runs `body`, and turns an exception into a status.
 template <typename Body>
 broadside_status guarded(broadside_error* error, const Body& body) noexcept {
   try {
@@ -46,14 +46,14 @@ broadside_status guarded(broadside_error* error, const Body& body) noexcept {
   }
 }
 
-/// What `pointer` points to. Throws std::invalid_argument, naming it, if it is null.
+/// What `pointer` points to. If it is null, throws std::invalid_argument, which names it.
 template <typename T>
 T& required(T* pointer, const char* name) {
   if (pointer == nullptr) throw std::invalid_argument(std::string(name) + " is null; expected a pointer");
   return *pointer;
 }
 
-/// An array that may be null if it is empty. Throws std::invalid_argument, naming it, otherwise.
+/// An array, which may be null only if it is empty: otherwise throws std::invalid_argument, which names it.
 template <typename T>
 std::span<T> array_of(T* first, std::size_t count, const char* name) {
   if (first == nullptr && count > 0)
@@ -62,10 +62,10 @@ std::span<T> array_of(T* first, std::size_t count, const char* name) {
   return {first, count};
 }
 
-/// Throws std::invalid_argument if the program was compiled with a header of another version.
+/// Throws std::invalid_argument if the program was compiled with the header of another version.
 void check_api_version(int version);
 
-/// Throws std::invalid_argument if `size`, of the struct `name`, is not what this version has.
+/// Throws std::invalid_argument if `size`, of the struct `name`, is not this version's.
 void check_size(std::size_t size, std::size_t expected, const char* name);
 
 /// The text of a kind, such as "3D floats".
@@ -77,7 +77,7 @@ constexpr broadside_kind kind_of = D == 2 ? (std::same_as<Real, float> ? BROADSI
                                           : (std::same_as<Real, float> ? BROADSIDE_FLOAT_3D
                                                                        : BROADSIDE_DOUBLE_3D);
 
-/// Calls body.operator()<D, Real>() for a kind. Throws std::invalid_argument for a number that is none.
+/// Calls body.operator()<D, Real>() for a kind. Throws std::invalid_argument for any other number.
 template <typename Body>
 auto with_kind(broadside_kind kind, const Body& body) {
   switch (kind) {
@@ -93,7 +93,7 @@ auto with_kind(broadside_kind kind, const Body& body) {
   throw std::invalid_argument("kind is " + std::to_string(kind) + "; expected one of broadside_kind, 0 to 3");
 }
 
-/// The caller's boxes, which must be of this kind; no copy.
+/// The caller's boxes, without a copy. Throws std::invalid_argument if they are of another kind.
 template <int D, typename Real>
 BoxView<D, Real> view_of(const broadside_boxes& boxes) {
   if (boxes.kind != kind_of<D, Real>)
@@ -110,7 +110,7 @@ BoxView<D, Real> view_of(const broadside_boxes& boxes) {
   return {boxes.first, boxes.count, stride};
 }
 
-/// The caller's boxes as an array, gathered into `scratch` where they are not one.
+/// The caller's boxes as an array; gathered into `scratch` if they are not contiguous and aligned.
 template <int D, typename Real>
 std::span<const Box<D, Real>> boxes_of(const broadside_boxes& boxes, std::vector<Box<D, Real>>& scratch) {
   const BoxView<D, Real> view = view_of<D, Real>(boxes);
@@ -120,7 +120,7 @@ std::span<const Box<D, Real>> boxes_of(const broadside_boxes& boxes, std::vector
   return scratch;
 }
 
-/// A value of the caller's, aligned or not.
+/// The caller's value, aligned or not.
 template <typename Value>
 Value value_of(const void* bytes, const char* name) {
   required(static_cast<const std::byte*>(bytes), name);
@@ -129,7 +129,7 @@ Value value_of(const void* bytes, const char* name) {
   return value;
 }
 
-/// Elements of one of the library's types as one of the interface's, which has the same bytes.
+/// Copies elements of a type of the library or of the C API to the other's type, which has the same bytes.
 template <typename To, typename From>
 void copy_as(std::span<const From> from, To* to) {
   static_assert(sizeof(To) == sizeof(From) && std::is_trivially_copyable_v<From>);
@@ -148,7 +148,7 @@ inline broadside_filter filter_of(const Filter& filter) {
   return {filter.category, filter.mask, filter.group, filter.is_static ? 1 : 0};
 }
 
-/// One for each of `count`, or none where `filters` is null.
+/// One filter for each of `count` boxes, or none if `filters` is null.
 inline void take_filters(const broadside_filter* filters, std::size_t count, std::vector<Filter>& taken) {
   taken.clear();
   if (filters == nullptr) return;
@@ -159,10 +159,10 @@ inline void take_filters(const broadside_filter* filters, std::size_t count, std
 inline Handle handle_of(const broadside_handle& handle) { return {handle.slot, handle.generation}; }
 inline broadside_handle handle_of(const Handle& handle) { return {handle.slot, handle.generation}; }
 
-/// The caller's threads as the library has them.
+/// The caller's threads as an Executor.
 class CallersExecutor final : public Executor {
  public:
-  /// Throws std::invalid_argument if a function of it is missing.
+  /// Throws std::invalid_argument if one of its functions is null.
   explicit CallersExecutor(const broadside_executor& executor);
 
   std::size_t threads() const noexcept override;
@@ -172,15 +172,15 @@ class CallersExecutor final : public Executor {
   broadside_executor executor_;
 };
 
-/// Null for null.
+/// An Executor over the caller's; null for null.
 std::unique_ptr<Executor> make_executor(const broadside_executor* executor);
 
-/// The spec of options that may be null.
+/// The spec; the default one for null.
 inline std::string spec_of(const char* algorithm) {
   return algorithm == nullptr ? std::string(default_algorithm) : algorithm;
 }
 
-/// Has what has workers use the executor, if there is one.
+/// Makes a finder, tracker or world use the executor, unless it is null.
 template <typename Searching>
 void use(Searching& searching, Executor* executor) {
   if (executor == nullptr) return;
@@ -189,11 +189,11 @@ void use(Searching& searching, Executor* executor) {
   searching.set_workers(workers);
 }
 
-/// A caller's frame as the library's, and the memory that this takes, which is kept.
+/// Makes the library's Frame of the caller's, and keeps the memory that this takes.
 template <int D, typename Real>
 class FrameMemory {
  public:
-  /// Valid until the next call. `changed` is null where any box may have changed.
+  /// Valid until the next call. `changed` is null if any box may have changed.
   Frame<D, Real> frame(const broadside_boxes& boxes, const std::uint32_t* changed, std::size_t changed_count,
                        const broadside_filter* filters) {
     if (changed == nullptr && changed_count != 0)
@@ -216,7 +216,7 @@ class FrameMemory {
   std::vector<Filter> filters_;
 };
 
-/// What a query may find, as the library has it.
+/// Which boxes a query may find, in the library's types.
 class Eligible {
  public:
   explicit Eligible(const broadside_query* query) {
@@ -235,7 +235,7 @@ class Eligible {
   std::optional<Filter> filter_;
 };
 
-/// Appends what a query finds to the caller's buffer, as far as there is room, and counts it all.
+/// Appends what a query finds to the caller's buffer while there is room, and counts all of it.
 template <typename Found>
 class Buffer {
  public:
@@ -268,7 +268,7 @@ BoxCast<D, Real> cast_of(const void* box, const void* direction, double t_max) {
           static_cast<Real>(t_max)};
 }
 
-/// What worlds and indexes are asked alike. A box is named by its handle, in an index by { place, 0 }.
+/// The queries that worlds and indexes share. A box is named by its handle; in an index by { place, 0 }.
 class Queried {
  public:
   virtual ~Queried() = default;
@@ -280,7 +280,7 @@ class Queried {
                        Buffer<broadside_neighbour>& neighbours) const = 0;
 };
 
-/// The functions of the interface of these names, for a world or an index, which is called `name`.
+/// The C API's functions of these names, for a world or an index. Errors call it `name`.
 broadside_status hits(const Queried* queried, const char* name, const void* box, const void* direction,
                       double t_max, const broadside_query* query, broadside_hit* hits, std::size_t room,
                       std::size_t* count, broadside_error* error) noexcept;

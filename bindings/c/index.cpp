@@ -1,4 +1,4 @@
-// Indexes over arrays of boxes, for queries.
+// The C API's indexes over arrays of boxes, for queries.
 #include "bindings/c/faces.hpp"
 
 using namespace broadside;

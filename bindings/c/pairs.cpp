@@ -1,4 +1,4 @@
-// All pairs, once or by a finder that is kept, and trackers.
+// The C API's pairs, finders and trackers.
 #include "bindings/c/faces.hpp"
 
 using namespace broadside;
@@ -6,7 +6,7 @@ using namespace broadside::c;
 
 namespace {
 
-/// Hands pairs to a C function.
+/// Passes pairs to a C function.
 class CallbackSink final : public PairSink {
  public:
   CallbackSink(broadside_pairs_callback callback, void* user) : callback_(callback), user_(user) {}
@@ -22,7 +22,7 @@ class CallbackSink final : public PairSink {
   std::vector<broadside_pair> chunk_;
 };
 
-/// Writes pairs to the caller's buffer as far as there is room, and counts them all.
+/// Writes pairs to the caller's buffer while there is room, and counts them all.
 class BufferSink final : public PairSink {
  public:
   BufferSink(broadside_pair* pairs, std::size_t room) : pairs_(pairs), room_(room) {}
@@ -41,7 +41,7 @@ class BufferSink final : public PairSink {
   std::uint64_t count_ = 0;
 };
 
-/// Appends pairs to a vector of the interface's type.
+/// Appends pairs to a vector of the C API's type.
 class Collector final : public PairSink {
  public:
   explicit Collector(std::vector<broadside_pair>& pairs) : pairs_(&pairs) {}
@@ -107,7 +107,7 @@ Finder<D, Real> finder_of(const broadside_find_options& options, Executor* execu
   return finder;
 }
 
-/// One search by a finder that is not kept.
+/// One search, by a temporary finder.
 void find_once(const broadside_boxes* boxes, const broadside_boxes* right,
                const broadside_find_options* options, PairSink& pairs) {
   const broadside_find_options& wishes = checked(options);
@@ -161,7 +161,7 @@ broadside_status broadside_for_each_pairs(const broadside_boxes* boxes, const br
   });
 }
 
-// ---- Finders that are kept ----
+// ---- Finders ----
 
 struct broadside_finder {
   virtual ~broadside_finder() = default;

@@ -1,4 +1,4 @@
-// Worlds.
+// The C API's worlds.
 #include "bindings/c/faces.hpp"
 
 using namespace broadside;
@@ -181,8 +181,8 @@ class KeptWorld final : public broadside_world {
  private:
   void take_handles(std::span<const broadside_handle> handles) { copy_as(handles, handles_); }
 
-  /// The world's own pairs, which have the same bytes: a copy could run out of memory, and events that were
-  /// told are not told again.
+  /// The world's own pairs, which have the same bytes. Not a copy: that could run out of memory, and the
+  /// events of an update are reported only once.
   static const broadside_handle_pair* as_c(std::span<const HandlePair> pairs) {
     static_assert(sizeof(HandlePair) == sizeof(broadside_handle_pair));
     return reinterpret_cast<const broadside_handle_pair*>(pairs.data());
