@@ -1,6 +1,5 @@
-// The Arrow C data interface, without Arrow: its structures are laid out as its specification says
-// (Apache Arrow, "The Arrow C data interface" and "The Arrow C stream interface"). Pairs out, columns of
-// boxes in.
+// The Arrow C data interface, without Arrow, by its specification (Apache Arrow, "The Arrow C data interface"
+// and "The Arrow C stream interface"). Exports pairs, imports columns of boxes.
 #include "bindings/python/arrow.hpp"
 
 #include <algorithm>
@@ -54,9 +53,9 @@ struct ArrowArrayStream {
 
 using Columns = std::shared_ptr<const PairTable::Columns>;
 
-// ---- Out: a struct of two columns ----
+// ---- Export: a struct of two columns ----
 
-/// A structure's children. One that an importer has moved out has no release any more.
+/// A structure's children. A child that an importer has moved out has a null `release`.
 template <typename Structure>
 struct Children {
   std::array<Structure, 2> children{};
@@ -81,7 +80,7 @@ void write_schema(ArrowSchema& schema) {
   schema = {"+s", "", nullptr, 0, 2, children, nullptr, Children<ArrowSchema>::release, all.release()};
 }
 
-/// What a column keeps by itself, wherever it is moved.
+/// What a column owns, wherever it is moved.
 struct Column {
   Columns columns;
   std::array<const void*, 2> buffers;  // no validity; values
@@ -122,7 +121,7 @@ void write_array(ArrowArray& array, const Columns& columns) {
   array.private_data = all.release();
 }
 
-/// A stream of the one array.
+/// A stream of one array.
 struct Stream {
   Columns columns;
   bool ended = false;
@@ -165,7 +164,7 @@ constexpr const char* capsule_name<ArrowArray> = "arrow_array";
 template <>
 constexpr const char* capsule_name<ArrowArrayStream> = "arrow_array_stream";
 
-/// A capsule of a structure that is released with it, unless an importer has taken what it holds.
+/// A capsule of a structure. It releases the structure, unless an importer has taken it.
 template <typename Structure, typename Write>
 nb::object capsule_of(const Write& write) {
   auto structure = std::make_unique<Structure>();
@@ -194,7 +193,7 @@ nb::object stream_capsule(const PairTable& table) {
   });
 }
 
-// ---- In: columns as NumPy's arrays ----
+// ---- Import: columns as NumPy arrays ----
 
 template <typename Structure>
 Structure& structure_of(nb::handle capsule) {
@@ -208,7 +207,7 @@ Structure& structure_of(nb::handle capsule) {
   return exported;
 }
 
-/// What was taken over from an exporter, and is released with the last array that sees it.
+/// A structure taken from an exporter. It is released with the last array that views it.
 template <typename Structure>
 struct Taken {
   explicit Taken(Structure& exported) : structure(exported) { exported.release = nullptr; }
@@ -442,7 +441,7 @@ PairTable::PairTable(std::span<const Pair> pairs) {
 }
 
 void add_arrow(nb::module_& module) {
-  // A schema that is asked for is a wish, which the interface lets an exporter pass over.
+  // `requested_schema` is ignored: the specification allows this.
   nb::class_<PairTable>(
       module, "PairTable",
       "Pairs as a table of two columns of uint32, `first` and `second`, by the Arrow C data interface.\n\n"

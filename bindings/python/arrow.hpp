@@ -11,7 +11,7 @@
 
 namespace broadside::python {
 
-/// The columns `first` and `second`. Whoever takes them shares their memory.
+/// The columns `first` and `second`. Importers share their memory.
 class PairTable {
  public:
   explicit PairTable(std::span<const Pair> pairs);

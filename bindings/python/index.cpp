@@ -61,7 +61,7 @@ class IndexOf final : public Index {
   }
 
  private:
-  /// Several threads may ask at once.
+  /// For Queries. Several threads may ask at once.
   struct Asked {
     static constexpr int dimension = Dimension;
     using Real = Coordinate;

@@ -1,4 +1,4 @@
-// Arrays of Python's as the library's types.
+// Python's arrays as the library's types.
 #include "bindings/python/input.hpp"
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace {
 
 nb::object convert(const char* function) { return nb::module_::import_("broadside._convert").attr(function); }
 
-/// An array of one piece of uint64, by the function of broadside._convert.
+/// The uint64 numbers of an array, by this function of broadside._convert.
 std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, const char* name,
                                       std::uint64_t most) {
   const nb::object array = convert(function)(object, name, most);
@@ -31,16 +31,16 @@ std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, c
   return numbers;
 }
 
-/// The letter of the elements' type in this machine's byte order; 0 if there is no such.
+/// The letter of the elements' type if they are in this machine's byte order, otherwise 0.
 char native_format(const Py_buffer& buffer) {
   std::string_view format(buffer.format == nullptr ? "" : buffer.format);
-  // '=' and '^' are NumPy's for arrays that are not aligned.
+  // NumPy uses '=' and '^' for arrays that are not aligned.
   constexpr std::string_view native = std::endian::native == std::endian::little ? "@=^<" : "@=^>!";
   if (format.size() == 2 && native.find(format[0]) != native.npos) format.remove_prefix(1);
   return format.size() == 1 ? format[0] : '\0';
 }
 
-/// Of what broadside._convert gives.
+/// From an array that broadside._convert made.
 std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
   const Buffer buffer(array, PyBUF_C_CONTIGUOUS);
   // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
@@ -79,12 +79,12 @@ Rows::~Rows() {
 }
 
 bool Rows::take(nb::handle object) {
-  // The buffer of a masked array does not tell which of its elements count.
+  // The buffer of a masked array does not tell which elements are masked.
   if (PyObject_CheckBuffer(object.ptr()) == 0 || (!is_plain_array(object) && nb::hasattr(object, "mask")))
     return false;
   Py_buffer& buffer = buffer_.emplace();
   if (PyObject_GetBuffer(object.ptr(), &buffer, PyBUF_RECORDS_RO) != 0) {
-    PyErr_Clear();  // of another type; _convert says what is wrong
+    PyErr_Clear();  // another type; _convert says what is wrong
     buffer_.reset();
     return false;
   }

@@ -1,5 +1,5 @@
-// What Python hands in: arrays of rows as the library's boxes, points, handles and filters. No copy of rows
-// that lie in memory as the library has them.
+// Python's arguments as the library's types: arrays of rows become boxes, points, handles and filters. Rows
+// with the library's memory layout are not copied.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ namespace broadside::python {
 
 namespace nb = nanobind;
 
-/// The memory of an object, which Python does not move or resize while this lives. Needs the GIL in its
-/// constructor and destructor.
+/// The memory of an object. Python does not move or resize it while this lives. The constructor and the
+/// destructor need the GIL.
 class Buffer {
  public:
   /// Throws Python's exception if the object has no such memory.
@@ -44,21 +44,21 @@ class Buffer {
   Py_buffer view_;
 };
 
-/// Rows of floats or doubles, each in one piece, which Python keeps as they are while this lives. To be made
-/// and destroyed with the GIL held.
+/// Rows of floats or doubles, each contiguous. Python does not move or resize them while this lives. Make and
+/// destroy it with the GIL held.
 class Rows {
  public:
-  /// The rows of `object`, boxes or points, whatever kind of array it is. What is not such rows already is
-  /// converted by broadside._convert, once, which also refuses what is none; `name` is what errors call it.
+  /// The rows of `object`, an array of boxes of any kind. If it does not have such rows already,
+  /// broadside._convert converts it, once, or refuses it. Errors call the argument `name`.
   static Rows of_boxes(nb::handle object, const char* name);
 
-  /// Likewise, or none where `object` is an empty list or tuple, whose rows are taken for so long.
+  /// Likewise; for an empty list or tuple, no rows, with this many columns.
   static Rows of_boxes_or_empty(nb::handle object, const char* name, std::size_t columns = 4);
 
-  /// Likewise, exactly converted to rows of `columns` floats or doubles where they are others.
+  /// Likewise, rows of `columns` floats or doubles: others are converted, if that loses nothing.
   static Rows of(nb::handle object, const char* name, std::size_t columns, bool are_doubles);
 
-  /// Likewise, of doubles, where they are floats.
+  /// These rows as doubles.
   Rows widened(const char* name) const;
 
   Rows(Rows&& other) noexcept { swap(other); }
@@ -80,7 +80,7 @@ class Rows {
     return {first_, size_, stride_};
   }
 
-  /// The rows as an array, gathered into `scratch` where they are not one.
+  /// The rows as an array; gathered into `scratch` if they are not contiguous and aligned.
   template <typename Row>
   std::span<const Row> array(std::vector<Row>& scratch) const {
     if (is_array(sizeof(Row), alignof(Row))) return {static_cast<const Row*>(first_), size_};
@@ -94,7 +94,7 @@ class Rows {
   Rows() = default;
   void swap(Rows& other) noexcept;
 
-  /// Whether `object` is such rows already, and then takes them.
+  /// Takes the rows of `object` if it has them in this layout. Returns whether it does.
   bool take(nb::handle object);
   bool is_array(std::size_t row, std::size_t alignment) const noexcept {
     return (stride_ == row || size_ < 2) && reinterpret_cast<std::uintptr_t>(first_) % alignment == 0;
@@ -117,7 +117,7 @@ auto with_kind(int dimension, bool are_doubles, const Body& body) {
   return are_doubles ? body.template operator()<3, double>() : body.template operator()<3, float>();
 }
 
-/// An invalid box of the argument of this name.
+/// An invalid box in the argument of this name.
 class InvalidBoxOf : public InvalidInput {
  public:
   InvalidBoxOf(const char* argument, const InvalidInput& error)
@@ -131,17 +131,17 @@ class InvalidBoxOf : public InvalidInput {
   const char* argument_;
 };
 
-/// Whether no algorithm may see the box.
+/// Whether the box is invalid: it has a NaN, or min > max and is not the absent box.
 template <int D, typename Real>
 bool is_invalid(const Box<D, Real>& box) noexcept {
   return !is_present(box) && !is_absent(box);
 }
 
-/// For the module's import: remembers NumPy's type of arrays. Not asked for in a call: an import may let
-/// another thread run, which must not wait for this one while it holds the GIL.
+/// Remembers NumPy's array type when the module is imported. Looking it up later would be an import within a
+/// call: that may let another thread run, which must not hold the GIL while it waits for this one.
 void find_array_type();
 
-/// Whether this is an empty list or tuple, which tells no dimension.
+/// Whether this is an empty list or tuple, which has no dimension.
 bool is_empty_sequence(nb::handle object);
 
 /// A str, or TypeError.
@@ -150,22 +150,22 @@ std::string text(nb::handle object, const char* name);
 /// Python's bool() of it.
 bool truth(nb::handle object);
 
-/// A str of UTF-8, and of whatever a file's name may be.
+/// A str from UTF-8. Other bytes, as in a file's name, become surrogate escapes.
 nb::object text_of(std::string_view bytes);
 
 /// The elements of a one-dimensional array of unsigned integers, by broadside._convert.
 std::vector<std::uint64_t> integers(nb::handle object, const char* name, std::uint64_t most);
 
-/// A pair of integers a row, likewise.
+/// Likewise, of an array with two integers per row.
 std::vector<std::uint64_t> pairs_of_integers(nb::handle object, const char* name, std::uint64_t most);
 
-/// None: none. Else one for each of `count` boxes.
+/// One filter for each of `count` boxes; empty for None.
 std::vector<Filter> filters(nb::handle object, std::size_t count, const char* name);
 
-/// Likewise for queries: a filter for each of `count` queries. `object` may hold one for all.
+/// Likewise, one for each of `count` queries. `object` may have one for all.
 std::vector<Filter> query_filters(nb::handle object, std::size_t count);
 
-/// A handle as Python has it: one number, the generation in its upper half and the slot in its lower one.
+/// A handle in Python is one number, with the generation in the upper half and the slot in the lower one.
 inline std::uint64_t number_of(const Handle& handle) noexcept {
   return std::uint64_t{handle.generation} << 32 | handle.slot;
 }

@@ -1,4 +1,4 @@
-// What the lab brings: advice, files, drawings, and scenes for the tests.
+// The lab's functions: advice, files, drawings, and scenes for the tests.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -24,8 +24,7 @@
 namespace broadside::python {
 namespace {
 
-/// Made when the module is first imported, before anything is made by name: it registers the paper's
-/// listings.
+/// Made when the module is imported, before algorithms are looked up: it registers the paper's listings.
 const lab::Catalogue& catalogue() {
   static const lab::Catalogue all;
   return all;
@@ -63,7 +62,7 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
     history.boxes.assign(all.begin(), all.end());
     const lab::Advice advice = without_gil([&](WithoutGil& released) {
       lab::AdviseOptions options{.algorithms = algorithms, .threads = threads, .budget_seconds = budget};
-      // The lab asks between measurements, and what it measures runs undisturbed.
+      // The lab checks for signals only between measurements, so as not to disturb them.
       options.watch.stop = [&released] {
         released.check_signals();
         return false;
@@ -78,8 +77,8 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
   });
 }
 
-/// The boxes of one frame of a file, and a text about what could not be read. `content` has the file's bytes
-/// if they are in memory, and is None otherwise.
+/// The boxes of one frame of a file, and a warning about what could not be read. `content` has the file's
+/// bytes if they are in memory, and is None otherwise.
 nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
                 const std::string& boxes, const std::string& columns, int dimension, std::size_t frame,
                 bool skips_invalid) {
@@ -174,7 +173,7 @@ nb::object formats() {
 
 std::string draw(nb::handle boxes, const std::string& algorithms, std::size_t most,
                  const std::string& title) {
-  // Pictures are of floats.
+  // Drawings are of floats.
   const Rows rows = Rows::of_boxes(boxes, "boxes");
   return with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() -> std::string {
     std::vector<Box<D, Real>> memory;

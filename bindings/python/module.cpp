@@ -1,5 +1,5 @@
-// The extension module broadside._core: what broadside/*.py calls. Its arguments are checked there or where
-// they are taken; errors of the library become those of broadside._errors.
+// The extension module broadside._core, which broadside/*.py calls. Arguments are checked there or where they
+// are converted. The library's exceptions become those of broadside._errors.
 #include <limits>
 #include <string>
 
@@ -15,7 +15,7 @@
 namespace broadside::python {
 namespace {
 
-/// Sets Python's error of this class.
+/// Raises the exception of this class in Python.
 void raise(const char* name, const std::exception& error) {
   const nb::object type = nb::module_::import_("broadside._errors").attr(name);
   PyErr_SetObject(type.ptr(), text_of(error.what()).ptr());

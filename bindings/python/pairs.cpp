@@ -32,7 +32,7 @@ std::uint64_t counted(const Search& search) {
   });
 }
 
-/// What find() gives.
+/// What find() returns.
 enum class Result { array, table, count };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,

@@ -55,7 +55,7 @@ class PartitionOf final : public AnyPartition {
     }));
   }
 
-  /// From what cuts() gave, its first array in one dimension.
+  /// From what cuts() returned, with its first array flattened.
   static PartitionOf of_cuts(std::span<const std::uint64_t> links, const Rows& places) {
     std::vector<std::array<Real, 1>> memory;
     const auto at = places.array<std::array<Real, 1>>(memory);
@@ -91,7 +91,7 @@ class PartitionOf final : public AnyPartition {
     return nb::make_tuple(array_of(std::move(links), {count, 3}), array_of(std::move(places), {count, 1}));
   }
 
-  /// The rows of the boxes that touch each part, ascending, part after part; and where each part's begin.
+  /// Where the rows of each part begin; and, part after part, the ascending rows of the boxes that touch it.
   nb::object assign(nb::handle boxes, bool quarantine) const override {
     const Rows rows = Rows::of(boxes, "boxes", 2 * D, are_doubles);
     std::vector<Box<D, Real>> memory;
@@ -103,8 +103,7 @@ class PartitionOf final : public AnyPartition {
       for_each_touched(all, released, [&](std::size_t part, std::size_t) { ++starts[part + 1]; });
       std::partial_sum(starts.begin(), starts.end(), starts.begin());
       touching.resize(static_cast<std::size_t>(starts.back()));
-      // If another thread writes to the caller's boxes meanwhile, no more places than were counted may be
-      // used.
+      // Another thread may write to the caller's boxes meanwhile: use no more places than were counted.
       std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
       bool as_counted = true;
       for_each_touched(all, released, [&](std::size_t part, std::size_t row) {
@@ -133,10 +132,10 @@ class PartitionOf final : public AnyPartition {
   }
 
  private:
-  /// Boxes between two looks at signals.
+  /// The number of boxes between two checks for signals.
   static constexpr std::size_t boxes_at_once = std::size_t{1} << 16;
 
-  /// Throws what a search does, which looks at all boxes before it begins.
+  /// Throws what a search of the boxes throws, if one is invalid.
   static void check(std::span<const Box<D, Real>> boxes, const char* name) {
     if (std::ranges::none_of(boxes, [](const auto& box) { return is_invalid(box); })) return;
     try {
@@ -170,7 +169,7 @@ class PartitionOf final : public AnyPartition {
     return pairs;
   }
 
-  /// Of boxes that do not touch the part, wrong pairs would be found.
+  /// Whether each box begins before the part. Throws if a box does not touch it: its pairs would be wrong.
   std::vector<std::uint8_t> begins_before(std::size_t part, const Rows& rows, const char* name) const {
     const Region& region = partition_.region(part);
     const BoxView<D, Real> boxes = rows.boxes<D, Real>();

@@ -1,4 +1,4 @@
-// Queries in bulk, to an index or to a world's, and their answers as arrays.
+// Queries in bulk, of an index or a world, with arrays as results.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class Queries {
 
   static constexpr bool are_doubles = std::is_same_v<Real, double>;
 
-  /// Stands where no box was found.
+  /// Stands for no box.
   static constexpr Number none = std::numeric_limits<Number>::max();
 
  public:
@@ -122,7 +122,7 @@ class Queries {
   }
 
  private:
-  /// Queries between two looks at signals.
+  /// The number of queries between two checks for signals.
   static constexpr std::size_t queries_at_once = 64;
 
   /// The greatest Real that does not exceed `limit`, so that no hit's t or distance exceeds it.
@@ -133,7 +133,7 @@ class Queries {
     return rounded > limit ? std::nextafter(rounded, -std::numeric_limits<Real>::infinity()) : rounded;
   }
 
-  /// Rays of which each has a row in two arrays.
+  /// Rays, each a row of two arrays.
   class Rays {
    public:
     Rays(nb::handle origins, nb::handle directions, double t_max)

@@ -1,10 +1,10 @@
-// The GIL, given away and taken back.
+// Releases the GIL and takes it back.
 #include "bindings/python/running.hpp"
 
 #include <thread>
 
 #if defined(__linux__)
-// The one is there from 3.13 on, the other before; neither is in the stable ABI of 3.12.
+// Python 3.13 and later have the first, earlier versions the second. Neither is in the stable ABI of 3.12.
 extern "C" {
 [[gnu::weak]] int Py_IsFinalizing(void);
 [[gnu::weak]] int _Py_IsFinalizing(void);

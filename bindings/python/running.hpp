@@ -1,5 +1,5 @@
-// Running searches without the GIL, so that other threads of Python run meanwhile and Ctrl-C ends them; and
-// their results as arrays.
+// Runs searches without the GIL, so that other Python threads run meanwhile and Ctrl-C ends a search. Also
+// results as arrays.
 #pragma once
 
 #include <atomic>
@@ -26,10 +26,10 @@ namespace broadside::python {
 
 namespace nb = nanobind;
 
-/// Python's error indicator is set in the thread that it is thrown in: a signal's handler has thrown.
+/// Thrown if a signal handler raised an exception: Python's error indicator is set in this thread.
 struct Interrupted {};
 
-/// Gives the GIL away while it lives.
+/// Releases the GIL while it lives.
 class WithoutGil {
  public:
   WithoutGil() : state_(PyEval_SaveThread()) {}
@@ -37,9 +37,9 @@ class WithoutGil {
   WithoutGil(const WithoutGil&) = delete;
   WithoutGil& operator=(const WithoutGil&) = delete;
 
-  /// Has Python run the handlers of signals that came, if it was last asked some time ago. Only in the thread
-  /// that made this; only Python's main thread runs handlers, so others are not held up. Throws Interrupted
-  /// if a handler throws, as that of Ctrl-C does.
+  /// Makes Python run the handlers of signals that have arrived, unless the last check was just now. Call it
+  /// only in the thread that made this. It does nothing except in Python's main thread, where handlers run.
+  /// Throws Interrupted if a handler raises an exception, as the one for Ctrl-C does.
   void check_signals() {
     if (!has_thrown_ && Clock::now() >= next_check_ && is_main_thread()) {
       take_back(state_);
@@ -47,11 +47,11 @@ class WithoutGil {
       state_ = PyEval_SaveThread();
       next_check_ = Clock::now() + between_checks;
     }
-    // Also where it is asked again before the first exception has arrived.
+    // Throws again if it is called before the first exception has arrived.
     if (has_thrown_) throw Interrupted();
   }
 
-  /// For the module's import: remembers Python's main thread.
+  /// Remembers Python's main thread when the module is imported.
   static void find_main_thread();
 
  private:
@@ -60,9 +60,9 @@ class WithoutGil {
 
   static bool is_main_thread();
 
-  /// Takes the GIL. A daemon thread that asks for it while Python ends would be ended by an exception that
-  /// must not be caught; it sleeps instead until the process ends. The main thread, which ends Python and
-  /// runs finalizers then, goes on.
+  /// Takes the GIL. While Python shuts down, taking it would end a daemon thread by an exception that must
+  /// not be caught; such a thread sleeps instead until the process ends. The main thread, which shuts Python
+  /// down and runs finalizers, goes on.
   static void take_back(PyThreadState* state);
 
   PyThreadState* state_;
@@ -70,9 +70,9 @@ class WithoutGil {
   Clock::time_point next_check_ = Clock::now() + between_checks;
 };
 
-/// A mutex for an object that threads of Python share. Taken without the GIL, so that no thread waits for one
-/// while it holds the other. A handler of a signal that calls the object in whose call it was run gets an
-/// error instead of waiting for itself.
+/// A mutex for an object that Python threads share. It is locked without the GIL, so that no thread waits for
+/// one while it holds the other. A signal handler that calls the object whose call it interrupts gets an
+/// error instead of a deadlock.
 class CallMutex {
  public:
   void lock() {
@@ -103,7 +103,7 @@ class CallMutex {
   std::atomic<std::thread::id> owner_{};
 };
 
-/// Runs body(without_gil), and gives back what it gives.
+/// Returns body(released), run without the GIL.
 template <typename Body>
 auto without_gil(const Body& body) {
   try {
@@ -114,11 +114,11 @@ auto without_gil(const Body& body) {
   }
 }
 
-/// Stands for the number of threads that a spec says.
+/// Stands for the number of threads in the spec.
 constexpr std::size_t from_spec = std::numeric_limits<std::size_t>::max();
 
-/// Has a finder, a tracker or a world ask for signals at its checkpoints and use so many threads (0: all
-/// there are), while this lives.
+/// While this lives, a finder, tracker or world checks for signals at its checkpoints and uses this many
+/// threads (0: all).
 template <typename Searching>
 class ScopedWorkers {
  public:
@@ -140,8 +140,8 @@ class ScopedWorkers {
   Searching& searching_;
 };
 
-/// The number of threads that `threads` says; where it is None, from_spec if the spec says one, else 0.
-/// Throws ValueError, TypeError.
+/// The number in `threads`; if that is None, from_spec if the spec has a number, otherwise 0. Throws
+/// ValueError or TypeError.
 std::size_t threads_of(nb::handle threads, std::string_view spec);
 
 /// A NumPy array of this shape, of Scalars, that owns the vector's memory.
@@ -158,7 +158,7 @@ nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> sh
   return array_of<T, T>(std::move(values), shape);
 }
 
-/// Parts of the module, each by the file of its name.
+/// The parts of the module, each in the file of its name.
 void add_pairs(nb::module_& module);
 void add_world(nb::module_& module);
 void add_tracker(nb::module_& module);

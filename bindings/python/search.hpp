@@ -1,4 +1,4 @@
-// What a search is asked for, and running it: for pairs(), count() and the pairs of a part.
+// Search: the arguments of a search, and running it. For pairs(), count() and the pairs of a part.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 
 namespace broadside::python {
 
-/// Searches of fewer boxes end before anyone could press a key.
+/// Searches of fewer boxes end too soon to be interrupted.
 inline constexpr std::size_t long_search = 4096;
 
-/// Appends pairs to a vector, and asks for signals now and then.
+/// Appends pairs to a vector, and checks for signals at intervals.
 class Collector final : public PairSink {
  public:
   Collector(std::vector<Pair>& pairs, WithoutGil& released) : pairs_(pairs), released_(released) {}
@@ -54,7 +54,7 @@ struct Search {
   IgnoredPairs ignored;
   bool quarantine = false;
 
-  /// Of boxes that are of one kind already.
+  /// For boxes that are of the same kind.
   Search(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
       : boxes(std::move(first)),
         other(std::move(second)),
@@ -80,7 +80,7 @@ struct Search {
       ignored.insert({static_cast<BoxId>(places[i]), static_cast<BoxId>(places[i + 1])});
   }
 
-  /// With the GIL given away.
+  /// Call it without the GIL.
   void run(PairSink& pairs, WithoutGil& released) const {
     with_kind(boxes.dimension(), boxes.are_doubles(), [&]<int D, typename Real>() {
       Finder<D, Real> finder(algorithm);
@@ -102,7 +102,7 @@ struct Search {
     try {
       finder.find_between(left, other->boxes<D, Real>(), pairs, which);
     } catch (const InvalidInput& error) {
-      // The sets are looked at in their order; the library calls them left and right.
+      // The library checks the left set first; here it is `boxes`, and the right one is `other`.
       const bool is_left = error.index() < left.size() && is_invalid(left[error.index()]);
       const char* const argument = is_left ? "boxes" : "other";
       const std::string_view message = error.what();
@@ -118,7 +118,7 @@ struct Search {
       throw std::invalid_argument("boxes are in " + std::to_string(boxes.dimension()) + "D and other in " +
                                   std::to_string(other->dimension()) +
                                   "D; expected two sets of the same dimension");
-    // Doubles hold all floats.
+    // Every float is exact as a double.
     if (boxes.are_doubles() && !other->are_doubles()) other = other->widened("other");
     if (!boxes.are_doubles() && other->are_doubles()) boxes = boxes.widened("boxes");
     other_filters = python::filters(second_filters, other->size(), "other_filters");

@@ -61,7 +61,7 @@ class TrackerOf final : public AnyTracker {
   }
 
  private:
-  /// Where none are listed, any box may have changed.
+  /// The places in `changed`; all places for None, since any box may then have changed.
   static std::vector<BoxId> places_of(nb::handle changed, std::size_t boxes) {
     std::vector<BoxId> places;
     if (changed.is_none()) {

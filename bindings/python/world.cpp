@@ -97,7 +97,7 @@ class WorldOf final : public AnyWorld {
       const Rows given = Rows::of(velocities, "velocities", Dimension, has_doubles);
       const std::span<const Point> points = given.array(memory);
       directions.assign(points.begin(), points.end());
-      // None at all would be taken for velocities that were not given.
+      // World::move() takes an empty array for velocities that are not given.
       if (directions.size() != movers.size())
         throw std::invalid_argument("there are " + std::to_string(movers.size()) + " handles and " +
                                     std::to_string(directions.size()) +
