@@ -23,8 +23,8 @@
 #include <type_traits>
 #include <utility>
 
-// The language lets nobody add to namespace std. This library of one known version is the exception: what it
-// lacks can only be found there.
+// The standard forbids additions to namespace std. This one known version of libc++ is the exception: the
+// library looks for these names there.
 namespace std {
 
 template <typename To, typename From>
@@ -38,7 +38,7 @@ unique_ptr<T> make_unique_for_overwrite() {
   return unique_ptr<T>(new T);
 }
 
-/// As the captions of the paper's grid call it.
+/// For the captions of the paper's grid.
 inline to_chars_result to_chars(char* first, char* last, double value, chars_format, int precision) {
   return {first + snprintf(first, static_cast<size_t>(last - first), "%.*g", precision, value), errc()};
 }
@@ -85,7 +85,7 @@ constexpr auto find(Range&& range, const Value& value, Projection projection = {
                       [&](const auto& element) { return invoke(projection, element) == value; });
 }
 
-/// Heapsort, for what quicksort cuts badly.
+/// Heapsort, for ranges that quicksort divides badly.
 template <typename At, typename Before>
 constexpr void sort_by_heap(At first, ptrdiff_t count, Before before) {
   const auto sift_down = [&](ptrdiff_t parent, ptrdiff_t last) {
@@ -114,13 +114,13 @@ constexpr void sort_by_insertion(At first, At last, Before before) {
   }
 }
 
-/// Introsort in a tenth of the code of libc++'s, which is made for each type anew.
+/// Introsort in a tenth of the code of libc++'s, which is instantiated for each type.
 template <typename At, typename Before>
 constexpr void sort_range(At first, At last, Before before, int depth) {
   constexpr ptrdiff_t few = 16;
   while (last - first > few) {
     if (depth-- == 0) return sort_by_heap(first, last - first, before);
-    // The median of three goes first; the others stand where they stop both loops.
+    // The median of three is the pivot; the other two stop both loops.
     At middle = first + (last - first) / 2;
     if (before(*middle, *first)) std::swap(*middle, *first);
     if (before(last[-1], *first)) std::swap(last[-1], *first);
@@ -145,7 +145,7 @@ constexpr void sort(Range&& range, Before before = {}, Projection projection = {
   if (begin(range) == end(range)) return;
   auto* const first = std::addressof(*begin(range));
   const auto count = end(range) - begin(range);
-  if constexpr (requires { tuple_size<remove_cvref_t<Range>>::value; }) {  // of a fixed length, a few
+  if constexpr (requires { tuple_size<remove_cvref_t<Range>>::value; }) {  // of a fixed length, so short
     sort_by_insertion(first, first + count, projected_order(before, projection));
   } else {
     int depth = 2;

@@ -1,5 +1,4 @@
-// The algorithms of the smaller module, in place of those that CMake lists for the library: one for few
-// boxes, one for many.
+// The algorithms of the smaller module, instead of those that CMake lists: one for few boxes, one for many.
 #include "algorithms/registry.hpp"
 
 std::vector<broadside::Algorithm> broadside::algorithm::linked_algorithms() {

@@ -1,4 +1,4 @@
-// Memory, and what the module says of itself.
+// Memory, and information about the module.
 #include "module/calls.hpp"
 
 #include <cstdlib>
@@ -11,11 +11,11 @@ namespace broadside::wasm {
 BROADSIDE_EXPORT(reply) std::uint32_t* reply_address() { return reply.data(); }
 BROADSIDE_EXPORT(question) float* question_address() { return question.data(); }
 
-/// Memory that JavaScript writes arrays to; null if there is none left.
+/// Memory for JavaScript to write arrays to; null if there is none left.
 BROADSIDE_EXPORT(reserve) void* reserve(std::size_t bytes) { return std::malloc(bytes); }
 BROADSIDE_EXPORT(release) void release(void* memory) { std::free(memory); }
 
-/// The name of an algorithm, by number; none from the last one on.
+/// The name of the algorithm of this number, counted from 0; empty beyond the last one.
 BROADSIDE_EXPORT(algorithm_name) void algorithm_name(std::size_t number) {
   const std::span<const Algorithm> all = algorithms();
   answer(number < all.size() ? std::span<const char>(all[number].name) : std::span<const char>());

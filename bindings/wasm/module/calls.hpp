@@ -1,5 +1,5 @@
-// What every function that JavaScript calls has: the block of memory that both sides read and write,
-// exceptions as numbers, and the dimension of the boxes.
+// Shared by the functions that JavaScript calls: the memory that both sides read and write, exceptions as
+// numbers, and the dimension of the boxes.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace broadside::wasm {
 
-/// What became of a call. src/error.ts has the same numbers.
+/// The result of a call. src/error.ts has the same numbers.
 enum Status : std::int32_t {
   ok = 0,
   invalid_input,
@@ -32,18 +32,17 @@ enum Status : std::int32_t {
   failed
 };
 
-/// Answers of a call, as JavaScript reads them: addresses, numbers of things; or, if the call failed, the
-/// place of the box at fault, and where its message is and how long.
+/// What a call returns to JavaScript: addresses and counts; or, if the call failed, the place of the invalid
+/// box, and the address and the length of the message.
 inline std::array<std::uint32_t, 8> reply;
 
-/// A question, as JavaScript writes it: the coordinates of a box, of points and directions, one after the
-/// other.
+/// The coordinates of a query, as JavaScript writes them: a box, or points and directions, one after another.
 inline std::array<float, 16> question;
 
-/// Puts the exception that is being handled into `reply`, and returns its status.
+/// Writes the exception in flight to `reply`, and returns its status.
 Status status_of_exception() noexcept;
 
-/// Runs `body`, and turns what it throws into a status.
+/// Runs `body`, and turns an exception into a status.
 template <typename Body>
 Status guarded(const Body& body) noexcept {
   try {
@@ -54,21 +53,21 @@ Status guarded(const Body& body) noexcept {
   }
 }
 
-/// Says in `reply` where an array is, and how many elements it has: the `number`-th array of an answer.
+/// Writes to `reply` where the answer's array of this number is, and how many elements it has.
 template <typename T>
 void answer(std::span<const T> values, std::size_t number = 0) noexcept {
   reply[2 * number] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(values.data()));
   reply[2 * number + 1] = static_cast<std::uint32_t>(values.size());
 }
 
-/// Boxes where JavaScript put them: minima and then maxima of each.
+/// Boxes as JavaScript wrote them: the minima and then the maxima of each.
 template <int D>
 std::span<const Box<D>> boxes_at(const float* first, std::size_t count) noexcept {
   static_assert(sizeof(Box<D>) == 2 * D * sizeof(float));
   return {reinterpret_cast<const Box<D>*>(first), count};
 }
 
-/// Filters as JavaScript writes them, six words each; none where the address is null.
+/// Filters as JavaScript wrote them, six words each; none if the address is null.
 inline std::span<const Filter> filters_at(const Filter* first, std::size_t count) noexcept {
   static_assert(sizeof(Filter) == 24 && offsetof(Filter, group) == 16 && offsetof(Filter, is_static) == 20);
   return {first, first == nullptr ? 0 : count};
@@ -79,7 +78,7 @@ inline constexpr int dimension = core::has_dimension<2> ? 2 : 3;
 static_assert(core::has_dimension<2> != core::has_dimension<3>,
               "BROADSIDE_DIMENSIONS lists one for a module");
 
-/// Makes an object that JavaScript keeps by its address, which is in `reply`.
+/// Makes an object that JavaScript holds by its address, and writes the address to `reply`.
 template <typename Kept, typename... Arguments>
 Status make_kept(const Arguments&... arguments) noexcept {
   return guarded([&] {

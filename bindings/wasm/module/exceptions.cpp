@@ -1,10 +1,10 @@
-// Exceptions: what the compiler calls for throw and catch, in a tenth of the code of Emscripten's library,
-// and what becomes of those that reach JavaScript.
+// Exceptions: the functions that the compiler calls for throw and catch, in a tenth of the code of
+// Emscripten's library, and the statuses of exceptions for JavaScript.
 //
-// The module catches by `catch (...)` alone, so nothing reads the tables that say which types a catch takes:
-// a handler of one type would call what is not here. All that is thrown is derived from std::exception, by
-// single inheritance. This file alone is compiled with -frtti, which it takes to name types. What the
-// functions do is in the C++ ABI of Itanium, 2.4 and 2.5.
+// The module catches with `catch (...)` alone, so nothing reads the tables of the types that a handler
+// catches; a handler of one type would call functions that are missing here. All exceptions are derived from
+// std::exception, by single inheritance. Only this file is compiled with -frtti, which it needs to name
+// types. The functions follow the Itanium C++ ABI, Exception Handling, 2.4 and 2.5.
 #include <array>
 #include <cstdlib>
 #include <exception>
@@ -16,27 +16,27 @@
 
 namespace {
 
-/// What goes before an exception in memory.
+/// The header before an exception in memory.
 struct alignas(16) Thrown {
-  Thrown* next;  // of those that are being handled
+  Thrown* next;  // in the list of exceptions being handled
   const std::type_info* type;
-  void* (*destroy)(void*);  // WebAssembly's destructors return what they destroy
-  int handlers;             // that have begun and not ended; negative while it is thrown again
+  void* (*destroy)(void*);  // WebAssembly's destructors return the object
+  int handlers;             // that have begun and not ended; negative while it is rethrown
 };
 
 Thrown* handled = nullptr;  // the last one first
 
-/// For std::bad_alloc, where there is no memory at all.
+/// Memory for std::bad_alloc if there is no other.
 std::array<Thrown, 4> reserve;
 bool is_reserve_used = false;
 
 void* exception_of(Thrown* thrown) noexcept { return thrown + 1; }
 Thrown* thrown_of(void* exception) noexcept { return static_cast<Thrown*>(exception) - 1; }
 
-/// Tag 0 is that of C++'s exceptions.
+/// Tag 0 is the tag of C++ exceptions.
 [[noreturn]] void throw_again(void* exception) { __builtin_wasm_throw(0, exception); }
 
-/// A type that has one base, as compilers lay it out for std::type_info.
+/// The compilers' layout of std::type_info for a type with one base.
 struct DerivedType {
   const void* table;
   const char* name;
@@ -54,11 +54,11 @@ bool is_a(const std::type_info* type, const std::type_info& base) noexcept {
 
 }  // namespace
 
-// The names of these are the compiler's.
+// The compiler fixes these names.
 // NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 
-// The tables of std::type_info's classes, which nothing calls here: with these goes what compares types.
+// Empty virtual tables of std::type_info's classes. Nothing calls them; they keep out code to compare types.
 void* _ZTVN10__cxxabiv117__class_type_infoE[4];
 void* _ZTVN10__cxxabiv120__si_class_type_infoE[4];
 void* _ZTVN10__cxxabiv121__vmi_class_type_infoE[4];
@@ -88,7 +88,7 @@ void __cxa_free_exception(void* exception) noexcept {
 
 void* __cxa_begin_catch(void* exception) noexcept {
   Thrown* const thrown = thrown_of(exception);
-  if (thrown->handlers < 0) {  // it was thrown again, and is still in the list
+  if (thrown->handlers < 0) {  // it was rethrown, and is still in the list
     thrown->handlers = 1 - thrown->handlers;
   } else if (++thrown->handlers == 1) {
     thrown->next = handled;
@@ -109,7 +109,7 @@ void __cxa_end_catch() {
   __cxa_free_exception(exception_of(thrown));
 }
 
-// What std::exception_ptr calls, which is linked and never called.
+// std::exception_ptr calls these. It is linked and never used.
 void* __cxa_current_primary_exception() noexcept { return nullptr; }
 void __cxa_rethrow_primary_exception(void*) {}
 void __cxa_increment_exception_refcount(void*) noexcept {}
@@ -135,7 +135,7 @@ new_handler get_new_handler() noexcept { return nullptr; }
 namespace broadside::wasm {
 namespace {
 
-/// The message of the last failure. A longer one is cut off, so that telling of a failure takes no memory.
+/// The message of the last failure. Longer ones are cut off, so that reporting a failure needs no memory.
 std::array<char, 1000> message;
 
 Status failed_as(Status status, std::string_view text, std::size_t place = 0) noexcept {

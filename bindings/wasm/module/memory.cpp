@@ -1,5 +1,5 @@
-// How memory is copied and filled: by WebAssembly's instructions for it, which the compiler makes of these
-// builtins, and which there are wherever there are exceptions.
+// Copies and fills memory by WebAssembly's own instructions, which the compiler makes of these builtins.
+// Every engine that has exceptions has them.
 #include <cstddef>
 
 extern "C" {

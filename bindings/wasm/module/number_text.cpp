@@ -1,5 +1,5 @@
-// Numbers and text, by JavaScript, whose engine has what the standard library would add some ten kilobytes
-// for. It stands in for src/core/number_text.cpp.
+// Converts numbers and text by JavaScript, for which the standard library would add some ten kilobytes.
+// Replaces src/core/number_text.cpp.
 #include "core/number_text.hpp"
 
 #include <array>

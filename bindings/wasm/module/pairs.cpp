@@ -1,4 +1,4 @@
-// All pairs, by finders that JavaScript keeps, and trackers.
+// Finders and trackers that JavaScript holds.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,10 +13,10 @@
 namespace broadside::wasm {
 namespace {
 
-/// What a search is to give.
+/// The results of a search, as bits.
 enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4 };
 
-/// The boxes of a search and which pairs of them count.
+/// The boxes of a search, and which of their pairs count.
 struct Search {
   const float* boxes;
   std::size_t count;
@@ -66,8 +66,8 @@ class KeptTracker {
  public:
   explicit KeptTracker(std::string_view spec) : tracker_(spec) {}
 
-  /// Takes the next frame. `changed` lists places whose boxes or filters may differ from the frame before;
-  /// null where the tracker is to see for itself.
+  /// Takes the next frame. `changed` lists the places where boxes or filters may differ from the frame
+  /// before; if it is null, compares the frames.
   void update(const float* boxes, std::size_t count, const BoxId* changed, std::size_t changed_count,
               const Filter* filters) {
     Frame<dimension> frame{.boxes = boxes_at<dimension>(boxes, count),
@@ -99,7 +99,7 @@ class KeptTracker {
     }
   }
 
-  /// Whether two boxes have the same bits: most have, and this takes no branch for each coordinate.
+  /// Whether two boxes have the same bits. Most have, and this needs no branch per coordinate.
   static bool equal(const Box<dimension>& a, const Box<dimension>& b) noexcept {
     using Bits = std::array<std::uint64_t, dimension>;
     const Bits a_bits = std::bit_cast<Bits>(a);

@@ -1,4 +1,4 @@
-// Queries: indexes of arrays of boxes, and worlds that are asked as well.
+// Queries of indexes and of worlds.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,11 +10,11 @@
 namespace broadside::wasm {
 namespace {
 
-/// What the last question found: ids, in a world those of slots.
+/// The results of the last query: ids, which are slots in a world.
 std::vector<BoxId> ids;
 std::vector<Neighbour<float>> neighbours;
 
-// What JavaScript reads of it.
+// The results that JavaScript reads.
 std::vector<double> handles;
 std::vector<double> distances;
 
@@ -24,7 +24,7 @@ Point<dimension> point_at(std::size_t first) {
   return point;
 }
 
-/// The box that moves: origin, direction, t_max and half its extent are the question.
+/// The moving box: `question` has its origin, the direction, t_max and half its extent.
 BoxCast<dimension> cast_at() {
   return {Box<dimension>::around(point_at(0), point_at(2 * dimension + 1)), point_at(dimension),
           question[2 * dimension]};
@@ -72,8 +72,8 @@ void ask_world(const World<dimension>& world, double except, const Ask& ask) {
   answer(std::span<const double>(handles));
 }
 
-/// Hands `ask` what is asked and the box that is left out, and says in `reply` what it put into `ids`. At
-/// `address` is an index, or a world. An `except` below 0 leaves out nothing.
+/// Calls `ask` with the index or world at `address` and the box to leave out, and writes to `reply` where
+/// `ids` or their handles are. An `except` below 0 leaves out nothing.
 template <typename Ask>
 Status asked(bool is_world, void* address, double except, const Ask& ask) noexcept {
   return guarded([&] {
@@ -121,7 +121,7 @@ Status query_nearest(bool is_world, void* address, const Filter* filter, double 
       });
 }
 
-/// The parameter of the hit is in `question`.
+/// Writes the parameter of the hit to `question`.
 BROADSIDE_EXPORT(query_first_hit)
 Status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,

@@ -1,5 +1,5 @@
-// Parts of the C++ standard library that the module does without, in place of libc++'s: with these, locks for
-// threads that there are not, printf() and the texts of the system's errors would be linked.
+// Replaces parts of libc++ that would link locks, although there are no threads, printf() and the texts of
+// system errors.
 #include <mutex>
 
 namespace std {

@@ -1,6 +1,6 @@
 // The module that decompresses the others, for the package's entries: LZMA as `xz --format=raw
-// --lzma1=lc=3,lp=0,pb=0` writes it. Igor Pavlov's specification, which comes with his LZMA SDK, describes
-// the format. In JavaScript it would take ten times as long, since a page runs it once and so unoptimized.
+// --lzma1=lc=3,lp=0,pb=0` writes it. Igor Pavlov's specification, in his LZMA SDK, describes the format. In
+// JavaScript it would take ten times as long, since a page runs it once and therefore unoptimized.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t length_odds = 2 + 8 + 8 + 256;
 
-/// Where the odds of each kind of bit begin. Those of a flag have one for each of twelve states.
+/// Where the odds of each kind of bit begin. A flag has odds for each of twelve states.
 enum : std::size_t {
   is_match = 0,
   is_repeat = 12,
@@ -30,7 +30,7 @@ enum : std::size_t {
   all_odds = literals + 8 * std::size_t{0x300}
 };
 
-std::array<std::uint16_t, all_odds> odds;  // of 2048, that a bit is 0
+std::array<std::uint16_t, all_odds> odds;  // that a bit is 0, in parts of 2048
 const std::uint8_t* packed;
 std::uint32_t range;
 std::uint32_t code;
@@ -70,7 +70,7 @@ std::uint32_t reversed_number(std::size_t at, int bits) noexcept {
   return value;
 }
 
-/// A number of bits that are 0 and 1 equally often.
+/// A number with bits that are 0 or 1 equally often.
 std::uint32_t even_number(int bits) noexcept {
   std::uint32_t value = 0;
   for (int i = 0; i < bits; ++i) {
@@ -89,7 +89,7 @@ std::uint32_t length(std::size_t at) noexcept {
   return 18 + number(at + 18, 8);
 }
 
-/// How far back a match is, less one, by its slot: the highest two bits and how many follow.
+/// How far back a match is, minus one. The slot encodes the highest two bits and how many bits follow.
 std::uint32_t distance(std::uint32_t slot) noexcept {
   if (slot < 4) return slot;
   const int bits = static_cast<int>(slot >> 1) - 1;
@@ -101,11 +101,11 @@ std::uint32_t distance(std::uint32_t slot) noexcept {
 
 }  // namespace
 
-/// Where JavaScript writes what is compressed.
+/// Where JavaScript writes the compressed bytes.
 BROADSIDE_EXPORT(room) unsigned char* room() { return &__heap_base; }
 
-/// Decompresses what is in the room to the memory behind it: `size` bytes, which must be as many as there
-/// were.
+/// Decompresses the bytes in room() to the memory after them. `size` must be the number of bytes before
+/// compression.
 BROADSIDE_EXPORT(unpack) void unpack(std::size_t packed_size, std::size_t size) {
   packed = &__heap_base;
   std::uint8_t* const out = &__heap_base + packed_size;
@@ -115,13 +115,13 @@ BROADSIDE_EXPORT(unpack) void unpack(std::size_t packed_size, std::size_t size) 
   for (int i = 0; i < 5; ++i) code = code << 8 | *packed++;
 
   std::uint32_t state = 0;  // of the last literals and matches; below 7 the last was a literal
-  std::array<std::uint32_t, 4> recent = {};  // the last distances, each less by one
+  std::array<std::uint32_t, 4> recent = {};  // the last distances, each minus one
   for (std::size_t to = 0; to < size;) {
     const bool after_literal = state < 7;
     if (bit(is_match + state) == 0) {
       const std::size_t at = literals + std::size_t{0x300} * (to == 0 ? 0U : out[to - 1] >> 5U);
       std::uint32_t symbol = 1;
-      // After a match, the byte that would have continued it tells the odds, until it is known to be another.
+      // After a match, the byte that would have continued it selects the odds, until a bit differs from it.
       bool is_expected = !after_literal;
       std::uint32_t expected = is_expected ? out[to - 1 - recent[0]] : 0;
       while (symbol < 256) {
@@ -138,7 +138,7 @@ BROADSIDE_EXPORT(unpack) void unpack(std::size_t packed_size, std::size_t size) 
     std::uint32_t count = 1;
     std::uint32_t kind = 7;
     std::uint32_t latest = recent[0];
-    std::size_t dropped = 0;  // the place among the recent ones that the latest distance is taken from
+    std::size_t dropped = 0;  // the place in `recent` of the latest distance
     if (bit(is_repeat + state) == 0) {
       count = length(lengths);
       latest = distance(number(slots + 64 * std::size_t{count < 6 ? count - 2 : 3}, 6));

@@ -1,4 +1,4 @@
-// Worlds, but for their queries.
+// Worlds, except for their queries.
 #include "module/world.hpp"
 
 #include <string>
@@ -25,7 +25,7 @@ void KeptWorld::take_handles(const double* handles, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) handles_[i] = handle_of(handles[i]);
 }
 
-/// Throws if `more` boxes would take slots that no handle can name.
+/// Throws if `more` boxes would need slots that no handle can name.
 void KeptWorld::check_slots(std::size_t more) const {
   const std::size_t slots = world_.slots() + more;
   if (slots > max_slots)
@@ -132,7 +132,7 @@ BROADSIDE_EXPORT(world_pairs) Status world_pairs(KeptWorld* world) {
   return guarded([&] { world->pairs(); });
 }
 
-/// The box is in `question`.
+/// Writes the box to `question`.
 BROADSIDE_EXPORT(world_box) Status world_box(KeptWorld* world, double handle) {
   return guarded([&] { world->box(handle); });
 }

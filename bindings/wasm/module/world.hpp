@@ -1,4 +1,4 @@
-// A world that JavaScript keeps.
+// KeptWorld: a world that JavaScript holds.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace broadside::wasm {
 
-/// Arrays of coordinates have those of its boxes.
+/// Arrays of coordinates have as many per box as its dimension needs.
 class KeptWorld {
  public:
   explicit KeptWorld(const WorldOptions& options) : world_(options) {}
@@ -37,7 +37,7 @@ class KeptWorld {
   std::vector<Handle> handles_;
   std::vector<BoxOptions> options_;
   Events events_;
-  bool has_untold_ = false;  // memory ran out before JavaScript had the events
+  bool has_untold_ = false;  // memory ran out before JavaScript got the events
   std::vector<double> begun_;
   std::vector<double> ended_;
 };

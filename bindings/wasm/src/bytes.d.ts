@@ -1,10 +1,10 @@
-// What build.mjs makes of a module's bytes: a file for each, which is fetched when it is needed.
+// build.mjs makes a file of each module's bytes, which is fetched when it is needed.
 declare module "module:*" {
   export const size: number;
   export const bytes: string;
 }
 
-/** In base64, the module that decompresses the others: module/unpack.cpp. */
+/** The module that decompresses the others, module/unpack.cpp, in base64. */
 declare module "unpacker" {
   const base64: string;
   export default base64;

@@ -2,17 +2,17 @@ import type { Broadside } from "./types.js";
 
 export * from "./types.js";
 
-/** The modules of the package's `.wasm` files, which you bring along. */
+/** Makes the library from the package's `.wasm` files, which you provide. */
 export declare function load(options: ExternalOptions): Promise<Broadside>;
 
-/** A module: compiled, as bytes, as what `fetch` gives, or as the address to fetch. */
+/** A module: compiled, as bytes, as the result of `fetch`, or as an address to fetch. */
 export type ModuleSource =
   WebAssembly.Module | BufferSource | Response | PromiseLike<WebAssembly.Module | BufferSource | Response> | URL | string;
 
 export interface ExternalOptions {
   /**
-   * `broadside/broadside-2d.wasm`, `broadside/broadside-3d.wasm`, or an array of both; where there is no SIMD, their
-   * likes with `-scalar` in their names.
+   * `broadside/broadside-2d.wasm`, `broadside/broadside-3d.wasm`, or an array of both; without SIMD, the
+   * files with `-scalar` in their names.
    */
   readonly wasm: ModuleSource | readonly ModuleSource[];
 }

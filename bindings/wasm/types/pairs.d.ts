@@ -2,5 +2,5 @@ import type { LoadOptions, PairFinding } from "./types.js";
 
 export * from "./types.js";
 
-/** The smaller module: pairs, trackers and worlds, without queries. */
+/** Loads the smaller module: pairs, trackers and worlds, without queries. */
 export declare function load(options?: LoadOptions): Promise<PairFinding>;

@@ -1,7 +1,7 @@
 // The types that all entries of the package share.
 /// <reference lib="esnext.disposable" />
 
-/** Boxes of the plane or of space. */
+/** The dimension of boxes. */
 export type Dimension = 2 | 3;
 
 /** An algorithm, perhaps with tunables: `"auto"`, `"grid"`, `"grid:cell=2.5"`. */
@@ -9,21 +9,21 @@ export type AlgorithmSpec =
   | "auto" | "brute_force" | "grid" | (string & {});
 
 /**
- * Boxes one behind the other, each its minima and then its maxima: `minX, minY, maxX, maxY` in 2D, six numbers in
- * 3D. Numbers are rounded to floats. Boxes are closed: boxes that touch overlap. A box of `+Infinity` minima and
- * `-Infinity` maxima is absent: there is none at its place.
+ * Boxes one after the other, each with its minima and then its maxima: `minX, minY, maxX, maxY` in 2D, six numbers in
+ * 3D. Numbers are rounded to floats. Boxes are closed: boxes that touch overlap. A box with `+Infinity` minima and
+ * `-Infinity` maxima is absent: there is no box at its place.
  */
 export type BoxArray = Float32Array | ArrayLike<number> | Boxes;
 
-/** Which overlapping boxes count as pairs: an array for each property, one element a box. */
+/** Which overlapping boxes count as pairs: an array for each property, with one element per box. */
 export interface Filters {
   /** Bits: what the box is. 1 if left out. */
   readonly category?: ArrayLike<number>;
-  /** Bits: the categories that it meets. All if left out. */
+  /** Bits: the categories that it collides with. All if left out. */
   readonly mask?: ArrayLike<number>;
-  /** Two boxes of one group other than 0 meet whatever their bits if it is positive, and never if it is negative. */
+  /** Boxes of the same group other than 0 collide, whatever their bits, if it is positive; never if it is negative. */
   readonly group?: ArrayLike<number>;
-  /** Two static boxes never meet. */
+  /** Two static boxes never collide. */
   readonly isStatic?: ArrayLike<number | boolean>;
 }
 
@@ -36,9 +36,9 @@ export interface Filter {
 }
 
 export interface CountOptions {
-  /** If left out, 2, or the one that was loaded alone. */
+  /** If left out, the dimension that was loaded alone, or 2. */
   readonly dimension?: Dimension;
-  /** `"auto"` if left out; of `broadside/pairs`, which has only `brute_force` and `grid`, the one for so many boxes. */
+  /** If left out, `"auto"`. `broadside/pairs` has only `brute_force` and `grid`, and chooses by the number of boxes. */
   readonly algorithm?: AlgorithmSpec;
   readonly filters?: Filters;
 }
@@ -52,7 +52,7 @@ export interface ResultOptions {
 }
 
 export interface PairsOptions extends CountOptions, ResultOptions {
-  /** Whether pairs are sorted. Otherwise they have an order that the algorithm and the boxes fix. */
+  /** Whether pairs are sorted. Otherwise their order depends only on the algorithm and the boxes. */
   readonly sorted?: boolean;
 }
 
@@ -70,23 +70,23 @@ export interface TrackerOptions {
 export interface WorldOptions extends TrackerOptions {
   /** How far a box is enlarged on every side, so that small moves cost next to nothing. */
   readonly margin?: number;
-  /** The same as a share of the box's longest side; the lesser counts where both are given. */
+  /** The same as a share of the box's longest side. If both are given, the smaller counts. */
   readonly relativeMargin?: number;
-  /** For how many frames ahead an enlarged box covers the way of its box, where `move` is given velocities. */
+  /** How many frames of motion an enlarged box covers, if `move` is given velocities. */
   readonly predictedFrames?: number;
   /** Which boxes make the pairs: the boxes themselves (`"exact"`), or the enlarged ones. */
   readonly events?: "exact" | "enlarged";
   /** Whether current pairs are kept, for `pairs()`: true by default. */
   readonly keepPairs?: boolean;
-  /** Whether invalid boxes are taken as absent ones instead of being refused. */
+  /** Whether invalid boxes count as absent instead of being refused. */
   readonly quarantine?: boolean;
   /** Any other option of the library's table (`world_tunables()`), in camel case. */
   readonly [option: string]: number | string | boolean | undefined;
 }
 
-/** An object whose memory is in the module. `free` gives it back; so does the garbage collector, but later. */
+/** An object with memory in the module. `free` releases it; so does the garbage collector, but later. */
 export interface Freeable {
-  /** Afterwards the object can be freed again, and anything else throws. */
+  /** Afterwards, every call except `free` throws. */
   free(): void;
   [Symbol.dispose](): void;
 }
@@ -96,7 +96,7 @@ export interface Boxes extends Freeable {
   readonly dimension: Dimension;
   /** How many boxes there are. */
   readonly count: number;
-  /** The coordinates, to be read and written. Read it anew after other calls: they may move the module's memory. */
+  /** The coordinates, to be read and written. Get it again after other calls: they may move the module's memory. */
   readonly data: Float32Array;
 }
 
@@ -110,7 +110,7 @@ export interface Events<Numbers> {
 export interface Tracker extends Freeable {
   readonly dimension: Dimension;
   /**
-   * Takes the boxes of the next frame, and tells which pairs began and which ended, as places in the array.
+   * Takes the boxes of the next frame, and returns the pairs that began and ended, as places in the array.
    *
    * It compares the boxes with those of the frame before. If you know which ones differ, list them: a change that is
    * not listed is not seen.
@@ -138,7 +138,7 @@ export interface World extends Freeable {
   readonly size: number;
   /** Adds boxes, and returns a handle for each. */
   add(boxes: BoxArray, options?: { readonly filters?: Filters }): Float64Array;
-  /** Replaces boxes: all of them or, if one is wrong, none. */
+  /** Replaces boxes: all of them or, if one is invalid, none. */
   move(handles: Handles, boxes: BoxArray, options?: { readonly velocities?: ArrayLike<number> }): void;
   /** Takes boxes out. Their pairs end at the next update. */
   remove(handles: Handles): void;
@@ -149,10 +149,10 @@ export interface World extends Freeable {
   has(handle: Handle): boolean;
   /** The box's coordinates. */
   box(handle: Handle): Float32Array;
-  /** A small whole number, unlike that of any other box that is there: a place in arrays of your own. */
+  /** A small whole number that no other box of the world has: an index into arrays of your own. */
   slot(handle: Handle): number;
   setFilter(handle: Handle, filter: Filter): void;
-  /** Lets two boxes never count as a pair, as those that a joint connects. */
+  /** Makes two boxes never count as a pair, such as bodies that a joint connects. */
   ignore(a: Handle, b: Handle): void;
   /** Lets them count again. */
   unignore(a: Handle, b: Handle): void;
@@ -161,7 +161,7 @@ export interface World extends Freeable {
 export interface QueryOptions {
   /** Only boxes that this filter accepts are found. */
   readonly filter?: Filter;
-  /** The box that is not found, such as the one that a ray starts from: a place, or a world's handle. */
+  /** A box to leave out, such as the one that a ray starts from: a place, or a world's handle. */
   readonly except?: number;
 }
 
@@ -173,13 +173,13 @@ export interface NearestOptions extends OverlappingOptions {
 }
 
 export interface RayOptions extends QueryOptions {
-  /** The ray ends at `origin + tMax * direction`. It does not end if left out. */
+  /** The ray ends at `origin + tMax * direction`. If left out, it does not end. */
   readonly tMax?: number;
   /** Half the extent, on each axis, of a box that is moved instead of the point. */
   readonly halfExtent?: ArrayLike<number>;
 }
 
-/** A box that a ray meets, at `origin + t * direction`. */
+/** A box that a ray hits, at `origin + t * direction`. */
 export interface Hit {
   readonly id: number;
   readonly t: number;
@@ -197,18 +197,18 @@ export interface Queries<Numbers> {
   overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Numbers;
   /** The `k` boxes nearest to a point. */
   nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Numbers>;
-  /** The box that a ray meets first. */
+  /** The first box that a ray hits. */
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined;
 }
 
-/** An array of boxes to ask. */
+/** An index of boxes, for queries. */
 export interface Index extends Queries<Uint32Array>, Freeable {
   readonly dimension: Dimension;
-  /** Takes other boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
+  /** Replaces the boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
   update(boxes: BoxArray, options?: FrameOptions): void;
 }
 
-/** A world to ask as well. */
+/** A world with queries. */
 export interface QueriedWorld extends World, Queries<Float64Array> {}
 
 /** Pairs, trackers and worlds. */
@@ -232,18 +232,18 @@ export interface PairFinding {
   readonly simd: boolean;
 }
 
-/** Everything. */
+/** Pairs, trackers, worlds and queries. */
 export interface Broadside extends PairFinding {
   world(options?: WorldOptions): QueriedWorld;
   /** An index of boxes, for queries. */
   index(boxes: BoxArray, options?: { readonly dimension?: Dimension; readonly filters?: Filters }): Index;
 }
 
-/** What went wrong, as the library says it. Nothing has changed. */
+/** An error of the library. The call that threw it has changed nothing. */
 export declare class BroadsideError extends Error {
   readonly name: "BroadsideError";
   readonly code: BroadsideErrorCode;
-  /** Of `INVALID_INPUT`: the place of the first box at fault. */
+  /** For `INVALID_INPUT`: the place of the first invalid box. */
   readonly index: number | undefined;
 }
 
@@ -252,21 +252,21 @@ export type BroadsideErrorCode =
   | "INVALID_INPUT"
   /** Arrays that do not fit together. */
   | "INVALID_FRAME"
-  /** A question with a NaN, or with an infinity where there may be none. */
+  /** A query with a NaN, or with an infinity where none is allowed. */
   | "INVALID_QUERY"
   /** An unknown algorithm, or a tunable out of its range. */
   | "INVALID_SPEC"
   /** A handle that names no box of this world. */
   | "INVALID_HANDLE"
-  /** Another argument that cannot be. */
+  /** Another invalid argument. */
   | "INVALID_ARGUMENT"
   | "OUT_OF_MEMORY"
   | "FAILED";
 
 export interface LoadOptions {
   /**
-   * The only dimension of boxes that is needed: half is then downloaded. Calls that name no dimension mean this one; both
-   * dimensions are loaded, and they mean 2D, if it is left out.
+   * The only dimension of boxes that you need, which halves the download. It is then the default of all calls. If left
+   * out, both dimensions are loaded, and the default is 2.
    */
   readonly dimension?: Dimension;
   /** Whether to take the build that uses SIMD. If left out, it is taken wherever WebAssembly has SIMD. */
