@@ -29,7 +29,7 @@ std::string shortened(double extent) {
 }
 
 std::string axes_text(const FileInfo& info) {
-  Columns table("<>>>>>>>>>");
+  AlignedColumns table("<>>>>>>>>>");
   table.add({"axis", "from", "to", "extent min", "1 %", "25 %", "50 %", "75 %", "99 %", "max"});
   constexpr std::string_view names = "xyz";
   for (std::size_t axis = 0; axis < info.axes.size(); ++axis) {
@@ -56,7 +56,7 @@ std::string sizes_text(const FileInfo& info) {
     bins.erase(bins.begin());
   }
   const auto most = static_cast<double>(std::ranges::max(bins, {}, &SizeBin::boxes).boxes);
-  Columns table(">><");
+  AlignedColumns table(">><");
   table.add({"longest side", "boxes", ""});
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const double from = std::ldexp(1, bins[i].exponent);

@@ -47,7 +47,7 @@ std::string with_first_round_apart(std::string table, const Advice& advice) {
 
 std::string table(const Advice& advice) {
   const bool moves = advice.mode == Mode::track;
-  Columns columns(moves ? "<>>>>>><" : "<>>>>><");
+  AlignedColumns columns(moves ? "<>>>>>><" : "<>>>>><");
   std::vector<std::string> head = {
       "spec", moves ? "a frame" : "a call", "ratio", "tests a box", "memory", "peak", ""};
   if (moves) head.insert(head.begin() + 2, "p99");

@@ -51,7 +51,7 @@ struct Watch {
 };
 
 /// A timed call up to this long does not check whether to stop, so that the check does not disturb it.
-inline constexpr double least_asking_ms = 500;
+inline constexpr double min_asking_ms = 500;
 
 /// Everything a case is measured with except its boxes.
 struct Benchmark {

@@ -150,7 +150,7 @@ std::string text_of(const Verification& verification, std::string_view program) 
     text += fmt::format(", {}{}", counted(*verification.pairs, "pair", "pairs"),
                         verification.frames > 1 ? " in the last" : "");
   text += '\n';
-  Columns table("<<<");
+  AlignedColumns table("<<<");
   std::string faults;
   for (const EntryVerdict& verdict : verification.verdicts) {
     switch (verdict.outcome) {
