@@ -49,15 +49,18 @@ const broadside_world_options& checked(const broadside_world_options* options) {
   return *options;
 }
 
-WorldOptions options_of(const broadside_world_options& options) {
-  return {.algorithm = spec_of(options.algorithm),
-          .keep_pairs = options.forgets_pairs == 0,
-          .margin = options.margin,
-          .relative_margin = options.relative_margin,
-          .predicted_frames = options.predicted_frames,
-          .events = options.reports_enlarged != 0 ? WorldEvents::enlarged : WorldEvents::exact,
-          .first_generation = options.first_generation,
-          .bad_input = options.quarantines != 0 ? BadInput::quarantine : BadInput::reject};
+/// What `settings` says, and over it each field that is not 0.
+WorldOptions options_of(const broadside_world_options& given) {
+  WorldOptions options = given.settings == nullptr ? WorldOptions{} : world_options(Spec(given.settings));
+  options.algorithm = spec_of(given.algorithm);
+  if (given.margin != 0) options.margin = given.margin;
+  if (given.relative_margin != 0) options.relative_margin = given.relative_margin;
+  if (given.predicted_frames != 0) options.predicted_frames = given.predicted_frames;
+  if (given.reports_enlarged != 0) options.events = WorldEvents::enlarged;
+  if (given.forgets_pairs != 0) options.keep_pairs = false;
+  if (given.quarantines != 0) options.bad_input = BadInput::quarantine;
+  if (given.first_generation != 0) options.first_generation = given.first_generation;
+  return options;
 }
 
 template <int D, typename Real>

@@ -265,6 +265,29 @@ TEST_F(CWorld, RefusesHandlesOfAnotherWorld) {
   broadside_world_destroy(other);
 }
 
+TEST(CWorldOptions, AreNamedAsInCxxAndFieldsCountInstead) {
+  broadside_world_options options;
+  broadside_world_options_init(&options);
+  options.settings = "world:margin=-1";
+  broadside_error error;
+  broadside_world* world = nullptr;
+  EXPECT_EQ(broadside_world_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &world, &error),
+            BROADSIDE_INVALID_SPEC);
+  EXPECT_STREQ(error.message, "world: margin is '-1'; expected a number of at least 0");
+  options.settings = "world:first_generation=7:events=enlarged:margin=1";
+  for (const std::uint32_t field : {0U, 9U}) {
+    options.first_generation = field;
+    ASSERT_EQ(broadside_world_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &world, &error),
+              BROADSIDE_OK);
+    const float boxes[][4] = {{0, 0, 1, 1}};
+    const broadside_boxes view{boxes, 1, 0};
+    broadside_handle handle;
+    ASSERT_EQ(broadside_world_add(world, &view, nullptr, nullptr, &handle, &error), BROADSIDE_OK);
+    EXPECT_EQ(handle.generation, field == 0 ? 7U : 9U);
+    broadside_world_destroy(world);
+  }
+}
+
 TEST(CIndex, FindsWhatTheClassBehindItFinds) {
   const std::vector<Box3> boxes = scattered_boxes<3>(300, 20);
   broadside_error error;
