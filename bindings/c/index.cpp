@@ -14,7 +14,7 @@ struct broadside_index : Queried {
 namespace {
 
 template <int D, typename Real>
-class KeptIndex final : public broadside_index {
+class IndexImpl final : public broadside_index {
  public:
   void update(const broadside_boxes& boxes, const std::uint32_t* changed, std::size_t changed_count,
               const broadside_filter* filters) override {
@@ -66,7 +66,7 @@ broadside_status broadside_index_create(int api_version, broadside_kind kind, br
     check_api_version(api_version);
     required(index, "index");
     *index =
-        with_kind(kind, []<int D, typename Real>() -> broadside_index* { return new KeptIndex<D, Real>(); });
+        with_kind(kind, []<int D, typename Real>() -> broadside_index* { return new IndexImpl<D, Real>(); });
   });
 }
 

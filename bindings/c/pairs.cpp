@@ -42,9 +42,9 @@ class BufferSink final : public PairSink {
 };
 
 /// Appends pairs to a vector of the C API's type.
-class Collector final : public PairSink {
+class CPairCollector final : public PairSink {
  public:
-  explicit Collector(std::vector<broadside_pair>& pairs) : pairs_(&pairs) {}
+  explicit CPairCollector(std::vector<broadside_pair>& pairs) : pairs_(&pairs) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
@@ -175,15 +175,15 @@ struct broadside_finder {
 namespace {
 
 template <int D, typename Real>
-class KeptFinder final : public broadside_finder {
+class FinderImpl final : public broadside_finder {
  public:
-  explicit KeptFinder(const broadside_find_options& options)
+  explicit FinderImpl(const broadside_find_options& options)
       : executor_(make_executor(options.executor)), finder_(finder_of<D, Real>(options, executor_.get())) {}
 
   void find(const broadside_boxes& boxes, const broadside_boxes* right,
             const broadside_find_options& options) override {
     pairs.clear();
-    Collector collector(pairs);
+    CPairCollector collector(pairs);
     ::find(finder_, boxes, right, options, collector);
     copy_as(finder_.quarantined(), quarantined);
   }
@@ -202,7 +202,7 @@ broadside_status broadside_finder_create(int api_version, broadside_kind kind,
     check_api_version(api_version);
     required(finder, "finder");
     *finder = with_kind(kind, [&]<int D, typename Real>() -> broadside_finder* {
-      return new KeptFinder<D, Real>(checked(options));
+      return new FinderImpl<D, Real>(checked(options));
     });
   });
 }
@@ -240,9 +240,9 @@ struct broadside_tracker {
 namespace {
 
 template <int D, typename Real>
-class KeptTracker final : public broadside_tracker {
+class TrackerImpl final : public broadside_tracker {
  public:
-  explicit KeptTracker(const broadside_find_options& options)
+  explicit TrackerImpl(const broadside_find_options& options)
       : executor_(make_executor(options.executor)), tracker_(spec_of(options.algorithm)) {
     use(tracker_, executor_.get());
     if (options.quarantines != 0) tracker_.set_bad_input(BadInput::quarantine);
@@ -253,8 +253,8 @@ class KeptTracker final : public broadside_tracker {
     const Frame<D, Real> frame = memory_.frame(boxes, changed, changed_count, filters);
     begun.clear();
     ended.clear();
-    Collector begun_collector(begun);
-    Collector ended_collector(ended);
+    CPairCollector begun_collector(begun);
+    CPairCollector ended_collector(ended);
     tracker_.update(frame, begun_collector, ended_collector);
   }
 
@@ -273,7 +273,7 @@ broadside_status broadside_tracker_create(int api_version, broadside_kind kind,
     check_api_version(api_version);
     required(tracker, "tracker");
     *tracker = with_kind(kind, [&]<int D, typename Real>() -> broadside_tracker* {
-      return new KeptTracker<D, Real>(checked(options));
+      return new TrackerImpl<D, Real>(checked(options));
     });
   });
 }

@@ -64,9 +64,9 @@ WorldOptions options_of(const broadside_world_options& given) {
 }
 
 template <int D, typename Real>
-class KeptWorld final : public broadside_world {
+class WorldImpl final : public broadside_world {
  public:
-  explicit KeptWorld(const broadside_world_options& options)
+  explicit WorldImpl(const broadside_world_options& options)
       : broadside_world(kind_of<D, Real>),
         executor_(make_executor(options.executor)),
         world_(options_of(options)) {
@@ -138,7 +138,7 @@ class KeptWorld final : public broadside_world {
     if (other.kind != kind)
       throw std::invalid_argument("other is a world of " + std::string(text_of(other.kind)) + "; expected " +
                                   std::string(text_of(kind)));
-    world_.join(static_cast<const KeptWorld&>(other).world_, pairs);
+    world_.join(static_cast<const WorldImpl&>(other).world_, pairs);
   }
 
   std::vector<std::byte> snapshot() const override { return world_.snapshot(); }
@@ -211,7 +211,7 @@ broadside_status broadside_world_create(int api_version, broadside_kind kind,
     check_api_version(api_version);
     required(world, "world");
     *world = with_kind(kind, [&]<int D, typename Real>() -> broadside_world* {
-      return new KeptWorld<D, Real>(checked(options));
+      return new WorldImpl<D, Real>(checked(options));
     });
   });
 }

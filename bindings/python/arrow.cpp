@@ -51,7 +51,7 @@ struct ArrowArrayStream {
   void* private_data;
 };
 
-using Columns = std::shared_ptr<const PairTable::Columns>;
+using PairColumns = std::shared_ptr<const PairTable::PairColumns>;
 
 // ---- Export: a struct of two columns ----
 
@@ -82,7 +82,7 @@ void write_schema(ArrowSchema& schema) {
 
 /// What a column owns, wherever it is moved.
 struct Column {
-  Columns columns;
+  PairColumns columns;
   std::array<const void*, 2> buffers;  // no validity; values
 
   static void release(ArrowArray* array) {
@@ -91,7 +91,7 @@ struct Column {
   }
 };
 
-void write_column(ArrowArray& array, const Columns& columns, const std::vector<std::uint32_t>& values) {
+void write_column(ArrowArray& array, const PairColumns& columns, const std::vector<std::uint32_t>& values) {
   auto column = std::make_unique<Column>(Column{columns, {nullptr, values.data()}});
   const void** const buffers = column->buffers.data();
   array = {static_cast<std::int64_t>(values.size()),
@@ -106,7 +106,7 @@ void write_column(ArrowArray& array, const Columns& columns, const std::vector<s
            column.release()};
 }
 
-void write_array(ArrowArray& array, const Columns& columns) {
+void write_array(ArrowArray& array, const PairColumns& columns) {
   auto all = std::make_unique<Children<ArrowArray>>();
   write_column(all->children[0], columns, columns->first);
   try {
@@ -123,7 +123,7 @@ void write_array(ArrowArray& array, const Columns& columns) {
 
 /// A stream of one array.
 struct Stream {
-  Columns columns;
+  PairColumns columns;
   bool ended = false;
 
   static Stream& of(ArrowArrayStream* stream) { return *static_cast<Stream*>(stream->private_data); }
@@ -358,10 +358,10 @@ nb::object values_of(const TakenArray* array, const Leaf& leaf) {
 }
 
 /// The chosen columns of a table, or of an array of structs or of lists of a fixed size.
-class Choice {
+class ChosenColumns {
  public:
   /// `choose` takes the path of names of each column, and returns the indexes of the wanted columns.
-  Choice(const ArrowSchema& schema, nb::handle choose) {
+  ChosenColumns(const ArrowSchema& schema, nb::handle choose) {
     const std::string_view format = schema.format;
     if (format != "+s") {
       if (!format.starts_with(fixed_size_list))
@@ -405,7 +405,7 @@ nb::list columns_of_stream(nb::handle capsule, nb::handle choose) {
   ArrowSchema exported{};
   check(stream.structure.get_schema(&stream.structure, &exported));
   const Taken<ArrowSchema> schema(exported);
-  const Choice choice(schema.structure, choose);
+  const ChosenColumns choice(schema.structure, choose);
   nb::list chunks;
   while (true) {
     ArrowArray array{};
@@ -423,14 +423,14 @@ nb::list columns_of_array(nb::handle schema_capsule, nb::handle array_capsule, n
   const Taken<ArrowSchema> schema(structure_of<ArrowSchema>(schema_capsule));
   const auto taken = std::make_shared<Taken<ArrowArray>>(structure_of<ArrowArray>(array_capsule));
   nb::list chunks;
-  chunks.append(Choice(schema.structure, choose).values(&taken));
+  chunks.append(ChosenColumns(schema.structure, choose).values(&taken));
   return chunks;
 }
 
 }  // namespace
 
 PairTable::PairTable(std::span<const Pair> pairs) {
-  auto columns = std::make_shared<Columns>();
+  auto columns = std::make_shared<PairColumns>();
   columns->first.reserve(pairs.size());
   columns->second.reserve(pairs.size());
   for (const Pair pair : pairs) {

@@ -18,14 +18,14 @@ class PairTable {
 
   std::size_t size() const noexcept { return columns_->first.size(); }
 
-  struct Columns {
+  struct PairColumns {
     std::vector<std::uint32_t> first;
     std::vector<std::uint32_t> second;
   };
-  const std::shared_ptr<const Columns>& columns() const noexcept { return columns_; }
+  const std::shared_ptr<const PairColumns>& columns() const noexcept { return columns_; }
 
  private:
-  std::shared_ptr<const Columns> columns_;
+  std::shared_ptr<const PairColumns> columns_;
 };
 
 }  // namespace broadside::python

@@ -14,17 +14,17 @@
 namespace broadside::python {
 namespace {
 
-std::vector<Pair> found(const Search& search, bool sorts) {
+std::vector<Pair> found(const SearchArguments& search, bool sorts) {
   return without_gil([&](WithoutGil& released) {
     std::vector<Pair> pairs;
-    Collector collector(pairs, released);
+    InterruptibleCollector collector(pairs, released);
     search.run(collector, released);
     if (sorts) sort_for(released, pairs);
     return pairs;
   });
 }
 
-std::uint64_t counted(const Search& search) {
+std::uint64_t counted(const SearchArguments& search) {
   return without_gil([&](WithoutGil& released) {
     PairCounter counter;
     search.run(counter, released);
@@ -33,17 +33,17 @@ std::uint64_t counted(const Search& search) {
 }
 
 /// What find() returns.
-enum class Result { array, table, count };
+enum class ResultForm { array, table, count };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
                 nb::handle quarantine) {
-  const Search search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters, ignored,
-                      truth(quarantine));
+  const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
+                               ignored, truth(quarantine));
   const bool sorts = truth(sort);
-  if (static_cast<Result>(result) == Result::count) return nb::cast(counted(search));
+  if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   std::vector<Pair> pairs = found(search, sorts);
-  if (static_cast<Result>(result) == Result::table)
+  if (static_cast<ResultForm>(result) == ResultForm::table)
     return nb::cast(without_gil([&](WithoutGil&) { return PairTable(pairs); }));
   const std::size_t count = pairs.size();
   return array_of<std::uint32_t>(std::move(pairs), {count, 2});
@@ -70,9 +70,9 @@ nb::object invalid_rows(nb::handle boxes) {
 }  // namespace
 
 void add_pairs(nb::module_& module) {
-  module.attr("ARRAY") = static_cast<int>(Result::array);
-  module.attr("TABLE") = static_cast<int>(Result::table);
-  module.attr("COUNT") = static_cast<int>(Result::count);
+  module.attr("ARRAY") = static_cast<int>(ResultForm::array);
+  module.attr("TABLE") = static_cast<int>(ResultForm::table);
+  module.attr("COUNT") = static_cast<int>(ResultForm::count);
   module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),

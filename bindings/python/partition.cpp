@@ -122,8 +122,8 @@ class PartitionOf final : public AnyPartition {
                    nb::handle sort, nb::handle threads) const override {
     std::optional<Rows> second;
     if (!other.is_none()) second.emplace(Rows::of(other, "other", 2 * D, are_doubles));
-    const Search search(Rows::of(boxes, "boxes", 2 * D, are_doubles), std::move(second),
-                        text(algorithm, "algorithm"), threads);
+    const SearchArguments search(Rows::of(boxes, "boxes", 2 * D, are_doubles), std::move(second),
+                                 text(algorithm, "algorithm"), threads);
     const bool sorts = truth(sort);
     std::vector<Pair> pairs =
         without_gil([&](WithoutGil& released) { return pairs_of(part, search, sorts, released); });
@@ -156,12 +156,13 @@ class PartitionOf final : public AnyPartition {
     }
   }
 
-  std::vector<Pair> pairs_of(std::size_t part, const Search& search, bool sorts, WithoutGil& released) const {
+  std::vector<Pair> pairs_of(std::size_t part, const SearchArguments& search, bool sorts,
+                             WithoutGil& released) const {
     const std::vector<std::uint8_t> left = begins_before(part, search.boxes, "boxes");
     std::vector<std::uint8_t> right;
     if (search.other) right = begins_before(part, *search.other, "other");
     std::vector<Pair> pairs;
-    Collector collector(pairs, released);
+    InterruptibleCollector collector(pairs, released);
     PartPairs part_pairs(left, search.other ? right : left, collector);
     search.run(part_pairs, released);
     collector.flush();

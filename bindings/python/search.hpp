@@ -21,9 +21,10 @@ namespace broadside::python {
 inline constexpr std::size_t long_search = 4096;
 
 /// Appends pairs to a vector, and checks for signals at intervals.
-class Collector final : public PairSink {
+class InterruptibleCollector final : public PairSink {
  public:
-  Collector(std::vector<Pair>& pairs, WithoutGil& released) : pairs_(pairs), released_(released) {}
+  InterruptibleCollector(std::vector<Pair>& pairs, WithoutGil& released)
+      : pairs_(pairs), released_(released) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
@@ -44,7 +45,7 @@ inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
 }
 
 /// What is searched, and how.
-struct Search {
+struct SearchArguments {
   Rows boxes;
   std::optional<Rows> other;
   std::string algorithm;
@@ -55,14 +56,15 @@ struct Search {
   bool quarantine = false;
 
   /// For boxes that are of the same kind.
-  Search(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
+  SearchArguments(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
       : boxes(std::move(first)),
         other(std::move(second)),
         algorithm(std::move(spec)),
         threads(threads_of(max_threads, algorithm)) {}
 
-  Search(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
-         nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs, bool quarantines)
+  SearchArguments(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
+                  nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs,
+                  bool quarantines)
       : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
         threads(threads_of(max_threads, algorithm)),

@@ -148,7 +148,7 @@ class RankJoin {
   RankJoin(Communicator& comm, Finder<D, Real>& finder, std::vector<OneSide> sides)
       : comm_(comm), finder_(finder), sides_(std::move(sides)) {}
 
-  Statistics run(const Options& options, const PairCallback& take) {
+  RankStatistics run(const Options& options, const PairCallback& take) {
     const Partition<D, Real> partition = cut(options);
     for (OneSide& side : sides_) send_boxes(partition, side);
     statistics_.box_bytes = comm_.sent_bytes();
@@ -240,7 +240,7 @@ class RankJoin {
   Communicator& comm_;
   Finder<D, Real>& finder_;
   std::vector<OneSide> sides_;
-  Statistics statistics_;
+  RankStatistics statistics_;
 };
 
 template <int D, typename Real>
@@ -255,9 +255,9 @@ Finder<D, Real> finder_of(const Options& options) {
 }
 
 template <typename Id, typename P, int D, typename Real>
-Statistics join(Communicator& comm, Finder<D, Real>& finder, std::span<const BoxView<D, Real>> views,
-                std::vector<std::vector<std::uint64_t>> ends, const PairCallback& take,
-                const Options& options) {
+RankStatistics join(Communicator& comm, Finder<D, Real>& finder, std::span<const BoxView<D, Real>> views,
+                    std::vector<std::vector<std::uint64_t>> ends, const PairCallback& take,
+                    const Options& options) {
   std::vector<JoinSide<D, Real, Id>> sides;
   comm.together([&] {
     for (std::size_t set = 0; set < views.size(); ++set) {
@@ -273,8 +273,8 @@ Statistics join(Communicator& comm, Finder<D, Real>& finder, std::span<const Box
 namespace detail {
 
 template <int D, typename Real>
-Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const BoxView<D, Real>* right,
-                      const PairCallback& pairs, const Options& options) {
+RankStatistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const BoxView<D, Real>* right,
+                          const PairCallback& pairs, const Options& options) {
   Communicator comm(mpi_comm);
   comm.check_same(fingerprint<D, Real>(options, right != nullptr),
                   "spec, threads, sample, size of ids, sets, dimension or type of coordinate");
@@ -299,25 +299,27 @@ Statistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, const Bo
   return join<std::uint64_t, LargePair>(comm, *finder, views, std::move(ends), pairs, options);
 }
 
-template BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm, const BoxView<2, float>&, const BoxView<2, float>*,
-                                                const PairCallback&, const Options&);
-template BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm, const BoxView<3, float>&, const BoxView<3, float>*,
-                                                const PairCallback&, const Options&);
-template BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm, const BoxView<2, double>&,
-                                                const BoxView<2, double>*, const PairCallback&,
-                                                const Options&);
-template BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm, const BoxView<3, double>&,
-                                                const BoxView<3, double>*, const PairCallback&,
-                                                const Options&);
+template BROADSIDE_PUBLIC RankStatistics find_pairs(MPI_Comm, const BoxView<2, float>&,
+                                                    const BoxView<2, float>*, const PairCallback&,
+                                                    const Options&);
+template BROADSIDE_PUBLIC RankStatistics find_pairs(MPI_Comm, const BoxView<3, float>&,
+                                                    const BoxView<3, float>*, const PairCallback&,
+                                                    const Options&);
+template BROADSIDE_PUBLIC RankStatistics find_pairs(MPI_Comm, const BoxView<2, double>&,
+                                                    const BoxView<2, double>*, const PairCallback&,
+                                                    const Options&);
+template BROADSIDE_PUBLIC RankStatistics find_pairs(MPI_Comm, const BoxView<3, double>&,
+                                                    const BoxView<3, double>*, const PairCallback&,
+                                                    const Options&);
 
 }  // namespace detail
 
-Summary summary(MPI_Comm mpi_comm, const Statistics& own) {
+Summary summary(MPI_Comm mpi_comm, const RankStatistics& own) {
   Communicator comm(mpi_comm);
   Summary result;
-  for (std::uint64_t Statistics::*const count :
-       {&Statistics::boxes, &Statistics::part_boxes, &Statistics::part_pairs, &Statistics::pairs,
-        &Statistics::box_bytes, &Statistics::pair_bytes})
+  for (std::uint64_t RankStatistics::*const count :
+       {&RankStatistics::boxes, &RankStatistics::part_boxes, &RankStatistics::part_pairs,
+        &RankStatistics::pairs, &RankStatistics::box_bytes, &RankStatistics::pair_bytes})
     result.all.*count = comm.sum(own.*count);
   result.all.work = comm.sum(own.work);
   const auto over_mean = [&](double largest, double all) {

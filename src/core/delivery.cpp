@@ -84,7 +84,7 @@ void Delivery::begin_round() {
 
 std::optional<Delivery::Piece> Delivery::take() {
   const std::lock_guard lock(mutex_);
-  while (next_ < pieces_.size() && pieces_[next_].state != State::open) ++next_;
+  while (next_ < pieces_.size() && pieces_[next_].state != PieceState::open) ++next_;
   const std::size_t used = blocks_->used();
   if (workers_left_ && used < nearly_empty && is_callers_thread()) round_ends_ = true;
   if (next_ == pieces_.size() || round_ends_) return std::nullopt;
@@ -94,13 +94,13 @@ std::optional<Delivery::Piece> Delivery::take() {
     return std::nullopt;
   }
   if (is_direct) delivering_ = true;  // until this piece ends
-  pieces_[next_].state = State::taken;
+  pieces_[next_].state = PieceState::taken;
   return Piece{next_++, is_direct};
 }
 
 void Delivery::end(const Piece& piece, PairList pairs) {
   const std::lock_guard lock(mutex_);
-  pieces_[piece.number].state = State::ended;
+  pieces_[piece.number].state = PieceState::ended;
   pieces_[piece.number].pairs = std::move(pairs);
   if (!piece.is_direct) return;
   delivering_ = false;
@@ -109,14 +109,14 @@ void Delivery::end(const Piece& piece, PairList pairs) {
 
 void Delivery::give_up(const Piece& piece) {
   const std::lock_guard lock(mutex_);
-  pieces_[piece.number].state = State::open;
+  pieces_[piece.number].state = PieceState::open;
   next_ = std::min(next_, piece.number);
   workers_left_ = true;
 }
 
 bool Delivery::deliver_next() {
   std::unique_lock lock(mutex_);
-  if (delivering_ || is_complete() || pieces_[delivered_].state != State::ended) return false;
+  if (delivering_ || is_complete() || pieces_[delivered_].state != PieceState::ended) return false;
   delivering_ = true;
   PairList pairs = std::move(pieces_[delivered_].pairs);
   lock.unlock();

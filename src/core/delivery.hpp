@@ -116,18 +116,18 @@ class Delivery {
   bool deliver_next();
 
  private:
-  enum class State { open, taken, ended };
+  enum class PieceState { open, taken, ended };
 
-  struct Result {
+  struct PieceResult {
     PairList pairs;
-    State state = State::open;
+    PieceState state = PieceState::open;
   };
 
   PairBlocks* blocks_;
   PairSink* target_;
   std::thread::id caller_ = std::this_thread::get_id();
   std::mutex mutex_;  // guards all members below
-  std::vector<Result> pieces_;
+  std::vector<PieceResult> pieces_;
   std::size_t next_ = 0;       // no piece before this one is open
   std::size_t delivered_ = 0;  // written by the caller's thread alone
   bool delivering_ = false;

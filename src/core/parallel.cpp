@@ -33,7 +33,7 @@ namespace {
 struct NoRoom {};
 
 /// Thrown by a worker's checkpoint after another worker has thrown.
-struct Ended {};
+struct OtherWorkerThrew {};
 
 /// The time between two checkpoints of the waiting caller's thread.
 constexpr std::chrono::milliseconds between_checkpoints{20};
@@ -209,7 +209,7 @@ class Parallel::SharedSearch {
         while (!errors_.any() && (piece = next.fetch_add(1, std::memory_order_relaxed)) < pieces_)
           add(done_[worker], search_piece(piece, worker, chain));
         clones[worker]->flush();
-      } catch (const Ended&) {
+      } catch (const OtherWorkerThrew&) {
       } catch (...) {
         errors_.note(piece);
       }
@@ -260,7 +260,7 @@ class Parallel::SharedSearch {
           return;
         }
       } while (!only_one && !errors_.any());
-    } catch (const Ended&) {
+    } catch (const OtherWorkerThrew&) {
     } catch (...) {
       errors_.note(at);
     }
@@ -313,7 +313,7 @@ void Parallel::share_ranges(std::size_t count, const RangeBody& body) {
       if (number >= range_count()) return;
       try {
         body(number, range(number, count), worker);
-      } catch (const Ended&) {
+      } catch (const OtherWorkerThrew&) {
       } catch (...) {
         errors.note(number);
       }
@@ -352,7 +352,7 @@ void Parallel::pass_workers_checkpoint() const {
   if (std::this_thread::get_id() == caller_)
     pass_checkpoint();
   else if (errors_->any())
-    throw Ended();
+    throw OtherWorkerThrew();
 }
 
 void Parallel::run_workers(Errors& errors, const std::function<void(std::size_t)>& body) {

@@ -16,8 +16,8 @@ namespace broadside {
 namespace {
 
 using debug::EventPairs;
-using debug::Fault;
 using debug::Pairs;
+using debug::WrongEvent;
 
 [[noreturn]] void refuse_unlisted(std::size_t frame, const std::string& what) {
   throw InvalidFrame("frame " + std::to_string(frame) + ": " + what +
@@ -214,7 +214,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
   std::vector<Box<D, Real>> boxes_;  // of the frame, as the tracker sees them
   std::vector<BoxId> changed_;       // likewise
   bool is_whole_ = false;            // whether the last update ended
-  std::optional<Fault> fault_;       // in the last frame of the log
+  std::optional<WrongEvent> fault_;  // in the last frame of the log
   Pairs faulty_;                     // the pairs of that frame
   std::exception_ptr divergence_;    // describes the fault
 };

@@ -56,7 +56,7 @@ void take_events(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, EventPa
 }
 
 /// A pair that was reported wrongly.
-struct Fault {
+struct WrongEvent {
   Pair pair;
   bool began;     ///< whether the event is a beginning; else an end
   bool reported;  ///< reported but did not happen; else happened but was not reported
@@ -67,7 +67,7 @@ inline std::string text_of(Pair pair) {
   return "(" + std::to_string(index(pair.first)) + ", " + std::to_string(index(pair.second)) + ")";
 }
 
-inline std::string text_of(const Fault& fault) {
+inline std::string text_of(const WrongEvent& fault) {
   return std::string(fault.reported ? "reported" : "did not report") + " that the pair " +
          text_of(fault.pair) + (fault.began ? " began" : " ended");
 }
@@ -84,15 +84,16 @@ inline EventPairs events_between(const Pairs& before, const Pairs& now) {
 }
 
 /// The first event that was reported wrongly or twice, or was not reported.
-inline std::optional<Fault> first_fault(const Pairs& reported, const Pairs& happened, bool began) noexcept {
+inline std::optional<WrongEvent> first_fault(const Pairs& reported, const Pairs& happened,
+                                             bool began) noexcept {
   const auto [found, expected] = std::ranges::mismatch(reported, happened);
   if (found == reported.end() && expected == happened.end()) return std::nullopt;
   const bool is_reported = expected == happened.end() || (found != reported.end() && *found < *expected);
-  return Fault{is_reported ? *found : *expected, began, is_reported};
+  return WrongEvent{is_reported ? *found : *expected, began, is_reported};
 }
 
 /// The first pair whose events are not those expected.
-inline std::optional<Fault> fault_of(const EventPairs& events, const EventPairs& expected) noexcept {
+inline std::optional<WrongEvent> fault_of(const EventPairs& events, const EventPairs& expected) noexcept {
   const auto began = first_fault(events.begun, expected.begun, true);
   const auto ended = first_fault(events.ended, expected.ended, false);
   if (began && ended) return began->pair <= ended->pair ? began : ended;
@@ -101,7 +102,7 @@ inline std::optional<Fault> fault_of(const EventPairs& events, const EventPairs&
 
 /// The fault of a tracker in a history's last frame. An exception is another failure, and none here.
 template <int D, typename Real>
-std::optional<Fault> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history) {
+std::optional<WrongEvent> fault_at_the_end(Tracker<D, Real>& tracker, const History<D, Real>& history) {
   try {
     Replay<D, Real> replay(history);
     Pairs held;

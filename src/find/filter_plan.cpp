@@ -47,12 +47,12 @@ bool FilterPlan::make_nodes(std::span<const FilterGroup> groups, std::size_t nod
     Filter filter = groups[i].filter;
     const bool is_negative = filter.group < 0;
     if (!is_negative || !by_negative_group) filter.group = 0;
-    const auto same = std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& node) {
+    const auto same = std::find_if(nodes_.begin(), nodes_.end(), [&](const FilterNode& node) {
       return node.filter == filter && node.is_right == groups[i].is_right;
     });
     if (same == nodes_.end() && nodes_.size() == nodes) return false;
     node_of_[i] = static_cast<std::uint8_t>(same - nodes_.begin());
-    Node& node = same == nodes_.end() ? nodes_.emplace_back() : *same;
+    FilterNode& node = same == nodes_.end() ? nodes_.emplace_back() : *same;
     node.filter = filter;
     node.is_right = groups[i].is_right;
     node.has_negative |= is_negative;
@@ -62,9 +62,9 @@ bool FilterPlan::make_nodes(std::span<const FilterGroup> groups, std::size_t nod
 }
 
 void FilterPlan::relate(bool by_negative_group) {
-  for (Node& node : nodes_) {
+  for (FilterNode& node : nodes_) {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Node& other = nodes_[i];
+      const FilterNode& other = nodes_[i];
       if (are_two_sets_ && node.is_right == other.is_right) continue;
       const bool accept = detail::bits_accept(node.filter, other.filter);
       const bool share = node.has_negative && other.has_negative &&
@@ -127,7 +127,7 @@ void FilterPlan::plan_group(std::span<const FilterGroup> groups, std::span<const
     begin_[i + 1] = i + 1;
     const FilterGroup& group = groups[same[i]];
     node_of_[same[i]] = static_cast<std::uint8_t>(i);
-    Node& node = nodes_.emplace_back();
+    FilterNode& node = nodes_.emplace_back();
     node.is_right = group.is_right;
     node.boxes = group.size;
     for (std::size_t j = 0; j < same.size(); ++j) {
@@ -155,8 +155,8 @@ void FilterPlan::merge_twins() {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (target_of_[i] != i) continue;
     for (std::size_t j = i + 1; j < nodes_.size(); ++j) {
-      const Node& a = nodes_[i];
-      const Node& b = nodes_[j];
+      const FilterNode& a = nodes_[i];
+      const FilterNode& b = nodes_[j];
       const auto are_twins = [&](Nodes of_a, Nodes of_b) {
         const Nodes both = bit(i) | bit(j);
         return ((of_a ^ of_b) & ~both) == 0 && ((of_a & both) == both || (of_a & both) == 0) &&
@@ -173,8 +173,8 @@ void FilterPlan::merge(std::size_t into, std::size_t other) {
   nodes_[into].merged |= bit(other);
   nodes_[into].boxes += nodes_[other].boxes;
   target_of_[other] = static_cast<std::uint8_t>(into);
-  nodes_[other] = Node{};
-  for (Node& node : nodes_) {
+  nodes_[other] = FilterNode{};
+  for (FilterNode& node : nodes_) {
     node.meets &= ~bit(other);
     node.rejects &= ~bit(other);
   }

@@ -68,7 +68,7 @@ class FilterPlan {
   using Nodes = std::uint64_t;
 
   /// Groups that accept the same others.
-  struct Node {
+  struct FilterNode {
     Filter filter;              // of its first group
     bool is_right = false;      // whether it is in the right one of two sets
     bool has_negative = false;  // whether some of its groups are negative
@@ -104,7 +104,7 @@ class FilterPlan {
   bool are_two_sets_ = false;
   double weight_ = 0;
   double cost_ = 0;
-  std::vector<Node> nodes_;
+  std::vector<FilterNode> nodes_;
   std::vector<std::uint8_t> node_of_;             // by group
   std::vector<std::uint8_t> target_of_;           // by node, the node that it was merged into
   std::vector<std::uint32_t> ordered_;            // groups by node

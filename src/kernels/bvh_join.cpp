@@ -46,9 +46,10 @@ HWY_INLINE NumberVector all_lanes(std::size_t number) {
 }
 
 template <int D, typename LastTest>
-class Join {
+class BvhJoin {
  public:
-  Join(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, LastTest last_test, PairSink& sink)
+  BvhJoin(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit, LastTest last_test,
+          PairSink& sink)
       : tree_(tree), leaves_(leaves), limit_(limit), pairs_(sink, last_test), next_leaf_(leaves.begin) {}
 
   JoinWork run(std::uint32_t* scratch) {
@@ -236,7 +237,7 @@ template <int D>
 JoinWork join_leaves(const PackedBvh<D>& tree, NodeRange leaves, const JoinLimit& limit,
                      std::uint32_t* scratch, PairSink& pairs) {
   return with_last_test(tree.doubles, [&](auto last_test) HWY_ATTR {
-    return Join(tree, leaves, limit, last_test, pairs).run(scratch);
+    return BvhJoin(tree, leaves, limit, last_test, pairs).run(scratch);
   });
 }
 

@@ -21,7 +21,7 @@ namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
 /// A block in which a moved box has hits, and its hits, as bits.
-struct Found {
+struct BlockHits {
   std::uint32_t moved;
   std::uint32_t block;
   std::uint16_t begun;
@@ -30,9 +30,9 @@ struct Found {
 };
 
 template <int D>
-class Search {
+class MovedSearch {
  public:
-  Search(const BlocksView<D>& blocks, std::span<const MovedBox<D>> moved, const core::ChangeSinks& sinks)
+  MovedSearch(const BlocksView<D>& blocks, std::span<const MovedBox<D>> moved, const core::ChangeSinks& sinks)
       : blocks_(blocks), moved_(moved), sinks_(sinks) {}
 
   core::ChangeWork in_blocks(std::span<const BlockTask> tasks) {
@@ -162,20 +162,20 @@ class Search {
   }
 
   void write(std::size_t count) {
-    const std::span<const Found> all = std::span(found_).first(count);
-    for (const Found& found : all) hwy::Prefetch(blocks_.blocks[found.block].id.data());
-    for (const Found& found : all) {
+    const std::span<const BlockHits> all = std::span(found_).first(count);
+    for (const BlockHits& found : all) hwy::Prefetch(blocks_.blocks[found.block].id.data());
+    for (const BlockHits& found : all) {
       for (std::uint32_t bits = found.begun | found.ended | found.candidates; bits != 0; bits &= bits - 1)
         hwy::Prefetch(&sinks_.moves[blocks_.blocks[found.block].id[std::countr_zero(bits)]]);
     }
-    for (const Found& found : all) {
+    for (const BlockHits& found : all) {
       write(found, found.begun, sinks_.begun);
       write(found, found.ended, sinks_.ended);
       write(found, found.candidates, sinks_.candidates);
     }
   }
 
-  void write(const Found& found, std::uint32_t bits, PairSink& sink) {
+  void write(const BlockHits& found, std::uint32_t bits, PairSink& sink) {
     const BoxId id = moved_[found.moved].id;
     for (; bits != 0; bits &= bits - 1) {
       const std::uint32_t other = blocks_.blocks[found.block].id[std::countr_zero(bits)];
@@ -191,7 +191,7 @@ class Search {
   core::ChangeWork work_;
   std::size_t listed_ = 0;
   std::array<BlockTask, max_listed> listed_tasks_;
-  std::array<Found, max_listed> found_;
+  std::array<BlockHits, max_listed> found_;
 };
 
 template <int D>
@@ -221,13 +221,13 @@ void search_run(const Run<D>& run, std::size_t begin, std::size_t end, const Mov
 template <int D>
 core::ChangeWork find_in_blocks(const BlocksView<D>& blocks, std::span<const MovedBox<D>> moved,
                                 std::span<const BlockTask> tasks, const core::ChangeSinks& sinks) {
-  return Search<D>(blocks, moved, sinks).in_blocks(tasks);
+  return MovedSearch<D>(blocks, moved, sinks).in_blocks(tasks);
 }
 
 template <int D>
 core::ChangeWork find_in_cells(const CellsView<D>& cells, std::span<const MovedBox<D>> moved,
                                const core::ChangeSinks& sinks) {
-  return Search<D>(cells.blocks, moved, sinks).in_cells(cells);
+  return MovedSearch<D>(cells.blocks, moved, sinks).in_cells(cells);
 }
 
 }  // namespace

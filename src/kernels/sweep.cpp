@@ -34,8 +34,8 @@ static_assert(together == Writer<ByFloats>::at_once);
 
 /// One box of a run, in every lane.
 template <int D>
-struct Query {
-  HWY_INLINE Query(const Run<D>& run, std::size_t i)
+struct LaneBox {
+  HWY_INLINE LaneBox(const Run<D>& run, std::size_t i)
       : bounds(run, i), id(hn::Set(Ids(), index(run.id[i]))), dedup_mask(hn::Set(Ids(), run.dedup_mask[i])) {}
 
   BoxId box_id() const { return BoxId{hn::GetLane(id)}; }
@@ -47,7 +47,7 @@ struct Query {
 
 /// Which of the boxes from `at` on overlap the query and share no bit of its dedup_mask.
 template <int D>
-HWY_INLINE Hits overlaps(const Query<D>& query, const Run<D>& run, std::size_t at) {
+HWY_INLINE Hits overlaps(const LaneBox<D>& query, const Run<D>& run, std::size_t at) {
   const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
   const IdVector common = hn::And(query.dedup_mask, hn::LoadU(Ids(), run.dedup_mask + at));
   return hn::And(hits, hn::Eq(common, hn::Zero(Ids())));
@@ -64,7 +64,7 @@ HWY_INLINE IdVector ids_beside(const Bounds<D>& bounds, const Run<D>& run, std::
 /// Compares the query with the boxes from `begin` on that may start on axis 0 no later than the query ends.
 /// Returns how many do.
 template <int D, typename LastTest>
-HWY_INLINE std::size_t sweep_from(const Query<D>& query, float last, const Run<D>& run, std::size_t begin,
+HWY_INLINE std::size_t sweep_from(const LaneBox<D>& query, float last, const Run<D>& run, std::size_t begin,
                                   Writer<LastTest>& pairs) {
   const Floats floats;
   std::size_t tests = 0;
@@ -142,7 +142,7 @@ std::uint64_t sweep_run(const Run<D>& run, LastTest last_test, PairSink& sink) {
     std::size_t distance = 1;
     if (sweep_group(run, begin, distance, tests, pairs) == 0) continue;
     for (std::size_t i = begin; i < begin + together; ++i)
-      tests += sweep_from(Query<D>(run, i), run.max[0][i] + run.slack, run, i + distance + 1, pairs);
+      tests += sweep_from(LaneBox<D>(run, i), run.max[0][i] + run.slack, run, i + distance + 1, pairs);
   }
   tell(run.checkpoint, tests, told);
   return tests;
@@ -159,10 +159,10 @@ std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, P
   while (i < a.size && j < b.size) {
     tell(a.checkpoint, tests, told);
     if (a.min[0][i] <= b.min[0][j]) {
-      tests += sweep_from(Query<D>(a, i), a.max[0][i] + b.slack, b, j, pairs);
+      tests += sweep_from(LaneBox<D>(a, i), a.max[0][i] + b.slack, b, j, pairs);
       ++i;
     } else {
-      tests += sweep_from(Query<D>(b, j), b.max[0][j] + a.slack, a, i, pairs);
+      tests += sweep_from(LaneBox<D>(b, j), b.max[0][j] + a.slack, a, i, pairs);
       ++j;
     }
   }
@@ -172,7 +172,7 @@ std::uint64_t sweep_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, P
 
 /// Compares the query with all boxes from `begin` on.
 template <int D, typename LastTest>
-HWY_INLINE void compare_from(const Query<D>& query, const Run<D>& run, std::size_t begin,
+HWY_INLINE void compare_from(const LaneBox<D>& query, const Run<D>& run, std::size_t begin,
                              Writer<LastTest>& pairs) {
   for (std::size_t at = begin; at < run.size; at += lanes) {
     const Hits hits = hn::RebindMask(Ids(), query.bounds.overlaps(run, at));
@@ -189,7 +189,7 @@ std::uint64_t compare_run(const Run<D>& run, LastTest last_test, PairSink& sink)
   Writer<LastTest> pairs(sink, last_test);
   const std::uint64_t rows = std::min(run.rows, run.size);
   for (std::size_t i = 0; i < rows; ++i) {
-    compare_from(Query<D>(run, i), run, i + 1, pairs);
+    compare_from(LaneBox<D>(run, i), run, i + 1, pairs);
     if (run.checkpoint != nullptr) run.checkpoint->count(run.size - i - 1);
   }
   return rows * run.size - rows * (rows + 1) / 2;
@@ -199,7 +199,7 @@ template <int D, typename LastTest>
 std::uint64_t compare_runs(const Run<D>& a, const Run<D>& b, LastTest last_test, PairSink& sink) {
   Writer<LastTest> pairs(sink, last_test);
   for (std::size_t i = 0; i < a.size; ++i) {
-    compare_from(Query<D>(a, i), b, 0, pairs);
+    compare_from(LaneBox<D>(a, i), b, 0, pairs);
     if (a.checkpoint != nullptr) a.checkpoint->count(b.size);
   }
   return std::uint64_t{a.size} * b.size;

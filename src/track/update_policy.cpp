@@ -147,7 +147,7 @@ void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>
   if (seen_.movers < telling_movers) return;
   for (KnownStructure& known : structures_)
     known.of_mover += forgotten * (known.costs.mover - known.of_mover);
-  const Seen seen = std::exchange(seen_, {});
+  const WorkSinceMeasured seen = std::exchange(seen_, {});
   const auto movers = static_cast<double>(seen.movers);
   const double tests = static_cast<double>(seen.tests) / movers;
   const double candidates = static_cast<double>(seen.candidates) / movers;

@@ -85,7 +85,7 @@ class FollowPolicy {
   };
 
   /// What the structure did since its cost was last measured.
-  struct Seen {
+  struct WorkSinceMeasured {
     std::uint64_t movers = 0;
     std::uint64_t tests = 0;
     std::uint64_t candidates = 0;
@@ -102,7 +102,7 @@ class FollowPolicy {
   bool follows_ = false;
   std::size_t current_ = 0;
   ChangeOfWay change_;
-  Seen seen_;
+  WorkSinceMeasured seen_;
 };
 
 /// Counts of a frame with enlarged boxes.

@@ -33,7 +33,8 @@ class Updater {
   /// Writes the events of a change, in any order. One may be written more than once. After an exception the
   /// next change must be a rebuild.
   std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-    was_enlarged_ = boxes_ == Boxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
+    was_enlarged_ =
+        boxes_ == KnownBoxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
     if (was_enlarged_) return statistics_;
     update_exactly(change, begun, ended);
     if (may_enlarge_ && !change.rebuild && !pairs_.has_compared_all() &&
@@ -55,7 +56,7 @@ class Updater {
   /// An index of the last frame's boxes, if one is kept anyway; else null. An index of enlarged boxes would
   /// answer queries wrongly.
   const BoxIndex<D, Real>* box_index() const noexcept {
-    return boxes_ == Boxes::exact ? pairs_.box_index() : nullptr;
+    return boxes_ == KnownBoxes::exact ? pairs_.box_index() : nullptr;
   }
 
   std::size_t bytes() const noexcept { return pairs_.bytes() + candidates_.bytes(); }
@@ -87,14 +88,14 @@ class Updater {
   }
 
   void update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
-    if (boxes_ == Boxes::exact) {
+    if (boxes_ == KnownBoxes::exact) {
       statistics_ = pairs_.update(change, begun, ended);
       return;
     }
     candidates_.release();
     pairs_.forget();
     pairs_.limit_pairs(no_limit);
-    boxes_ = Boxes::exact;
+    boxes_ = KnownBoxes::exact;
     Change<D, Real> exact = change;
     exact.rebuild = true;
     statistics_ = pairs_.update(exact, begun, ended);
@@ -107,12 +108,12 @@ class Updater {
     Statistics statistics = statistics_.value_or(Statistics{});
     bool changes_pairs = false;
     const auto give_up = [&] {
-      if (changes_pairs) boxes_ = Boxes::ending;
+      if (changes_pairs) boxes_ = KnownBoxes::ending;
       stop_enlarging();
     };
     try {
       statistics.tests += candidates_.start(change, *margins, pairs_, changes_pairs);
-      boxes_ = Boxes::enlarged;
+      boxes_ = KnownBoxes::enlarged;
       policy_.started();
     } catch (const LimitPassed&) {
       statistics.tests += candidates_.candidate_count();  // those found so far
@@ -132,13 +133,13 @@ class Updater {
 
   /// From the next frame on, pairs are those of the boxes themselves.
   void stop_enlarging() noexcept {
-    if (boxes_ == Boxes::enlarged) boxes_ = Boxes::ending;
+    if (boxes_ == KnownBoxes::enlarged) boxes_ = KnownBoxes::ending;
     candidates_.release();
-    if (boxes_ == Boxes::ending) pairs_.forget();
+    if (boxes_ == KnownBoxes::ending) pairs_.forget();
   }
 
   /// The boxes that `pairs_` knows.
-  enum class Boxes : std::uint8_t {
+  enum class KnownBoxes : std::uint8_t {
     exact,
     enlarged,
     ending  ///< enlarged boxes of earlier frames: it has to be rebuilt
@@ -148,7 +149,7 @@ class Updater {
   EnlargePolicy policy_;
   FollowOrFind<D, Real> pairs_;
   CandidateList<D, Real> candidates_;
-  Boxes boxes_ = Boxes::exact;
+  KnownBoxes boxes_ = KnownBoxes::exact;
   bool was_enlarged_ = false;  // whether the last update tested candidates
   std::optional<Statistics> statistics_;
 };

@@ -179,7 +179,7 @@ TEST(MpiFindPairs, SharesTheWork) {
   in_each_dimension([]<int D>() {
     for (const bool is_clustered : {false, true}) {
       const std::vector<Box<D>> boxes = spread<D>(40'000, D == 2 ? 150.0F : 25.0F, is_clustered);
-      const mpi::Statistics statistics =
+      const mpi::RankStatistics statistics =
           mpi::find_pairs(MPI_COMM_WORLD, own_of(Share::all_to_the_last, boxes), [](auto) {});
       const mpi::Summary all = mpi::summary(MPI_COMM_WORLD, statistics);
       EXPECT_LE(all.largest_over_mean_work, is_clustered ? 1.5 : 1.2) << D << "D " << is_clustered;

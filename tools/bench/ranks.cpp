@@ -82,7 +82,7 @@ template <typename Box>
 void look(Group& group, const std::vector<Box>& boxes) {
   if (group.is_member()) {
     std::uint64_t sum = 0;
-    const mpi::Statistics statistics =
+    const mpi::RankStatistics statistics =
         mpi::find_pairs(group.comm, own_of(group, boxes), [&](std::span<const LargePair> pairs) {
           for (const LargePair& pair : pairs) sum += hash(pair);
         });

@@ -17,7 +17,7 @@ namespace {
 enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4 };
 
 /// The boxes of a search, and which of their pairs count.
-struct Search {
+struct PairsCall {
   const float* boxes;
   std::size_t count;
   const float* right;
@@ -27,11 +27,11 @@ struct Search {
   std::uint32_t mode;
 };
 
-class KeptFinder {
+class WasmFinder {
  public:
-  explicit KeptFinder(std::string_view spec) : finder_(spec) {}
+  explicit WasmFinder(std::string_view spec) : finder_(spec) {}
 
-  void find(const Search& search) {
+  void find(const PairsCall& search) {
     if ((search.mode & counts) != 0) {
       PairCounter counter;
       find(search, counter);
@@ -47,7 +47,7 @@ class KeptFinder {
   }
 
  private:
-  void find(const Search& search, PairSink& pairs) {
+  void find(const PairsCall& search, PairSink& pairs) {
     const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     const PairFilters filters{filters_at(search.filters, search.count),
                               filters_at(search.right_filters, search.right_count)};
@@ -62,9 +62,9 @@ class KeptFinder {
   std::vector<Pair> scratch_;
 };
 
-class KeptTracker {
+class WasmTracker {
  public:
-  explicit KeptTracker(std::string_view spec) : tracker_(spec) {}
+  explicit WasmTracker(std::string_view spec) : tracker_(spec) {}
 
   /// Takes the next frame. `changed` lists the places where boxes or filters may differ from the frame
   /// before; if it is null, compares the frames.
@@ -118,26 +118,26 @@ class KeptTracker {
 }  // namespace
 
 BROADSIDE_EXPORT(finder_make) Status finder_make(const char* spec, std::size_t size) {
-  return make_kept<KeptFinder>(std::string_view(spec, size));
+  return make_kept<WasmFinder>(std::string_view(spec, size));
 }
 
-BROADSIDE_EXPORT(finder_free) void finder_free(KeptFinder* finder) { delete finder; }
+BROADSIDE_EXPORT(finder_free) void finder_free(WasmFinder* finder) { delete finder; }
 
 BROADSIDE_EXPORT(finder_find)
-Status finder_find(KeptFinder* finder, const float* boxes, std::size_t count, const float* right,
+Status finder_find(WasmFinder* finder, const float* boxes, std::size_t count, const float* right,
                    std::size_t right_count, const Filter* filters, const Filter* right_filters,
                    std::uint32_t mode) {
   return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
 }
 
 BROADSIDE_EXPORT(tracker_make) Status tracker_make(const char* spec, std::size_t size) {
-  return make_kept<KeptTracker>(std::string_view(spec, size));
+  return make_kept<WasmTracker>(std::string_view(spec, size));
 }
 
-BROADSIDE_EXPORT(tracker_free) void tracker_free(KeptTracker* tracker) { delete tracker; }
+BROADSIDE_EXPORT(tracker_free) void tracker_free(WasmTracker* tracker) { delete tracker; }
 
 BROADSIDE_EXPORT(tracker_update)
-Status tracker_update(KeptTracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
+Status tracker_update(WasmTracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
                       std::size_t changed_count, const Filter* filters) {
   return guarded([&] { tracker->update(boxes, count, changed, changed_count, filters); });
 }

@@ -30,7 +30,7 @@ BoxCast<dimension> cast_at() {
           question[2 * dimension]};
 }
 
-class KeptIndex {
+class WasmIndex {
  public:
   const BoxIndex<dimension>& index() const noexcept { return index_; }
 
@@ -79,20 +79,20 @@ Status asked(bool is_world, void* address, double except, const Ask& ask) noexce
   return guarded([&] {
     ids.clear();
     if (is_world)
-      ask_world(static_cast<KeptWorld*>(address)->world(), except, ask);
+      ask_world(static_cast<WasmWorld*>(address)->world(), except, ask);
     else
-      ask_index(static_cast<KeptIndex*>(address)->index(), except, ask);
+      ask_index(static_cast<WasmIndex*>(address)->index(), except, ask);
   });
 }
 
 }  // namespace
 
-BROADSIDE_EXPORT(index_make) Status index_make() { return make_kept<KeptIndex>(); }
+BROADSIDE_EXPORT(index_make) Status index_make() { return make_kept<WasmIndex>(); }
 
-BROADSIDE_EXPORT(index_free) void index_free(KeptIndex* index) { delete index; }
+BROADSIDE_EXPORT(index_free) void index_free(WasmIndex* index) { delete index; }
 
 BROADSIDE_EXPORT(index_update)
-Status index_update(KeptIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
+Status index_update(WasmIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
                     std::size_t changed_count, const Filter* filters) {
   return guarded([&] { index->update(boxes, count, changed, changed_count, filters); });
 }

@@ -20,19 +20,19 @@ void copy_pairs(std::span<const HandlePair> pairs, std::vector<double>& numbers)
 
 }  // namespace
 
-void KeptWorld::take_handles(const double* handles, std::size_t count) {
+void WasmWorld::take_handles(const double* handles, std::size_t count) {
   handles_.resize(count);
   for (std::size_t i = 0; i < count; ++i) handles_[i] = handle_of(handles[i]);
 }
 
 /// Throws if `more` boxes would need slots that no handle can name.
-void KeptWorld::check_slots(std::size_t more) const {
+void WasmWorld::check_slots(std::size_t more) const {
   const std::size_t slots = world_.slots() + more;
   if (slots > max_slots)
     throw InvalidFrame(core::message({slots, " boxes in a world; expected at most ", max_slots}));
 }
 
-void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {
+void WasmWorld::add(const float* boxes, std::size_t count, const Filter* filters, double* handles) {
   check_slots(count);
   options_.resize(filters == nullptr ? 0 : count);
   for (std::size_t i = 0; i < options_.size(); ++i) options_[i].filter = filters[i];
@@ -41,19 +41,19 @@ void KeptWorld::add(const float* boxes, std::size_t count, const Filter* filters
   for (std::size_t i = 0; i < count; ++i) handles[i] = number_of(handles_[i]);
 }
 
-void KeptWorld::move(const double* handles, const float* boxes, std::size_t count, const float* velocities) {
+void WasmWorld::move(const double* handles, const float* boxes, std::size_t count, const float* velocities) {
   static_assert(sizeof(Point<dimension>) == dimension * sizeof(float));
   take_handles(handles, count);
   world_.move(handles_, boxes_at<dimension>(boxes, count),
               {reinterpret_cast<const Point<dimension>*>(velocities), velocities == nullptr ? 0 : count});
 }
 
-void KeptWorld::remove(const double* handles, std::size_t count) {
+void WasmWorld::remove(const double* handles, std::size_t count) {
   take_handles(handles, count);
   world_.remove(handles_);
 }
 
-void KeptWorld::update() {
+void WasmWorld::update() {
   if (!has_untold_) events_ = world_.update();
   has_untold_ = true;
   copy_pairs(events_.begun, begun_);
@@ -63,12 +63,12 @@ void KeptWorld::update() {
   answer(std::span<const double>(ended_), 1);
 }
 
-void KeptWorld::pairs() {
+void WasmWorld::pairs() {
   copy_pairs(world_.pairs(), begun_);
   answer(std::span<const double>(begun_));
 }
 
-void KeptWorld::box(double handle) {
+void WasmWorld::box(double handle) {
   const Box<dimension>& box = world_.box(handle_of(handle));
   for (int axis = 0; axis < dimension; ++axis) {
     question[axis] = box.min[axis];
@@ -76,15 +76,15 @@ void KeptWorld::box(double handle) {
   }
 }
 
-bool KeptWorld::contains(double handle) const {
+bool WasmWorld::contains(double handle) const {
   return is_handle(handle) && world_.contains(handle_of(handle));
 }
 
-void KeptWorld::set_filter(double handle, const Filter& filter) {
+void WasmWorld::set_filter(double handle, const Filter& filter) {
   world_.set_filter(handle_of(handle), filter);
 }
 
-void KeptWorld::ignore(double a, double b, bool ignores) {
+void WasmWorld::ignore(double a, double b, bool ignores) {
   if (ignores)
     world_.ignore(handle_of(a), handle_of(b));
   else
@@ -102,52 +102,52 @@ Status world_make(const char* texts, std::size_t size) {
     options.algorithm = both.substr(0, line);
     options.first_generation = next_first_generation();
   });
-  return status == ok ? make_kept<KeptWorld>(options) : status;
+  return status == ok ? make_kept<WasmWorld>(options) : status;
 }
 
-BROADSIDE_EXPORT(world_free) void world_free(KeptWorld* world) { delete world; }
+BROADSIDE_EXPORT(world_free) void world_free(WasmWorld* world) { delete world; }
 
 BROADSIDE_EXPORT(world_add)
-Status world_add(KeptWorld* world, const float* boxes, std::size_t count, const Filter* filters,
+Status world_add(WasmWorld* world, const float* boxes, std::size_t count, const Filter* filters,
                  double* handles) {
   return guarded([&] { world->add(boxes, count, filters, handles); });
 }
 
 BROADSIDE_EXPORT(world_move)
-Status world_move(KeptWorld* world, const double* handles, const float* boxes, std::size_t count,
+Status world_move(WasmWorld* world, const double* handles, const float* boxes, std::size_t count,
                   const float* velocities) {
   return guarded([&] { world->move(handles, boxes, count, velocities); });
 }
 
 BROADSIDE_EXPORT(world_remove)
-Status world_remove(KeptWorld* world, const double* handles, std::size_t count) {
+Status world_remove(WasmWorld* world, const double* handles, std::size_t count) {
   return guarded([&] { world->remove(handles, count); });
 }
 
-BROADSIDE_EXPORT(world_update) Status world_update(KeptWorld* world) {
+BROADSIDE_EXPORT(world_update) Status world_update(WasmWorld* world) {
   return guarded([&] { world->update(); });
 }
 
-BROADSIDE_EXPORT(world_pairs) Status world_pairs(KeptWorld* world) {
+BROADSIDE_EXPORT(world_pairs) Status world_pairs(WasmWorld* world) {
   return guarded([&] { world->pairs(); });
 }
 
 /// Writes the box to `question`.
-BROADSIDE_EXPORT(world_box) Status world_box(KeptWorld* world, double handle) {
+BROADSIDE_EXPORT(world_box) Status world_box(WasmWorld* world, double handle) {
   return guarded([&] { world->box(handle); });
 }
 
-BROADSIDE_EXPORT(world_size) std::size_t world_size(KeptWorld* world) { return world->size(); }
-BROADSIDE_EXPORT(world_contains) bool world_contains(KeptWorld* world, double handle) {
+BROADSIDE_EXPORT(world_size) std::size_t world_size(WasmWorld* world) { return world->size(); }
+BROADSIDE_EXPORT(world_contains) bool world_contains(WasmWorld* world, double handle) {
   return world->contains(handle);
 }
 
 BROADSIDE_EXPORT(world_set_filter)
-Status world_set_filter(KeptWorld* world, double handle, const Filter* filter) {
+Status world_set_filter(WasmWorld* world, double handle, const Filter* filter) {
   return guarded([&] { world->set_filter(handle, *filter); });
 }
 
-BROADSIDE_EXPORT(world_ignore) Status world_ignore(KeptWorld* world, double a, double b, bool ignores) {
+BROADSIDE_EXPORT(world_ignore) Status world_ignore(WasmWorld* world, double a, double b, bool ignores) {
   return guarded([&] { world->ignore(a, b, ignores); });
 }
 

@@ -12,9 +12,9 @@
 namespace broadside::wasm {
 
 /// Arrays of coordinates have as many per box as its dimension needs.
-class KeptWorld {
+class WasmWorld {
  public:
-  explicit KeptWorld(const WorldOptions& options) : world_(options) {}
+  explicit WasmWorld(const WorldOptions& options) : world_(options) {}
 
   const World<dimension>& world() const noexcept { return world_; }
 

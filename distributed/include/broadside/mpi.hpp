@@ -49,7 +49,7 @@ struct Options {
 };
 
 /// What a rank did in one find_pairs().
-struct Statistics {
+struct RankStatistics {
   std::uint64_t boxes = 0;       ///< handed in on this rank, of both sets
   std::uint64_t part_boxes = 0;  ///< that touch this rank's part of space
   std::uint64_t part_pairs = 0;  ///< found there
@@ -58,19 +58,19 @@ struct Statistics {
   std::uint64_t pair_bytes = 0;  ///< sent to other ranks for pairs
   double work = 0;               ///< Partition::cost() of the part's boxes and pairs
 
-  friend bool operator==(const Statistics&, const Statistics&) = default;
+  friend bool operator==(const RankStatistics&, const RankStatistics&) = default;
 };
 
 /// What all ranks did.
 struct Summary {
-  Statistics all;                      ///< sums over the ranks
+  RankStatistics all;                  ///< sums over the ranks
   double largest_over_mean_work = 1;   ///< the work of the rank with the most over the mean of all ranks
   double largest_over_mean_boxes = 1;  ///< likewise part_boxes
   double largest_over_mean_pairs = 1;  ///< and part_pairs
 };
 
 /// Adds up the ranks' statistics. Collective; the same on all ranks.
-BROADSIDE_PUBLIC Summary summary(MPI_Comm comm, const Statistics& statistics);
+BROADSIDE_PUBLIC Summary summary(MPI_Comm comm, const RankStatistics& statistics);
 
 /// Takes the pairs that a rank owns, a chunk at a time, in order.
 using PairCallback = std::function<void(std::span<const LargePair>)>;
@@ -79,9 +79,9 @@ namespace detail {
 
 /// Finds pairs within one set or, where `right` is given, between two.
 template <int D, typename Real>
-BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& boxes,
-                                       const BoxView<D, Real>* right, const PairCallback& pairs,
-                                       const Options& options);
+BROADSIDE_PUBLIC RankStatistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& boxes,
+                                           const BoxView<D, Real>* right, const PairCallback& pairs,
+                                           const Options& options);
 
 }  // namespace detail
 
@@ -107,8 +107,8 @@ BROADSIDE_PUBLIC Statistics find_pairs(MPI_Comm comm, const BoxView<D, Real>& bo
 /// MPI_THREAD_FUNNELED. With MPI_THREAD_MULTIPLE, several threads may call this at the same time for
 /// different communicators.
 template <BoxRange Boxes>
-Statistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pairs,
-                      const Options& options = {}) {
+RankStatistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pairs,
+                          const Options& options = {}) {
   using View = broadside::detail::ViewOf<Boxes>;
   return detail::find_pairs(comm, View(boxes), static_cast<const View*>(nullptr), pairs, options);
 }
@@ -116,8 +116,8 @@ Statistics find_pairs(MPI_Comm comm, const Boxes& boxes, const PairCallback& pai
 /// Likewise finds every pair of a box of `left` and an overlapping one of `right`, of all ranks: first is an
 /// id in the left set and second one in the right, and the rank that handed in the left box gets the pair.
 template <BoxRange Left, std::convertible_to<broadside::detail::ViewOf<Left>> Right>
-Statistics find_pairs(MPI_Comm comm, const Left& left, const Right& right, const PairCallback& pairs,
-                      const Options& options = {}) {
+RankStatistics find_pairs(MPI_Comm comm, const Left& left, const Right& right, const PairCallback& pairs,
+                          const Options& options = {}) {
   using View = broadside::detail::ViewOf<Left>;
   const View right_view(right);
   return detail::find_pairs(comm, View(left), &right_view, pairs, options);

@@ -28,14 +28,14 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class Choice { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
+enum class AutoReason { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
 
 constexpr std::array<std::string_view, 9> chosen_algorithm = {
     "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
-const Algorithm& algorithm_of(Choice choice) {
+const Algorithm& algorithm_of(AutoReason choice) {
   const Algorithm* const chosen = find_algorithm(chosen_algorithm[static_cast<std::size_t>(choice)]);
   return chosen != nullptr ? *chosen : *find_algorithm("grid");
 }
@@ -138,24 +138,24 @@ class AutoSearcher final : public Searcher<D> {
     text += ", since ";
     const std::string boxes = std::to_string(count_) + " boxes";
     switch (choice_) {
-      case Choice::few:
+      case AutoReason::few:
         return text + boxes + " are so few that comparing all of them costs less than any order";
-      case Choice::one_axis:
+      case AutoReason::one_axis:
         return text + "a sweep along one axis leaves few tests a box: " + rounded(tests_) + " in a sample";
-      case Choice::tree:
+      case AutoReason::tree:
         return text + boxes + " are too few for cells to pay";
-      case Choice::dense:
+      case AutoReason::dense:
         return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
-      case Choice::clusters:
+      case AutoReason::clusters:
         return text + "boxes stand in clusters: " + rounded(clustering_) +
                " times as many are near each other as evenly spread ones would be";
-      case Choice::cells:
+      case AutoReason::cells:
         return text + boxes + " spread as evenly as these suit cells";
-      case Choice::few_in_one_place:
-      case Choice::one_place:
+      case AutoReason::few_in_one_place:
+      case AutoReason::one_place:
         return text + "a box overlaps some " + rounded(overlaps_) + " of " + boxes +
                ", so that nothing is gained by parting them";
-      case Choice::shapes:
+      case AutoReason::shapes:
         return text + "the shapes of these " + boxes + " suit cells better than a tree's bounds";
     }
     return text;
@@ -166,49 +166,49 @@ class AutoSearcher final : public Searcher<D> {
     choice_ = choice_for(boxes);
   }
 
-  Choice choice_for(std::span<const Box<D>> boxes) {
-    if (boxes.size() <= Limits::few_boxes) return Choice::few;
+  AutoReason choice_for(std::span<const Box<D>> boxes) {
+    if (boxes.size() <= Limits::few_boxes) return AutoReason::few;
     if (boxes.size() <= Limits::boxes_for_cells) return choose_by_estimate(boxes);
     sample_.take(boxes, Limits::sampled_boxes);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
     tests_ = count * sample_[best].overlap / 2;
-    if (tests_ <= Limits::tests_of_a_good_axis) return Choice::one_axis;
+    if (tests_ <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
-    if (overlaps_ >= Limits::most_pairs * count / 2) return Choice::one_place;
-    if (overlaps_ >= Limits::many_overlaps) return Choice::dense;
+    if (overlaps_ >= Limits::most_pairs * count / 2) return AutoReason::one_place;
+    if (overlaps_ >= Limits::many_overlaps) return AutoReason::dense;
     std::array<float, D> reach;
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *
                                        (static_cast<double>(sample_[axis].high) - sample_[axis].low));
     estimate_.take(boxes, Limits::sampled_boxes);
     clustering_ = estimate_.clustering(reach);
-    return clustering_ >= Limits::clustered ? Choice::clusters : Choice::cells;
+    return clustering_ >= Limits::clustered ? AutoReason::clusters : AutoReason::cells;
   }
 
   /// Chooses for up to boxes_for_cells boxes. Sorting a sample would take a good part of the time there.
-  Choice choose_by_estimate(std::span<const Box<D>> boxes) {
+  AutoReason choose_by_estimate(std::span<const Box<D>> boxes) {
     const std::size_t size = boxes.size();
     const auto half = static_cast<double>(size) / 2;
     estimate_.take(boxes, size < 2 * Limits::boxes_of_a_line ? 32 : 48);
     estimate_.compare();
     overlaps_ = half * estimate_.overlap_on_all();
     if (estimate_.overlap_on_all() >= Limits::most_pairs)
-      return size <= Limits::few_boxes_in_one_place ? Choice::few_in_one_place : Choice::one_place;
-    if (size < Limits::boxes_of_a_line) return Choice::tree;
+      return size <= Limits::few_boxes_in_one_place ? AutoReason::few_in_one_place : AutoReason::one_place;
+    if (size < Limits::boxes_of_a_line) return AutoReason::tree;
     std::array<double, D> overlap = estimate_.overlap();
     std::ranges::sort(overlap);
     tests_ = half * overlap[0];
-    if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return Choice::one_axis;
+    if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return AutoReason::one_axis;
     double expected = half;  // overlaps per box if axes were independent; stacks of plates have far fewer
     for (const double part : overlap) expected *= part;
     const bool are_stacked = size >= Limits::stacked_boxes_for_a_tree && expected >= Limits::many_overlaps;
-    if (are_stacked || !shapes_suit_cells(boxes, overlap[D - 1])) return Choice::tree;
+    if (are_stacked || !shapes_suit_cells(boxes, overlap[D - 1])) return AutoReason::tree;
     std::array<float, D> reach = estimate_.range();
     for (float& distance : reach) distance *= Limits::near;
     clustering_ = estimate_.clustering(reach);
-    return clustering_ >= Limits::clustered ? Choice::clusters : Choice::shapes;
+    return clustering_ >= Limits::clustered ? AutoReason::clusters : AutoReason::shapes;
   }
 
   bool shapes_suit_cells(std::span<const Box<D>> boxes, double max_overlap_on_axis) const {
@@ -227,7 +227,7 @@ class AutoSearcher final : public Searcher<D> {
   core::Sample<D> sample_;
   std::array<std::unique_ptr<Searcher<D>>, chosen_algorithm.size()> searchers_;  // null until chosen
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
-  Choice choice_ = Choice::few;
+  AutoReason choice_ = AutoReason::few;
   std::size_t count_ = 0;
   bool has_handed_over_ = false;
   double tests_ = 0;

@@ -38,7 +38,7 @@ class SegmentJoin {
   using List = core::Range;
 
   /// A node's lists. Its pairs are between `a` and `b` or, if `is_self`, within `a`.
-  struct Node {
+  struct SegmentNode {
     List a;
     List b;
     bool is_self;
@@ -63,18 +63,18 @@ class SegmentJoin {
     List above;
   };
 
-  void search(const Node& node);
-  void decide(const Node& node, const Cut& cut);
-  void cut_in_two(const Node& node, const Cut& cut);
-  void sweep(const Node& node);
-  Cut choose(const Node& node);
-  bool set_range(const Node& node, Cut& cut) const;
-  void set_exact_median(const Node& node, Cut& cut);
+  void search(const SegmentNode& node);
+  void decide(const SegmentNode& node, const Cut& cut);
+  void cut_in_two(const SegmentNode& node, const Cut& cut);
+  void sweep(const SegmentNode& node);
+  Cut choose(const SegmentNode& node);
+  bool set_range(const SegmentNode& node, Cut& cut) const;
+  void set_exact_median(const SegmentNode& node, Cut& cut);
   Parts part(const List& list, const Cut& cut);
 
   /// Calls `visit(min)` for each of the node's boxes that begins in its region on that axis.
   template <typename Visit>
-  void for_minima(const Node& node, int axis, Visit visit) const {
+  void for_minima(const SegmentNode& node, int axis, Visit visit) const {
     const auto visit_all = [&](const List& list) {
       for (std::size_t i = list.begin; i < list.end; ++i) {
         if ((stack_[i].dedup_mask >> axis & 1U) == 0) visit(box(stack_[i]).min[axis]);

@@ -67,7 +67,7 @@ class GridFollower final : public Follower<D> {
     for (std::size_t at = 0; at < change.changed.size(); at += batch) {
       move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)));
       search(change, begun, ended);
-      for (const Part& part : parts()) {
+      for (const MoverRange& part : parts()) {
         work += part.work;
         candidates += part.candidates;
         queries += part.boxes.size();
@@ -82,13 +82,13 @@ class GridFollower final : public Follower<D> {
 
   std::size_t bytes() const noexcept override {
     std::size_t bytes = cells_.bytes() + core::bytes_of(moved_, moving_);
-    for (const Part& part : parts_) bytes += core::bytes_of(part.boxes, part.begun, part.ended);
+    for (const MoverRange& part : parts_) bytes += core::bytes_of(part.boxes, part.begun, part.ended);
     return bytes;
   }
 
  private:
   /// A range of a batch: its movers and what a search for them found.
-  struct Part {
+  struct MoverRange {
     std::vector<core::MovedBox<D>> boxes;
     std::vector<Pair> begun;
     std::vector<Pair> ended;
@@ -119,7 +119,7 @@ class GridFollower final : public Follower<D> {
       if (parallel_.workers() == 1) return;
       for (core::MovedBox<D>& box : boxes) cells_.move_within_cell(box);
     });
-    for (Part& part : parts()) {
+    for (MoverRange& part : parts()) {
       for (std::size_t i = 0; i < part.boxes.size(); ++i) {
         core::MovedBox<D>& box = part.boxes[i];
         prefetch_ahead(cells_, part.boxes, i);
@@ -131,7 +131,7 @@ class GridFollower final : public Follower<D> {
 
   /// Finds the events of the boxes in parts_.
   void search(const Change<D>& change, PairSink& begun, PairSink& ended) {
-    const auto search = [&](Part& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
+    const auto search = [&](MoverRange& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
       EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
       part.work = kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes),
                                         events.sinks());
@@ -142,7 +142,7 @@ class GridFollower final : public Follower<D> {
     // A sink with a limit must count while threads search, not after they have filled their lists.
     const core::FilterSink* const limit = core::FilterSink::of(begun);
     parallel_.for_ranges(parts().size(), [&](core::Range range, std::size_t worker) {
-      for (Part& part : parts().subspan(range.begin, range.size())) {
+      for (MoverRange& part : parts().subspan(range.begin, range.size())) {
         part.begun.clear();
         part.ended.clear();
         PairCollector its_begun(part.begun);
@@ -154,7 +154,7 @@ class GridFollower final : public Follower<D> {
         its_ended.flush();
       }
     });
-    for (const Part& part : parts()) {
+    for (const MoverRange& part : parts()) {
       (limit != nullptr ? limit->target() : begun).put(part.begun);
       ended.put(part.ended);
     }
@@ -198,13 +198,13 @@ class GridFollower final : public Follower<D> {
   }
 
   /// The parts of this update.
-  std::span<Part> parts() { return std::span(parts_).first(parallel_.range_count()); }
+  std::span<MoverRange> parts() { return std::span(parts_).first(parallel_.range_count()); }
 
   HierarchicalCells<D> cells_;
   std::vector<BoxId> moved_;  // boxes whose entries also cover where they were
   std::vector<BoxId> moving_;
   core::Parallel parallel_;
-  std::vector<Part> parts_;  // by range of a batch
+  std::vector<MoverRange> parts_;  // by range of a batch
   std::size_t built_for_ = 0;
   double usual_blocks_ = 0;  // per query, since the cells were laid out
   std::uint64_t first_queries_ = 0;

@@ -121,19 +121,19 @@ class QuadtreeSearcher final : public Searcher<D> {
 
   /// A unit of work. If `kept_count` is 0, a node and everything below it. Otherwise the boxes kept at a
   /// node, which come first, against each other and against the node's other boxes.
-  struct Part {
+  struct QuadtreeTask {
     std::size_t end;  // in part_references_
     std::size_t kept_count;
   };
 
   /// A node's region in the caller's axes. Axis a of the sorted boxes is the caller's axis axes[a].
-  struct Region {
+  struct NodeRegion {
     std::array<int, D> axes;
     Box<D> box;
   };
 
   /// Appends the regions of the node and its descendants to the levels. Returns how many of them are leaves.
-  std::size_t lay_out(Worker& worker, std::size_t begin, std::size_t end, const Region& region,
+  std::size_t lay_out(Worker& worker, std::size_t begin, std::size_t end, const NodeRegion& region,
                       std::size_t depth, decltype(Outline<D>::levels)& levels) const {
     if (levels.size() == depth) levels.emplace_back();
     levels[depth].push_back(region.box);
@@ -145,7 +145,7 @@ class QuadtreeSearcher final : public Searcher<D> {
     std::size_t leaves = 0;
     std::size_t first = top;
     for (std::uint32_t child = 0; child < 1U << split.axis_count; ++child) {
-      Region part = region;
+      NodeRegion part = region;
       for (int at = 0; at < split.axis_count; ++at) {
         const int axis = region.axes[split.axes[at]];
         ((child >> at & 1U) != 0 ? part.box.min : part.box.max)[axis] = split.at[split.axes[at]];
@@ -260,7 +260,7 @@ class QuadtreeSearcher final : public Searcher<D> {
   std::span<const core::SortedBox<D>> sorted_boxes_;
   core::Parallel parallel_;
   std::vector<Worker> workers_;
-  std::vector<Part> parts_;
+  std::vector<QuadtreeTask> parts_;
   std::vector<core::SortedReference> part_references_;
   const Box<D, double>* doubles_ = nullptr;  // of the current search
 };

@@ -80,7 +80,7 @@ class QuadtreeFollower final : public Follower<D> {
   };
 
   /// A mover in a node; it stays there if the new box is in the node too.
-  struct Entry {
+  struct NodeMover {
     std::uint32_t node;
     std::uint32_t slot;
     std::uint32_t mover;
@@ -97,7 +97,7 @@ class QuadtreeFollower final : public Follower<D> {
     const core::ChangeWork work =
         kernels::find_changes<D>(tree_.pool().view(), movers_, tasks_, events.sinks());
     events.flush();
-    for (const Entry& entry : entries_) {
+    for (const NodeMover& entry : entries_) {
       if (entry.stays != 0) {
         tree_.pool().set(entry.slot, movers_[entry.mover].now);
         tree_.pool().unmark(entry.slot);
@@ -201,7 +201,7 @@ class QuadtreeFollower final : public Follower<D> {
   QuadtreeNodes<D> tree_;
   std::size_t moved_since_build_ = 0;
   std::vector<core::MovedBox<D>> movers_;
-  std::vector<Entry> entries_;
+  std::vector<NodeMover> entries_;
   std::vector<Look> looks_;
   std::vector<Look> above_;  // for each mover, the uppermost node to search
   std::vector<kernels::BlockTask> tasks_;

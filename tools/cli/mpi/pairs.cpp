@@ -160,7 +160,7 @@ Exit join(const MpiPairsArguments& arguments, std::vector<SlicedFile>& files, co
   const lab::Stopwatch watch;
   std::vector<LargePair> pairs;
   std::uint64_t hash_of_own = 0;
-  mpi::Statistics statistics;
+  mpi::RankStatistics statistics;
   on_all([&] {
     const auto take = [&](std::span<const LargePair> some) {
       if (arguments.writes()) pairs.insert(pairs.end(), some.begin(), some.end());
