@@ -92,7 +92,7 @@ if(BROADSIDE_BUILD_PROGRAM)
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/cli/include/broadside
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT verbs)
-  install(FILES ${PROJECT_SOURCE_DIR}/tools/paper/listings/descriptions.hpp
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/paper/listings/registry.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings COMPONENT verbs)
   install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT verbs)
 

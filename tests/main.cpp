@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 
 int main(int count, char** values) {
   broadside::paper::register_listings();

@@ -1,5 +1,5 @@
 // The C API's pairs, finders and trackers.
-#include "bindings/c/faces.hpp"
+#include "bindings/c/c_api_common.hpp"
 
 using namespace broadside;
 using namespace broadside::c;

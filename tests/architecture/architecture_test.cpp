@@ -112,7 +112,7 @@ TEST(IncludeRules, CatchEveryKindOfBreach) {
       {"src/algorithms/grid/grid.cpp", "\"algorithms/quadtree/nodes.hpp\""},
       {"src/algorithms/grid/grid.cpp", "\"paper/listings/world.hpp\""},
       {"src/algorithms/grid/grid.cpp", "\"layout.hpp\""},
-      {"src/algorithms/registry.cpp", "\"paper/listings/descriptions.hpp\""},
+      {"src/algorithms/registry.cpp", "\"paper/listings/registry.hpp\""},
       {"tools/paper/listings/grid.cpp", "\"algorithms/grid/layout.hpp\""},
       {"tools/paper/listings/grid.cpp", "\"algorithms/outline_text.hpp\""},
       {"tools/paper/listings/grid.cpp", "\"lab/verify/verify.hpp\""},

@@ -25,7 +25,7 @@ const std::vector<Rule>& rules() {
                            R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
   // A name that a user may have meant is an inline function of the library's.
-  const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(descriptions|phases)\.hpp")" +
+  const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
                           R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
@@ -65,7 +65,7 @@ const std::vector<Rule>& rules() {
       {"distributed/", library},
       {"tools/web/playground/engine/",
        library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
-           R"(|"(lab/formats|lab/scenes|paper/listings)/descriptions\.hpp")" +
+           R"(|"(lab/formats|lab/scenes|paper/listings)/registry\.hpp")" +
            R"(|"lab/formats/(csv/csv_rows|mesh/indexed_mesh|unread_formats)\.hpp")"},
       {"tools/lab/recordings/", lab + engines},
       {"tools/lab/peers/", lab + engines + peers},

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 
 namespace broadside::lab {
 namespace {

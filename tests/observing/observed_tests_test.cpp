@@ -13,7 +13,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/finder.hpp"
 
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 #include "tests/support/model.hpp"
 #include "tests/support/rng.hpp"
 

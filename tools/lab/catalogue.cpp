@@ -13,7 +13,7 @@
 
 #include "lab/literature/literature.hpp"
 #include "lab/peers/peers.hpp"
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 #include "src/core/suggestion.hpp"
 
 namespace broadside::lab {

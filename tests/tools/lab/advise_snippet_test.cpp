@@ -7,7 +7,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/advise/snippet.hpp"
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 #include "tests/support/text_of.hpp"
 
 // Each as a user pastes it, into a room of its own.

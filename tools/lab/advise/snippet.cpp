@@ -17,7 +17,7 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
   // The library does not know the paper's listings until they are registered.
   if (is_ours && algorithm->kind == AlgorithmKind::paper)
     text +=
-        "#include <paper/listings/descriptions.hpp>  // of the target Broadside::listings\n\n"
+        "#include <paper/listings/registry.hpp>  // of the target Broadside::listings\n\n"
         "const bool has_listings = (broadside::paper::register_listings(), true);\n\n";
   if (!is_ours)
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);

@@ -13,7 +13,7 @@
 
 #include "broadside/error.hpp"
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/unread_formats.hpp"
 #include "lab/formats/write_file.hpp"
 #include "src/core/suggestion.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <utility>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
 #include "lab/scenes/random.hpp"
 #include "lab/scenes/scatter.hpp"

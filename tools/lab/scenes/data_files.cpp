@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "lab/formats/format.hpp"
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 
 namespace broadside::lab::generated {
 namespace {

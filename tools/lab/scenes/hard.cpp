@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/worst/input.hpp"
 
 namespace broadside::lab::generated {

@@ -1,5 +1,5 @@
 // Scenes with integer coordinates: equal under every compiler, and full of exact ties.
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/scatter.hpp"
 
 namespace broadside::lab::generated {

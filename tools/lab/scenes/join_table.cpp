@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 
 namespace broadside::lab {
 namespace {

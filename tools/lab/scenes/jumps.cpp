@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::lab::generated {

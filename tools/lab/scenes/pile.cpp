@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/scatter.hpp"
 
 namespace broadside::lab::generated {

@@ -1,7 +1,7 @@
 // Scenes of boxes scattered at random, each with another spread of sizes or places.
 #include <algorithm>
 
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/scatter.hpp"
 
 namespace broadside::lab::generated {

@@ -16,7 +16,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/recordings/recordings.hpp"
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
 #include "src/core/suggestion.hpp"
 

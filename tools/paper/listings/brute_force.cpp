@@ -6,7 +6,7 @@
 
 #include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 #include "paper/listings/listing_searcher.hpp"
 
 namespace broadside::paper {

@@ -1,5 +1,5 @@
 // The listings' entries in the library's list of algorithms.
-#include "paper/listings/descriptions.hpp"
+#include "paper/listings/registry.hpp"
 
 namespace broadside::paper {
 

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/formats/format.hpp"
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/message.hpp"
 

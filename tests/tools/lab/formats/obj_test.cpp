@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 #include "tests/support/message.hpp"

@@ -19,7 +19,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/write_file.hpp"
-#include "lab/scenes/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/files.hpp"

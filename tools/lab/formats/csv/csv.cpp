@@ -12,7 +12,7 @@
 #include "lab/formats/csv/csv_rows.hpp"
 #include "lab/formats/csv/csv_writer.hpp"
 #include "lab/formats/csv/geometry_text.hpp"
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/text.hpp"
 
 namespace broadside::lab::readers {

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/json/json_reader.hpp"
 #include "lab/formats/quarantine.hpp"
 #include "lab/formats/text.hpp"

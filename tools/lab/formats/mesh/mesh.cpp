@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/mesh/elements.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 #include "lab/numbers.hpp"

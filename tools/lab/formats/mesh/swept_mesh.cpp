@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/pair_filter.hpp"
 

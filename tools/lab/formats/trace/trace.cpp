@@ -5,7 +5,7 @@
 #include <ostream>
 #include <utility>
 
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 
 namespace broadside::lab::readers {
 namespace {

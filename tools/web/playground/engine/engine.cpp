@@ -30,12 +30,12 @@
 #include "kernels/observed_tests.hpp"
 #ifndef BROADSIDE_OBSERVE
 #include "lab/formats/csv/csv_rows.hpp"
-#include "lab/formats/descriptions.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
 #include "lab/formats/unread_formats.hpp"
 #endif
-#include "lab/scenes/descriptions.hpp"
-#include "paper/listings/descriptions.hpp"
+#include "lab/scenes/registry.hpp"
+#include "paper/listings/registry.hpp"
 
 namespace broadside::playground {
 namespace {

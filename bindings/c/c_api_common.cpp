@@ -1,5 +1,5 @@
 // Shared by the functions of the C API, and its functions about versions and errors.
-#include "bindings/c/faces.hpp"
+#include "bindings/c/c_api_common.hpp"
 
 #include <exception>
 #include <functional>
