@@ -178,7 +178,7 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
     const std::string text = lab::json_of(advice, command);
     lab::write_file(arguments.json, [&text](std::ostream& file) { file << text; });
   }
-  return advice.all_verified() ? Exit::fine : Exit::failed;
+  return advice.all_verified() ? Exit::success : Exit::failed;
 }
 
 }  // namespace

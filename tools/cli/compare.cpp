@@ -175,7 +175,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   }
   if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
   if (comparison.stopped) return Exit::interrupted;
-  return comparison.all_verified() ? Exit::fine : Exit::failed;
+  return comparison.all_verified() ? Exit::success : Exit::failed;
 }
 
 }  // namespace

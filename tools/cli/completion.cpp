@@ -249,7 +249,7 @@ Verb add_completion(CLI::App& program) {
       print(fish_script(program, verbs));
     else
       throw Unusable(fmt::format("shell is '{}'; expected bash, zsh or fish", *shell));
-    return Exit::fine;
+    return Exit::success;
   };
 }
 

@@ -44,7 +44,7 @@ Exit run(const ConvertArguments& arguments) {
   const std::string left_out = lab::text_of_left_out(converted, format);
   if (!left_out.empty()) say(left_out);
   say(lab::text_of(converted, arguments.output, format));
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

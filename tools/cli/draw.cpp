@@ -125,7 +125,7 @@ Exit run(DrawArguments& arguments, const CLI::App& verb, const lab::Catalogue& c
   say(fmt::format("{}: {} of {} boxes in {}D, {}",
                   arguments.output == "-" ? "standard output" : arguments.output, lab::grouped(drawing.boxes),
                   lab::grouped(drawing.of), drawing.dimension, lab::bytes(picture.size())));
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Exit run(const BoxArguments& arguments, const CLI::App& verb) {
   const lab::FileInfo info = info_of(arguments, verb);
   say_lines(info.warning);
   print(lab::text_of(info));
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

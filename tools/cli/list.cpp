@@ -128,7 +128,7 @@ Exit run(const lab::Catalogue& catalogue) {
       suffix = "";
     }
   }
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

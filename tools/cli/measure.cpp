@@ -47,7 +47,7 @@ Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
       lab::read_case_list(input.bytes(), input.name(), all, lab::scene_finder({}));
   if (arguments.only_checks) {
     print(lab::counted(cases.size(), "case", "cases") + "\n");
-    return Exit::fine;
+    return Exit::success;
   }
   check_writable("--json", arguments.json);
 
@@ -82,7 +82,7 @@ Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
   print(fmt::format("{} in {}\n", lab::counted(cases.size(), "case", "cases"),
                     lab::duration(watch.milliseconds() / 1e3)) +
         lab::hint_of(steadiness, "") + lab::busy_hint(comparison.processor_share));
-  return comparison.all_verified() ? Exit::fine : Exit::failed;
+  return comparison.all_verified() ? Exit::success : Exit::failed;
 }
 
 }  // namespace

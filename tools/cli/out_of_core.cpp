@@ -232,7 +232,7 @@ Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const 
                   lab::counted(join->pairs(), "pair", "pairs"), lab::name(lab::precision_of<Real>),
                   options.algorithm, arguments.memory, lab::duration(watch.milliseconds() / 1e3)));
   join->remove_folder();
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

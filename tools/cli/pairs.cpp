@@ -197,7 +197,7 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
     print(fmt::format("{}\n", counter.count()));
     flush_output();
     say(join.text(counter.count()));
-    return Exit::fine;
+    return Exit::success;
   }
   const bool streams = arguments.order == "found";
   std::vector<Pair> sorted;
@@ -226,7 +226,7 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
     file.finish();
   });
   say(join.text(count));
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

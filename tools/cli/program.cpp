@@ -76,13 +76,13 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
     verb->group(verb->get_group().empty() ? "" : "Verbs");
   if (const std::optional<std::string> text = broadside::cli::parse(program, arguments)) {
     broadside::cli::print(*text);
-    return Exit::fine;
+    return Exit::success;
   }
   explain_former_names(given);
   for (const auto& [name, verb] : verbs) {
     if (program.got_subcommand(name)) return verb();
   }
-  return Exit::unusable;
+  return Exit::usage_error;
 }
 
 }  // namespace
@@ -107,10 +107,10 @@ int detail::run_program(int count, const char* const* values, std::span<const Al
     return static_cast<int>(Exit::interrupted);
   } catch (const std::bad_alloc&) {
     cli::say("out of memory; expected fewer boxes, frames or pairs");
-    return static_cast<int>(Exit::unusable);
+    return static_cast<int>(Exit::usage_error);
   } catch (const std::exception& error) {
     cli::say(error.what());
-    return static_cast<int>(Exit::unusable);
+    return static_cast<int>(Exit::usage_error);
   }
 }
 

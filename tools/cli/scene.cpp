@@ -83,7 +83,7 @@ Exit run(SceneArguments& arguments, const CLI::App& verb) {
   const int dimension = arguments.dimension != 0 ? arguments.dimension : named.scene.has_dimension(2) ? 2 : 3;
   check_dimension(dimension);
   dimension == 2 ? write<2>(arguments, named, format) : write<3>(arguments, named, format);
-  return Exit::fine;
+  return Exit::success;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace broadside::cli {
 
 /// The program's exit status. Success is 0, Ctrl-C 130 and a closed pipe 141, as shells have it.
-enum class Exit { fine = 0, failed = 1, unusable = 2, interrupted = 130, closed_pipe = 141 };
+enum class Exit { success = 0, failed = 1, usage_error = 2, interrupted = 130, closed_pipe = 141 };
 
 /// Runs a verb once all its options are read. Throws, with a message that names thing, found and expected,
 /// where arguments or input cannot be used.

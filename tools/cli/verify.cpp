@@ -50,7 +50,7 @@ Exit run(const VerifyArguments& arguments, const CLI::App& verb, const lab::Cata
     progress.clear();
     say_lines(verification.warning);
     print(lab::text_of(verification, program_name()));
-    return verification.all_verified() ? Exit::fine : Exit::failed;
+    return verification.all_verified() ? Exit::success : Exit::failed;
   } catch (const lab::Stopped&) {
     throw Interruption();
   }

@@ -45,7 +45,7 @@ Exit run(const std::vector<std::string>& arguments) {
     text = parse(program, without_help_verb(arguments));
     if (text && rank() == 0) print(*text);
   });
-  return text ? Exit::fine : pairs();
+  return text ? Exit::success : pairs();
 }
 
 }  // namespace
@@ -60,11 +60,11 @@ int main(int count, char** values) {
   cli::set_program_name("broadside-mpi");
   if (provided < MPI_THREAD_FUNNELED) {
     cli::say("this MPI library provides MPI_THREAD_SINGLE; expected MPI_THREAD_FUNNELED or more");
-    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::unusable));
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::usage_error));
   }
   // The others end with it; and only it writes.
   if (cli::rank() == 0) cli::on_signal(cli::OnSignal::end);
-  cli::Exit exit = cli::Exit::unusable;
+  cli::Exit exit = cli::Exit::usage_error;
   try {
     exit = cli::run(lab::platform::arguments(count, values));
     cli::flush_output();
@@ -73,7 +73,7 @@ int main(int count, char** values) {
   } catch (const std::exception& error) {
     // The others know nothing of it, and may wait for this rank.
     cli::say(fmt::format("rank {}: {}", cli::rank(), error.what()));
-    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::unusable));
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::usage_error));
   }
   const bool is_first = cli::rank() == 0;
   MPI_Finalize();

@@ -195,7 +195,7 @@ Exit join(const MpiPairsArguments& arguments, std::vector<SlicedFile>& files, co
                     lab::duration(join_ms / 1e3)));
     if (arguments.has_statistics) say(statistics_text(summary));
   });
-  return Exit::fine;
+  return Exit::success;
 }
 
 void check_match(const std::vector<SlicedFile>& files) {
