@@ -12,8 +12,8 @@ namespace broadside::algorithm {
 
 /// The tests that a search may make per box and per pair before it gives up. Up to these limits it takes at
 /// most twice as long as with evenly spread boxes, so a search that gives up has lost little.
-inline constexpr std::uint64_t tests_per_box = 256;
-inline constexpr std::uint64_t tests_per_pair = 32;
+inline constexpr std::uint64_t max_tests_per_box = 256;
+inline constexpr std::uint64_t max_tests_per_pair = 32;
 
 /// The end of the boxes that begin no later than `last`, by a galloping search from `from`. Boxes may be in
 /// any order within a bucket, so the result is exact to within a bucket.
@@ -74,7 +74,7 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
     max_hits = own_hits;
     tests_of_greatest = own_tests;
   }
-  return tests - tests_of_greatest > tests_per_pair * (hits - max_hits);
+  return tests - tests_of_greatest > max_tests_per_pair * (hits - max_hits);
 }
 
 }  // namespace broadside::algorithm

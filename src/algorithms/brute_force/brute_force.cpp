@@ -14,7 +14,7 @@ namespace broadside::algorithm {
 namespace {
 
 /// Parallel measures work in boxes of other algorithms: this many tests take as long as one.
-constexpr std::size_t tests_per_box = 128;
+constexpr std::size_t tests_costing_one_box = 128;
 
 /// Boxes that a worker compares with all others at a time.
 constexpr std::size_t rows_at_once = 64;
@@ -30,7 +30,7 @@ class BruteForceSearcher final : public Searcher<D> {
     const kernels::Run<D> run = run_.view(input.doubles);
     const kernels::Run<D> left_run = left_run_.view(input.doubles);
     const std::size_t rows = left == 0 ? run.size : left;
-    parallel_.start(input.workers, rows * run.size / tests_per_box);
+    parallel_.start(input.workers, rows * run.size / tests_costing_one_box);
     const auto compare = [&](core::Range some, std::size_t worker, PairSink& sink) {
       const std::size_t begin = some.begin * rows_at_once;
       const std::size_t end = std::min(some.end * rows_at_once, rows);

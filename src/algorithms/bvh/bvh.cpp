@@ -118,7 +118,7 @@ class BvhSearcher final : public Searcher<D> {
     parts_.resize(part_count());
     const auto join = [this](std::size_t part, kernels::NodeRange leaves, std::uint64_t max_tests,
                              std::size_t worker, PairSink& sink) {
-      const kernels::JoinLimit limit = {max_tests, tests_per_pair, parallel_.checkpoint(worker)};
+      const kernels::JoinLimit limit = {max_tests, max_tests_per_pair, parallel_.checkpoint(worker)};
       parts_[part] = kernels::join(tree_, leaves, limit, scratch_[worker].data(), sink);
       return parts_[part].tests;
     };
@@ -128,7 +128,7 @@ class BvhSearcher final : public Searcher<D> {
           for (std::size_t part = parts.begin; part < parts.end; ++part) {
             const kernels::NodeRange leaves = leaves_of({part, part + 1});
             const std::uint64_t boxes = (leaves.end - leaves.begin) * kernels::fan_out;
-            of_parts.tests += join(part, leaves, tests_per_box * boxes, worker, sink);
+            of_parts.tests += join(part, leaves, max_tests_per_box * boxes, worker, sink);
           }
           return of_parts;
         });

@@ -119,7 +119,7 @@ class GridSearcher final : public Searcher<D> {
     const auto inserted = static_cast<double>(begin_[layout_.slab_begin(slab + 1) * length] -
                                               begin_[layout_.slab_begin(slab) * length]);
     const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
-    return static_cast<std::uint64_t>(share * static_cast<double>(tests_per_box * boxes)) + 1;
+    return static_cast<std::uint64_t>(share * static_cast<double>(max_tests_per_box * boxes)) + 1;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {

@@ -117,7 +117,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
     for (const core::SortedBox<D>& box : sorted)
       buffer.append(box.box, box.id, kernels::side_bit(box.id, input.left_count));
     const kernels::Run<D> run = buffer.view(input.doubles);
-    if (input.successor != nullptr && is_wasteful(run, tests_per_box * run.size)) {
+    if (input.successor != nullptr && is_wasteful(run, max_tests_per_box * run.size)) {
       input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
       return {.references = run.size};
     }
