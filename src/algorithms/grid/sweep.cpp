@@ -81,7 +81,7 @@ Statistics GridSweep<D>::sweep(const GridLayout<D>& layout, const SweptRange& ra
       // Pairs are counted only once there are many tests.
       const std::uint64_t work = statistics_.tests + tests_per_reference * statistics_.references;
       const bool is_counting = work > max_tests;
-      if (is_counting && work > max_tests + max_tests / 4 + tests_per_pair * counted.count())
+      if (is_counting && work > max_tests + max_tests / 4 + max_tests_per_pair * counted.count())
         return statistics_;
       if (!sweep_cell(lists, layout.column_border(column), row_border, max_tests,
                       is_counting ? static_cast<PairSink&>(counted) : pairs))
