@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/grid/cells.hpp"
-#include "algorithms/grid/layout.hpp"
-#include "algorithms/quadtree/nodes.hpp"
-#include "algorithms/sweep_and_prune/order.hpp"
+#include "algorithms/grid/hierarchical_cells.hpp"
+#include "algorithms/grid/grid_layout.hpp"
+#include "algorithms/quadtree/quadtree_nodes.hpp"
+#include "algorithms/sweep_and_prune/sweep_order.hpp"
 #include "tests/support/model.hpp"
 
 namespace broadside::algorithm {

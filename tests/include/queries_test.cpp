@@ -16,7 +16,7 @@
 #include "broadside/error.hpp"
 #include "broadside/index.hpp"
 
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/scattered.hpp"

@@ -16,7 +16,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/world.hpp"
 
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 #include "tests/support/rng.hpp"
 
 namespace broadside {

@@ -22,7 +22,7 @@
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/report/table.hpp"
 

@@ -13,7 +13,7 @@
 #include "bench/corrupted.hpp"
 #include "bench/guarded.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 namespace broadside::bench {
 namespace {

@@ -24,7 +24,7 @@
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 namespace broadside::bench {
 

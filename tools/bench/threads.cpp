@@ -16,7 +16,7 @@
 #include "bench/guarded.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/scenes/scene.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "lab/file_info.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_join.hpp"
-#include "algorithms/auto/thresholds.hpp"
+#include "algorithms/auto/auto_thresholds.hpp"
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"

@@ -9,7 +9,7 @@
 #include "broadside/index.hpp"
 #include "broadside/queries.hpp"
 
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 #include "core/message.hpp"

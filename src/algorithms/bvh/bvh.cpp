@@ -11,7 +11,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
-#include "algorithms/bvh/packer.hpp"
+#include "algorithms/bvh/bvh_packer.hpp"
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
 #include "core/grow.hpp"

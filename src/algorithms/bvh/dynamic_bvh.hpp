@@ -12,7 +12,7 @@
 #include "broadside/pair.hpp"
 
 #include "algorithms/bvh/arrange.hpp"
-#include "algorithms/bvh/packer.hpp"
+#include "algorithms/bvh/bvh_packer.hpp"
 #include "core/grow.hpp"
 #include "kernels/bvh.hpp"
 

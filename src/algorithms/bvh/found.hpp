@@ -13,7 +13,7 @@
 #include "broadside/queries.hpp"
 
 #include "algorithms/bvh/conservative_rounding.hpp"
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {

@@ -19,8 +19,8 @@
 
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/followers.hpp"
-#include "algorithms/grid/layout.hpp"
-#include "algorithms/grid/sweep.hpp"
+#include "algorithms/grid/grid_layout.hpp"
+#include "algorithms/grid/grid_sweep.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/waste.hpp"

@@ -15,7 +15,7 @@
 
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
-#include "algorithms/grid/cells.hpp"
+#include "algorithms/grid/hierarchical_cells.hpp"
 #include "core/filter_sink.hpp"
 #include "core/grow.hpp"
 #include "core/parallel.hpp"

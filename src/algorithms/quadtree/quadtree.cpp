@@ -24,7 +24,7 @@
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"
-#include "algorithms/quadtree/split.hpp"
+#include "algorithms/quadtree/quadtree_split.hpp"
 #include "algorithms/registry.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"

@@ -14,7 +14,7 @@
 
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
-#include "algorithms/quadtree/nodes.hpp"
+#include "algorithms/quadtree/quadtree_nodes.hpp"
 #include "core/grow.hpp"
 #include "kernels/moved.hpp"
 

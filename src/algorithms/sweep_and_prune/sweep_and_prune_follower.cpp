@@ -9,7 +9,7 @@
 
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
-#include "algorithms/sweep_and_prune/order.hpp"
+#include "algorithms/sweep_and_prune/sweep_order.hpp"
 #include "core/sample.hpp"
 #include "core/sorted_boxes.hpp"
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/advise/advise.hpp"
-#include "lab/advise/choice.hpp"
+#include "lab/advise/algorithm_choice.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -13,7 +13,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/finder.hpp"
 
-#include "lab/advise/choice.hpp"
+#include "lab/advise/algorithm_choice.hpp"
 #include "lab/measure/cases.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/scenes/motion.hpp"

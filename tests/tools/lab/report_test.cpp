@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/measure/paired_ratio.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/table.hpp"
 

@@ -8,7 +8,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/verify/verify.hpp"
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 #include "tests/support/message.hpp"
 
 namespace broadside::lab {

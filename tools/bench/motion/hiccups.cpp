@@ -13,7 +13,7 @@
 #include "bench/motion/parts.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/scenes/motion.hpp"
 
 namespace broadside::bench {

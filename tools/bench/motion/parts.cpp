@@ -11,7 +11,7 @@
 
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/scenes/motion.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "bench/worst/measure.hpp"
 #include "lab/catalogue.hpp"
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 namespace broadside::bench {
 

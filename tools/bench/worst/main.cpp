@@ -18,7 +18,7 @@
 #include "lab/measure/memory.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/machine.hpp"
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 namespace broadside::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "lab/catalogue.hpp"
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 namespace broadside::bench {
 

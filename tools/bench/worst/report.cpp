@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 namespace broadside::bench {
 namespace {

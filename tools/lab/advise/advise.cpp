@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "lab/advise/choice.hpp"
+#include "lab/advise/algorithm_choice.hpp"
 #include "lab/advise/snippet.hpp"
 #include "lab/measure/cases.hpp"
 #include "lab/measure/ranking.hpp"

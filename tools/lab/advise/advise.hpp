@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/advise/choice.hpp"
+#include "lab/advise/algorithm_choice.hpp"
 #include "lab/advise/signals.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/measure/benchmark.hpp"

@@ -13,7 +13,7 @@
 #include "lab/measure/samples.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/report/table.hpp"
 
 namespace broadside::lab {

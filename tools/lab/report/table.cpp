@@ -13,7 +13,7 @@
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 namespace broadside::lab {
 namespace {

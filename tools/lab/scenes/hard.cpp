@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lab/scenes/registry.hpp"
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 namespace broadside::lab::generated {
 namespace {

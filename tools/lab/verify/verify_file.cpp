@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "lab/numbers.hpp"
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 #include "lab/verify/verify_history.hpp"
 #include "lab/verify/verify_recorded.hpp"
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 namespace broadside::lab {
 namespace {

@@ -1,5 +1,5 @@
 // Which algorithm is advised, and which settings of it are worth a try.
-#include "lab/advise/choice.hpp"
+#include "lab/advise/algorithm_choice.hpp"
 
 #include <algorithm>
 #include <numeric>

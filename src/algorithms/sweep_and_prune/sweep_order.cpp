@@ -1,5 +1,5 @@
 // Boxes kept in the order of a sweep from frame to frame.
-#include "algorithms/sweep_and_prune/order.hpp"
+#include "algorithms/sweep_and_prune/sweep_order.hpp"
 
 #include <algorithm>
 #include <array>

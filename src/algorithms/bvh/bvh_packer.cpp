@@ -5,7 +5,7 @@
 // one, strips into leaves along the last. The numbers of slabs and strips are chosen so that leaves have the
 // shape of a typical box. Boxes are ordered by a counting sort, in buckets of equal width. Bounds are
 // computed afterwards, so disorder within a bucket costs time, never a pair.
-#include "algorithms/bvh/packer.hpp"
+#include "algorithms/bvh/bvh_packer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "algorithms/grid/levels.hpp"
+#include "algorithms/grid/cell_levels.hpp"
 #include "core/grow.hpp"
 #include "kernels/block_pool.hpp"
 #include "kernels/moved.hpp"

@@ -4,7 +4,7 @@
 // the box's minimum, minus the level's greatest extent, to its maximum. All blocks of a cell but the first
 // are full: a box is added to the first block, or to a new one before it, and a box removed from another
 // block is replaced by one from the first.
-#include "algorithms/grid/cells.hpp"
+#include "algorithms/grid/hierarchical_cells.hpp"
 
 #include <bit>
 

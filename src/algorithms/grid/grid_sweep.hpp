@@ -11,7 +11,7 @@
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 
-#include "algorithms/grid/layout.hpp"
+#include "algorithms/grid/grid_layout.hpp"
 #include "core/cell_axis.hpp"
 #include "core/radix_sort.hpp"
 #include "kernels/run.hpp"

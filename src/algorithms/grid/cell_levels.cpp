@@ -1,7 +1,7 @@
 // Chooses the number of levels and the size of their cells.
-#include "algorithms/grid/levels.hpp"
+#include "algorithms/grid/cell_levels.hpp"
 
-#include "algorithms/grid/layout.hpp"
+#include "algorithms/grid/grid_layout.hpp"
 
 namespace broadside::algorithm {
 namespace {

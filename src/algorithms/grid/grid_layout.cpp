@@ -1,5 +1,5 @@
 // Chooses a grid's axes and cells.
-#include "algorithms/grid/layout.hpp"
+#include "algorithms/grid/grid_layout.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 // A cell's boxes are ordered by a counting sort into buckets of the swept axis: one pass counts, one
 // scatters. Within a bucket they keep the order in which they came, which the kernels allow for (Run::slack).
 // If the buckets are too uneven, the boxes are sorted instead.
-#include "algorithms/grid/sweep.hpp"
+#include "algorithms/grid/grid_sweep.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 // Builds, splits and merges the nodes. Section V of the paper; as in the searcher, nodes are split at
 // medians, so clusters and outliers do not deepen the tree.
-#include "algorithms/quadtree/nodes.hpp"
+#include "algorithms/quadtree/quadtree_nodes.hpp"
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // One input of the worst-case hunt: read, written, drawn and made.
-#include "lab/worst/input.hpp"
+#include "lab/worst/hard_input.hpp"
 
 #include <algorithm>
 #include <array>

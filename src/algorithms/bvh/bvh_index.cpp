@@ -1,5 +1,5 @@
 // BvhIndex: updates, and queries by the kernels.
-#include "algorithms/bvh/index.hpp"
+#include "algorithms/bvh/bvh_index.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Rows of text in aligned columns.
-#include "lab/report/columns.hpp"
+#include "lab/report/aligned_columns.hpp"
 
 #include <algorithm>
 #include <stdexcept>
