@@ -65,7 +65,7 @@ Statistics SegmentJoin<D>::join(std::span<const Box<D>> boxes, std::size_t left_
 }
 
 template <int D>
-void SegmentJoin<D>::search(const Node& node) {
+void SegmentJoin<D>::search(const SegmentNode& node) {
   if (node.is_self ? node.a.size() < 2 : node.a.size() == 0 || node.b.size() == 0) return;
   const bool is_short = !node.is_self && std::min(node.a.size(), node.b.size()) <= short_list;
   if (is_short || node.size() <= leaf_size || std::popcount(node.open) == 1) return sweep(node);
@@ -82,7 +82,7 @@ void SegmentJoin<D>::search(const Node& node) {
 
 /// All boxes that begin here begin at one coordinate. Every box that reaches it overlaps them on this axis.
 template <int D>
-void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
+void SegmentJoin<D>::decide(const SegmentNode& node, const Cut& cut) {
   const auto reaches = [&](const Reference& reference) { return box(reference).max[cut.axis] >= cut.low; };
   const List a = push(node.a, reaches);
   const List b = node.is_self ? a : push(node.b, reaches);
@@ -90,7 +90,7 @@ void SegmentJoin<D>::decide(const Node& node, const Cut& cut) {
 }
 
 template <int D>
-void SegmentJoin<D>::cut_in_two(const Node& node, const Cut& cut) {
+void SegmentJoin<D>::cut_in_two(const SegmentNode& node, const Cut& cut) {
   const std::uint32_t bit = 1U << cut.axis;
   const Parts a = part(node.a, cut);
   const Parts b = node.is_self ? a : part(node.b, cut);
@@ -160,7 +160,7 @@ auto SegmentJoin<D>::push(const List& list, Wanted wanted) -> List {
 
 /// Chooses the axis on which the sample's median cuts the fewest boxes that do not cover the region.
 template <int D>
-auto SegmentJoin<D>::choose(const Node& node) -> Cut {
+auto SegmentJoin<D>::choose(const SegmentNode& node) -> Cut {
   std::array<Reference, samples> sampled;
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t at = (2 * i + 1) * node.size() / (2 * samples);
@@ -196,7 +196,7 @@ auto SegmentJoin<D>::choose(const Node& node) -> Cut {
 /// Sets the least and the greatest minimum in the region, and moves the cut between them if it is not there.
 /// False if no box begins in the region.
 template <int D>
-bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
+bool SegmentJoin<D>::set_range(const SegmentNode& node, Cut& cut) const {
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
   bool any = false;
@@ -218,7 +218,7 @@ bool SegmentJoin<D>::set_range(const Node& node, Cut& cut) const {
 }
 
 template <int D>
-void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
+void SegmentJoin<D>::set_exact_median(const SegmentNode& node, Cut& cut) {
   minima_.clear();
   for_minima(node, cut.axis, [this](float min) { minima_.push_back(min); });
   const float median = core::median(minima_);
@@ -227,7 +227,7 @@ void SegmentJoin<D>::set_exact_median(const Node& node, Cut& cut) {
 
 /// Sweeps the node's boxes along an axis on which they may be disjoint.
 template <int D>
-void SegmentJoin<D>::sweep(const Node& node) {
+void SegmentJoin<D>::sweep(const SegmentNode& node) {
   const int axis = std::countr_zero(node.open);
   statistics_.references += node.size();
   const kernels::Run<D> a = run_of(node.a, axis, run_a_);
