@@ -30,7 +30,7 @@ void DecodedSnapshot<D, Real>::check_last_frame() const {
   for (std::uint32_t slot = 0; slot < last_frame.boxes.size(); ++slot) {
     if (is_absent(last_frame.boxes[slot])) continue;
     expect(slot < parts->slots.size() && parts->slots.is_paired(slot),
-           "the last frame has a box in a slot that has none now, and none was removed there");
+           "the last frame has a box in a slot that has none now, although none was removed there");
   }
   Pairs listed(parts->ignored.changed().begin(), parts->ignored.changed().end());
   std::ranges::sort(listed);
@@ -58,7 +58,7 @@ void DecodedSnapshot<D, Real>::check_differences() const {
   for (std::uint32_t i = 0; i < now.boxes.size(); ++i) {
     if (i < last_frame.boxes.size() && last_frame.boxes[i] == now.boxes[i]) continue;
     expect((i >= last_frame.boxes.size() && is_absent(now.boxes[i])) || is_listed(i),
-           "a box changed and is not in the list of those that did");
+           "a box changed but is not listed as changed");
   }
   const auto filter_of = [](std::span<const Filter> some, std::size_t i) {
     return i < some.size() ? some[i] : Filter{};
@@ -66,7 +66,7 @@ void DecodedSnapshot<D, Real>::check_differences() const {
   const std::size_t filtered = last_frame.filters.empty() && now.filters.empty() ? 0 : now.boxes.size();
   for (std::uint32_t i = 0; i < filtered; ++i)
     expect(filter_of(last_frame.filters, i) == filter_of(now.filters, i) || is_listed(i),
-           "a filter changed and is not in the list of boxes that did");
+           "a filter changed but its box is not listed as changed");
 }
 
 template <int D, typename Real>
@@ -77,12 +77,12 @@ void DecodedSnapshot<D, Real>::check_pending(bool is_settled, bool asks_predicat
     expect(parts->current.size() == 0 && parts->current.events().begun.empty() &&
                parts->current.events().ended.empty() && refiner.graph.size() == 0 &&
                parts->slots.reported().empty() && !has_waiting,
-           "it had no update and has pairs, events or boxes whose removal was told");
+           "it had no update but has pairs, events or boxes reported as removed");
   }
   if (is_settled) {
     expect(parts->boxes.changed().empty() && parts->slots.removed().empty() &&
                parts->ignored.changed().empty() && !has_waiting,
-           "nothing is pending and an update has something to tell");
+           "nothing is pending but an update has something to report");
   }
   if (refiner.is_refining) check_marks(asks_predicate);
 }
@@ -98,7 +98,7 @@ void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
   for (PairGraph::EdgeId edge = 0; edge < graph.size(); ++edge) {
     const Pair pair = graph.pairs()[edge];
     const std::uint8_t mark = graph.marks()[edge];
-    if (mark == edge_accepted) refuse(pair, "is accepted and does not overlap");
+    if (mark == edge_accepted) refuse(pair, "is accepted but does not overlap");
     const std::uint32_t a = index(pair.first);
     const std::uint32_t b = index(pair.second);
     const bool is_looked_at = parts->refiner.asks_about(a) || parts->refiner.asks_about(b) ||
@@ -107,11 +107,11 @@ void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
     if (is_looked_at) continue;
     const bool overlaps = !by_boxes || overlap(boxes[a], boxes[b]);
     if ((mark != 0) != overlaps) {
-      refuse(pair, std::string("is said to ") + (mark != 0 ? "" : "not ") +
-                       "overlap; expected what its boxes do, which did not change");
+      refuse(pair, overlaps ? "is marked as not overlapping; expected overlapping, like its unchanged boxes"
+                            : "is marked as overlapping; expected not overlapping, like its unchanged boxes");
     }
     if (!asks_predicate && mark == edge_overlaps)
-      refuse(pair, "overlaps and is not accepted; expected a predicate that refused it");
+      refuse(pair, "overlaps but is not accepted; expected a predicate that refused it");
   }
 }
 

@@ -158,7 +158,7 @@ DecodedSnapshot<D, Real> SnapshotCodec<D, Real>::decode(std::span<const std::byt
   ByteReader rest(body.subspan(bytes.size() - in.left()), version);
   DecodedSnapshot<D, Real> decoded;
   SnapshotReader<D, Real>(rest, decoded).read(parts, tracker);
-  expect_equal("the number of bytes behind the end", rest.left(), std::size_t{0});
+  expect_equal("the number of bytes after the end", rest.left(), std::size_t{0});
   return decoded;
 }
 

@@ -27,7 +27,7 @@ Pairs get_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   Pairs pairs = get_list<Pair>(in, things);
   for (const Pair pair : pairs) {
     expect(pair.first < pair.second, "a pair's first place is not below its second");
-    expect_place(index(pair.second), count, "a pair of place");
+    expect_place(index(pair.second), count, "a pair with index");
   }
   return pairs;
 }
@@ -74,10 +74,10 @@ template <int D, typename Real>
 void SnapshotReader<D, Real>::read_options(const Parts& world, const WorldTracker<D, Real>& tracker) {
   using namespace snapshot;
   flags_ = in_.get<std::uint32_t>();
-  expect((flags_ & ~all_flags) == 0, "the world has flags that there are none of");
+  expect((flags_ & ~all_flags) == 0, "the world has unknown flags");
   if (is_set(has_predicate) != world.refiner.has_predicate()) {
     throw InvalidSnapshot(std::string("a snapshot was taken of a world with") +
-                          (is_set(has_predicate) ? "" : "out") + " a predicate and this one has " +
+                          (is_set(has_predicate) ? "" : "out") + " a predicate, but this one has " +
                           (world.refiner.has_predicate() ? "one" : "none") +
                           "; expected the same, since none is in a snapshot");
   }
@@ -99,13 +99,13 @@ void SnapshotReader<D, Real>::read_options(const Parts& world, const WorldTracke
   } catch (const InvalidSpec& error) {
     throw InvalidSnapshot(std::string("a snapshot's algorithm cannot be made: ") + error.what());
   } catch (const std::invalid_argument& error) {
-    throw InvalidSnapshot(std::string("a snapshot's options are refused: ") + error.what());
+    throw InvalidSnapshot(std::string("a snapshot's options are invalid: ") + error.what());
   }
   decoded_.parts->has_updated = is_set(was_updated);
   refiner_.is_refining = is_set(refines);
   refiner_.asks_about_all = is_set(refilters);
   expect(refiner_.is_refining || (!decoded_.parts->boxes.refines() && !is_set(has_predicate)),
-         "it has exact pairs of enlarged boxes or a predicate, and does not refine pairs");
+         "it has exact pairs of enlarged boxes or a predicate, but does not refine pairs");
 }
 
 template <int D, typename Real>
@@ -116,11 +116,11 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
   auto generations = get_all<std::uint32_t>(in_, count, "generations");
   auto states = get_all<SlotState>(in_, count, "states of slots");
   for (std::uint32_t slot = 0; slot < count; ++slot) {
-    expect(states[slot] <= SlotState::retired, "a slot is in no state that there is");
+    expect(states[slot] <= SlotState::retired, "a slot is in an unknown state");
     expect(states[slot] != SlotState::retired || generations[slot] == max_generation,
-           "a slot is used up and has generations left");
+           "a slot is used up but has generations left");
     // A quarantined box is live and absent.
-    expect(states[slot] == SlotState::live || !is_present(boxes[slot]), "a slot is not live and has a box");
+    expect(states[slot] == SlotState::live || !is_present(boxes[slot]), "a slot is not live but has a box");
   }
   Parts& parts = *decoded_.parts;
   std::vector<Box<D, Real>> enlarged;
@@ -130,7 +130,7 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
       const bool is_there = is_present(boxes[slot]);
       expect(is_there == is_present(enlarged[slot]) &&
                  (!is_there || broadside::contains(enlarged[slot], boxes[slot])),
-             "a box is not within its enlarged one");
+             "a box is not within its enlarged box");
     }
   }
   parts.boxes.restore(std::move(boxes), std::move(enlarged));
@@ -138,7 +138,7 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
   if (is_set(snapshot::has_user_data))
     parts.user_data.restore(get_all<std::uint64_t>(in_, count, "user data"));
   auto removed = read_removed(states, SlotState::removed, "removed boxes");
-  auto reported = read_removed(states, SlotState::reported, "boxes whose removal was told");
+  auto reported = read_removed(states, SlotState::reported, "boxes reported as removed");
   parts.slots.restore(first_generation, std::move(generations), std::move(states), std::move(removed),
                       std::move(reported));
 }
@@ -173,7 +173,7 @@ std::vector<BoxId> SnapshotReader<D, Real>::read_marked(const char* things) {
   for (const BoxId id : list) {
     expect_place(index(id), slots.size(), "slot");
     expect(slots.is_paired(index(id)),
-           "a slot is listed as changed and has no box, nor had one since the last update");
+           "a slot is listed as changed but has no box, nor had one since the last update");
     expect(!is_listed[index(id)], "a slot is listed twice");
     is_listed[index(id)] = true;
   }
@@ -185,15 +185,15 @@ void SnapshotReader<D, Real>::read_changes() {
   Parts& parts = *decoded_.parts;
   auto changed = read_marked("changed boxes");
   auto moved = read_marked("moved boxes");
-  expect(parts.boxes.enlarges() || moved.empty(), "it has no margin and boxes that left theirs");
+  expect(parts.boxes.enlarges() || moved.empty(), "it has no margin but has boxes that left theirs");
   parts.boxes.restore_changes(std::move(changed), std::move(moved));
   for (const BoxId id : parts.boxes.moved())
-    expect(parts.boxes.is_changed(index(id)), "a box left its enlarged one and did not change");
+    expect(parts.boxes.is_changed(index(id)), "a box left its enlarged box but did not change");
   for (const RemovedBox<D, Real>& old : parts.slots.removed())
-    expect(parts.boxes.is_changed(old.slot), "a box was removed and did not change");
+    expect(parts.boxes.is_changed(old.slot), "a box was removed but did not change");
   refiner_.asked_slots = read_marked("boxes to be asked about");
   expect(refiner_.is_refining || (refiner_.asked_slots.empty() && !refiner_.asks_about_all),
-         "it refines no pairs and asks about some");
+         "it refines no pairs but asks about some");
 }
 
 template <int D, typename Real>
@@ -203,7 +203,7 @@ void SnapshotReader<D, Real>::read_ignored() {
   for (const Pair pair : pairs) {
     expect(slots.state(index(pair.first)) == SlotState::live &&
                slots.state(index(pair.second)) == SlotState::live,
-           "a pair is ignored whose boxes are not both there");
+           "an ignored pair has a missing box");
   }
   decoded_.parts->ignored.restore(pairs, get_pairs(in_, slots.size(), "pairs ignored anew"));
 }
@@ -215,11 +215,11 @@ void SnapshotReader<D, Real>::read_last_frame() {
   auto& [boxes, filters, ignored, has_ignored] = decoded_.last_frame;
   const auto flags = in_.get<std::uint8_t>();
   expect((flags & ~(snapshot::last_has_filters | snapshot::last_has_ignored)) == 0,
-         "the last frame has flags that there are none of");
+         "the last frame has unknown flags");
   const auto count = in_.get<std::uint64_t>();
   const std::vector<BoxId> places = get_places(in_, count, "boxes that changed");
   // All places that no longer exist are listed, so no claim takes more memory than its bytes justify.
-  expect(count <= now.boxes.size() + places.size(), "the last frame has more boxes than it says");
+  expect(count <= now.boxes.size() + places.size(), "the last frame has more boxes than it lists");
   boxes.assign(now.boxes.begin(), now.boxes.end());
   boxes.resize(static_cast<std::size_t>(count), absent_box<D, Real>());
   for (const BoxId id : places) boxes[index(id)] = Serializer<Box<D, Real>>::get(in_);
@@ -232,7 +232,7 @@ void SnapshotReader<D, Real>::read_last_frame() {
   for (const BoxId id : filtered) filters[index(id)] = Serializer<Filter>::get(in_);
   has_ignored = (flags & snapshot::last_has_ignored) != 0;
   for (const Pair pair : get_sorted_pairs(in_, std::uint64_t{1} << 32, "ignored pairs")) ignored.insert(pair);
-  expect(has_ignored || ignored.empty(), "the last frame has ignored pairs and no set of them");
+  expect(has_ignored || ignored.empty(), "the last frame has ignored pairs but no set of them");
 }
 
 template <int D, typename Real>
@@ -251,7 +251,7 @@ void SnapshotReader<D, Real>::read_pairs(std::size_t pair_count) {
   Parts& parts = *decoded_.parts;
   const SlotTable<D, Real>& slots = parts.slots;
   const Pairs pairs = read_paired("pairs");
-  expect(parts.options.keep_pairs || pairs.empty(), "it keeps no pairs and has some");
+  expect(parts.options.keep_pairs || pairs.empty(), "it keeps no pairs but has some");
   const Pairs begun = read_paired("pairs that began");
   const Pairs ended = get_sorted_pairs(in_, slots.size(), "pairs that ended");
   for (const Pair pair : ended) {
@@ -267,12 +267,12 @@ void SnapshotReader<D, Real>::read_edges() {
   const std::size_t slots = decoded_.parts->slots.size();
   auto& [is_refining, asks_about_all, asked_slots, graph, candidates, refined, fresh] = refiner_;
   const Pairs edges = read_paired("pairs of enlarged boxes");
-  expect(is_refining || edges.empty(), "it refines no pairs and has some to refine");
+  expect(is_refining || edges.empty(), "it refines no pairs but has some to refine");
   in_.need(1, edges.size(), "marks");
   graph.reserve(edges.size(), slots);
   for (const Pair pair : edges) {
     const auto mark = in_.get<std::uint8_t>();
-    expect(mark <= edge_holds, "a pair has no marks like these");
+    expect(mark <= edge_holds, "a pair has invalid marks");
     graph.insert(pair, mark);
   }
   candidates.begun = read_paired("candidates that began");
@@ -280,7 +280,7 @@ void SnapshotReader<D, Real>::read_edges() {
   refined.begun = read_paired("refined pairs that began");
   refined.ended = read_paired("refined pairs that ended");
   fresh = get_pairs(in_, slots, "new candidates");
-  expect(is_refining || (refined.empty() && fresh.empty()), "it refines no pairs and has refined some");
+  expect(is_refining || (refined.empty() && fresh.empty()), "it refines no pairs but has refined some");
 }
 
 template class SnapshotReader<2, float>;

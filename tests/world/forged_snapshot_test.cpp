@@ -79,23 +79,23 @@ TEST(ForgedSnapshot, IsRefusedForWhatContradictsItself) {
        [](Fields& f) {
          f.ended = {{BoxId{1}, BoxId{2}}};
        }},
-      {"the pair (0, 1) is said to not overlap; expected what its boxes do, which did not change", 1,
+      {"the pair (0, 1) is marked as not overlapping; expected overlapping", 1,
        [](Fields& f) { f.marks[0] = 0, f.pairs.erase(f.pairs.begin()), --f.pair_count, f.begun = {}; }},
-      {"the pair (0, 1) overlaps and is not accepted; expected a predicate that refused it", 1,
+      {"the pair (0, 1) overlaps but is not accepted; expected a predicate that refused it", 1,
        [](Fields& f) { f.marks[0] = 1, f.pairs.erase(f.pairs.begin()), --f.pair_count, f.begun = {}; }},
-      {"the pair (0, 1) is accepted and does not overlap", 1, [](Fields& f) { f.marks[0] = 2; }},
+      {"the pair (0, 1) is accepted but does not overlap", 1, [](Fields& f) { f.marks[0] = 2; }},
       {"it counts 4 pairs; expected 3, which its boxes make", 0, [](Fields& f) { ++f.pair_count; }},
       {"its pairs are not those of its boxes", 0, [](Fields& f) { f.pairs[0] = apart; }},
-      {"nothing is pending and an update has something to tell", 0,
+      {"nothing is pending but an update has something to report", 0,
        [](Fields& f) { f.flags |= world::snapshot::was_settled; }},
-      {"it had no update and has pairs", 0, [](Fields& f) { f.flags &= ~world::snapshot::was_updated; }},
-      {"it refines no pairs and asks about some", 0, [](Fields& f) { f.refiltered = {BoxId{1}}; }},
-      {"a box left its enlarged one and did not change", 1, [](Fields& f) { f.changed = {}; }},
+      {"it had no update but has pairs", 0, [](Fields& f) { f.flags &= ~world::snapshot::was_updated; }},
+      {"it refines no pairs but asks about some", 0, [](Fields& f) { f.refiltered = {BoxId{1}}; }},
+      {"a box left its enlarged box but did not change", 1, [](Fields& f) { f.changed = {}; }},
       {"the last frame has a box in a slot that has none now", 0,
        [](Fields& f) {
          f.last_count = 5, f.last_places.push_back(BoxId{4}), f.last_boxes.push_back(at(50));
        }},
-      {"a filter changed and is not in the list of boxes that did", 0,
+      {"a filter changed but its box is not listed", 0,
        [](Fields& f) {
          f.last_flags |= world::snapshot::last_has_filters, f.last_filtered = {BoxId{1}},
                                                             f.last_filters = {Filter{.category = 2}};
@@ -104,7 +104,7 @@ TEST(ForgedSnapshot, IsRefusedForWhatContradictsItself) {
        [](Fields& f) { f.last_ignored = {first}; }},
       {"the pair (0, 1) has a slot without a box", 0,
        [](Fields& f) { f.states[0] = 0, f.boxes[0] = absent_box<2, float>(), f.last_places = {BoxId{3}}; }},
-      {"a slot is used up and has generations left", 0,
+      {"a slot is used up but has generations left", 0,
        [](Fields& f) { f.states[0] = 4, f.boxes[0] = absent_box<2, float>(); }},
       {"a box with min > max or a NaN", 0, [](Fields& f) { f.boxes[1].min[0] = 5; }},
       {"a snapshot names slot 4; expected one below 4", 0, [](Fields& f) { f.changed.push_back(BoxId{4}); }},

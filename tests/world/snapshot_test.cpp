@@ -402,7 +402,7 @@ TEST(Snapshot, SaysWhatItIsNotASnapshotOf) {
   World2 choosy;
   choosy.set_predicate([](Handle, Handle) { return true; });
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { choosy.restore(bytes); }),
-              HasSubstr("a world without a predicate and this one has one"));
+              HasSubstr("a world without a predicate, but this one has one"));
 }
 
 /// Makes the checksum and the length right.
