@@ -83,7 +83,8 @@ template <int D>
 std::unique_ptr<Searcher<D>> searcher(const Algorithm& algorithm, const Settings& settings) {
   const MakeSearcher<D>& make = algorithm.in<D>().searcher;
   if (!make)
-    throw InvalidSpec(core::message({algorithm.name, " does not do ", D, "D; expected ", 5 - D, "D boxes"}));
+    throw InvalidSpec(
+        core::message({algorithm.name, " does not support ", D, "D; expected ", 5 - D, "D boxes"}));
   const core::DefaultEnvironment environment;
   return make(settings);
 }

@@ -116,7 +116,7 @@ TEST(Registry, RefusesAnUnknownNameAndNamesTheKnownOnes) {
 TEST(Registry, RefusesADimensionThatTheAlgorithmDoesNotDo) {
   const Algorithm algorithm = planar();
   EXPECT_NO_THROW(Finder<2>(algorithm, {"planar", {}}));
-  const std::string expected = "planar does not do 3D; expected 2D boxes";
+  const std::string expected = "planar does not support 3D; expected 2D boxes";
   EXPECT_EQ(message_of<InvalidSpec>([&] { Finder<3>(algorithm, {"planar", {}}); }), expected);
   EXPECT_EQ(message_of<InvalidSpec>([&] { Tracker<3>(algorithm, {"planar", {}}); }), expected);
 }

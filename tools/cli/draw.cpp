@@ -65,8 +65,9 @@ std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::stri
         continue;
       }
       if (!entry.algorithm->has_dimension(dimension))
-        throw Unusable(fmt::format("--algorithms is '{}', which does not do {}D; expected --dimension {}",
-                                   entry.algorithm->name, dimension, 5 - dimension));
+        throw Unusable(
+            fmt::format("--algorithms is '{}', which does not support {}D; expected --dimension {}",
+                        entry.algorithm->name, dimension, 5 - dimension));
       choose(entry);
     }
   }

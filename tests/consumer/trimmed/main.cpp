@@ -35,6 +35,6 @@ int main() {
   if (world.update().begun.size() != 1) return 1;
   const bool refuses_names = refuses([&] { return find_pairs(boxes, {.algorithm = "bvh"}); },
                                      "unknown algorithm 'bvh'; expected one of: grid");
-  const bool refuses_3d = refuses([] { World3("grid"); }, "grid does not do 3D; expected 2D boxes");
+  const bool refuses_3d = refuses([] { World3("grid"); }, "grid does not support 3D; expected 2D boxes");
   return refuses_names && refuses_3d ? 0 : 1;
 }

@@ -119,7 +119,7 @@ TEST(AdviseVerb, EndsWithOneWhereNothingIsVerified) {
   // 3D is beyond the paper's grid.
   const Ended ended = run(quickly("uniform", {"-n", "50", "--dimension", "3", "--algorithms", "paper_grid"}));
   EXPECT_EQ(ended.status, 1) << ended.errors;
-  EXPECT_THAT(ended.output, AllOf(HasSubstr("does not do 3D"), HasSubstr("nothing to advise")));
+  EXPECT_THAT(ended.output, AllOf(HasSubstr("does not support 3D"), HasSubstr("nothing to advise")));
 }
 
 TEST(AdviseVerb, RefusesWhatItCannotUse) {

@@ -96,7 +96,7 @@ TEST(DrawVerb, RefusesWhatItCannotDraw) {
                           {{"unifrom", "-o", "-"}, {"'unifrom'", "expected"}},
                           {{"uniform", "-o", "-", "-n", "1e6"}, {"-n is 1000000", "expected at most 20000"}},
                           {{"uniform", "-o", "-", "--algorithm", "paper_grid", "--dimension", "3"},
-                           {"'paper_grid'", "does not do 3D", "expected --dimension 2"}},
+                           {"'paper_grid'", "does not support 3D", "expected --dimension 2"}},
                           {{"uniform", "-o", "/nowhere/at/all.svg"}, {"/nowhere/at/all.svg"}},
                           {{"uniform"}, {"--output"}}});
 }

@@ -37,7 +37,7 @@ TEST(VerifyVerb, ChecksInThePrecisionOfTheInputFromAPipeToo) {
       "$BROADSIDE verify - --algorithms own,paper_grid");
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("standard input: 500 boxes in 3D, as doubles, 1 frame, "),
-                                  ContainsRegex("  paper_grid +skipped   does not do 3D\n")));
+                                  ContainsRegex("  paper_grid +skipped   does not support 3D\n")));
 }
 
 TEST(VerifyVerb, EndsWithStatusOneWhereNothingIsVerified) {
@@ -49,7 +49,7 @@ TEST(VerifyVerb, EndsWithStatusOneWhereNothingIsVerified) {
   const Ended compared = run({"compare", "--scenes", file, "--dimension", "3", "--algorithms", "paper_grid"});
   EXPECT_EQ(compared.status, 1);
   EXPECT_THAT(compared.output,
-              HasSubstr("nothing was verified\nleft out: 1 measurement (1 'does not do 3D')\n"));
+              HasSubstr("nothing was verified\nleft out: 1 measurement (1 'does not support 3D')\n"));
 }
 
 TEST(VerifyVerb, SaysWhatItDidNotRead) {

@@ -91,7 +91,7 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
       {{{"scene", "no/such.csv"}}, {"scene:", "no/such.csv"}},
       {{{"scene", {"uniform"}}}, {"scene 1 is '\"uniform\"'", "a file of boxes at rest"}},
       {{{"dimension", 4}}, {"dimension is '4'", "from 2 to 3"}},
-      {{{"dimension", 3}}, {"specs 1 is '\"paper_grid\"'", "for 3D", "does not do 3D"}},
+      {{{"dimension", 3}}, {"specs 1 is '\"paper_grid\"'", "for 3D", "does not support 3D"}},
       {{{"specs", nlohmann::json::array()}}, {"specs is '[]'", "at least one"}},
       {{{"specs", {"grid:cell=-1"}}}, {"cases 2 'bad': specs 1: ", "cell", "-1"}},
       {{{"specs", {"gird"}}}, {"specs 1: ", "'gird'", "grid"}},

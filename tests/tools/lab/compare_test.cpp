@@ -276,7 +276,7 @@ TEST(Compare, SaysWhichDimensionAndWhichBoxesAnAlgorithmDoesNotDo) {
   const Comparison comparison = compare(catalogue, options_for("flat", {small_still, small_moving}));
   EXPECT_EQ(comparison.cases.at(0).measurements.at(0).outcome, Outcome::verified);
   EXPECT_EQ(comparison.cases.at(1).measurements.at(0).outcome, Outcome::skipped);
-  EXPECT_EQ(comparison.cases.at(1).measurements.at(0).reason, "does not do 3D");
+  EXPECT_EQ(comparison.cases.at(1).measurements.at(0).reason, "does not support 3D");
 }
 
 TEST(Compare, SkipsWhatIsGivenMoreBoxesThanItTakes) {

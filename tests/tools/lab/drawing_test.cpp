@@ -173,7 +173,7 @@ TEST(Drawing, OfASceneHasFewerBoxesOfTheSameDensity) {
   EXPECT_EQ(drawing.scene, "uniform");
   EXPECT_EQ(drawing.boxes, 200U);
   EXPECT_EQ(drawing.of, 100'000U);
-  ASSERT_EQ(drawing.views[0].layers.size(), 1U);  // paper_grid does not do 3D
+  ASSERT_EQ(drawing.views[0].layers.size(), 1U);  // paper_grid does not support 3D
 }
 
 TEST(Drawing, IsJsonOfTheShapeThatTheReportReads) {

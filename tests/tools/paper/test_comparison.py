@@ -51,7 +51,7 @@ def results_of(process: int, revision: str = "abc", time=model, is_busy: bool = 
                 "drift": None, "teleport": None, "algorithm": name, "version": "Boost 1.74", "kind": KINDS[name],
                 "target": "AVX2" if name == "grid" else None, "pairs": 6000, "verified": True if ms else None,
                 "verified_by": "cross-checked by 3 structures of 2 libraries" if ms else None,
-                "skipped": None if ms else "does not do 3D", "rounds": 8 if ms else 0, "median_ms": ms or None,
+                "skipped": None if ms else "does not support 3D", "rounds": 8 if ms else 0, "median_ms": ms or None,
                 "p99_ms": 2 * ms or None, "unsteady": False if ms else None, "floor_ms": None if case.frames else 0.5,
                 "samples_ms": [ms] * 8,
                 "ratio_to_fastest": {"of": "grid", "median": ms / fastest} if ms else None})

@@ -87,7 +87,7 @@ void count_memory(Measurement& measurement, const Algorithm& algorithm,
 
 std::string unfit(const Entry& entry, int dimension, const Extremes& extremes) {
   const Algorithm& algorithm = *entry.algorithm;
-  if (!algorithm.has_dimension(dimension)) return fmt::format("does not do {}D", dimension);
+  if (!algorithm.has_dimension(dimension)) return fmt::format("does not support {}D", dimension);
   if (extremes.infinite && !algorithm.limits.infinite_boxes) return "does not take infinite boxes";
   if (extremes.largest > algorithm.limits.max_coordinate)
     return fmt::format("does not take coordinates beyond {:.3g}", algorithm.limits.max_coordinate);

@@ -76,7 +76,7 @@ describe("the program", { skip: missing }, () => {
   after(() => rmSync(folder, { recursive: true, force: true }));
 
   test("writes comparisons that fit their schema: still, moving, skipped", () => {
-    // The paper's grid does not do 3D, so it is skipped there.
+    // The paper's grid does not support 3D, so it is skipped there.
     const results = written("compare", "--scenes", "uniform", "-n", "60", "--moving", "0,0.5", "--frames", "3",
       "--algorithms", "auto,grid,paper_grid,paper_brute_force");
     assert.equal(faultOfResults(results), "");
