@@ -75,7 +75,7 @@ std::string_view former_value(std::string_view algorithm, std::string_view tunab
   if (!is_ours(algorithm) || tunable != "update" ||
       std::ranges::find(former_ways, value) == former_ways.end())
     return {};
-  return "; each tracker follows in its one fastest way, and the paper's ways are those of "
+  return "; each tracker uses only its fastest method, and the paper's ways are those of "
          "the paper_... algorithms";
 }
 

@@ -5,7 +5,7 @@ namespace broadside::core {
 
 Tunable threads_tunable() {
   return {.name = "threads",
-          .summary = "maximum number of threads of a search; 0: as many as there are",
+          .summary = "maximum number of threads of a search; 0: all available",
           .default_value = "1",
           .type = Tunable::Type::integer,
           .min = 0,

@@ -202,7 +202,7 @@ bool GroupedSearch<D>::compares_all(std::size_t left_count) {
 template <int D>
 std::string GroupedSearch<D>::explanation(const Searcher<D>& searcher) const {
   std::string text = has_compared_all_
-                         ? "brute_force, since comparing so few pairs of boxes costs less than any order"
+                         ? "brute_force, since comparing so few pairs of boxes costs less than any structure"
                          : searcher.explanation();
   if (!text.empty() && searches_ > 1)
     text += "; the last of " + std::to_string(searches_) +

@@ -69,7 +69,7 @@ class CandidateList {
   EnlargedFrame last_;
   std::vector<Box<D, Real>> before_;  // enlarged boxes of the frame before
   std::vector<Box<D, Real>> now_;
-  std::vector<BoxId> left_;          // boxes that left their enlarged ones, or whose filter changed
+  std::vector<BoxId> left_;          // boxes that left their enlarged boxes, or whose filter changed
   std::vector<std::uint8_t> flags_;  // for each box, 1 if it is in left_; all 0 between updates
   std::vector<Pair> candidates_;     // sorted
   std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap

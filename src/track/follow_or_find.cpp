@@ -120,19 +120,20 @@ template <int D, typename Real>
 std::string FollowOrFind<D, Real>::explanation() const {
   if (!explains_) return find_anew_ ? find_anew_->explanation() : std::string();
   std::string text;
-  if (policy_.are_few()) text = structures_[policy_.current()].name + ", since so few boxes need no cells; ";
+  if (policy_.are_few())
+    text = structures_[policy_.current()].name + ", because so few boxes need no structure; ";
   const std::string changed = std::to_string(changed_) + (changed_ == 1 ? " box changed" : " boxes changed");
   const std::string break_even = std::to_string(policy_.break_even());
   const bool is_asked_for = policy_.update() != Update::automatic;
   if (was_followed_) {
     return text + "followed by " + structures_[policy_.current()].name + ", since " + changed +
            (is_asked_for ? ", as asked for"
-                         : ", and up to " + break_even + " that costs less than finding all pairs anew");
+                         : "; up to " + break_even + ", following costs less than finding all pairs anew");
   }
   const std::string by = find_anew_ ? find_anew_->explanation() : std::string();
   text += "all pairs found anew" + (by.empty() ? "" : " by " + by);
   if (is_asked_for) return text;
-  return text + "; " + changed + ", and it pays to follow boxes up to " + break_even;
+  return text + "; " + changed + ", and following pays for up to " + break_even;
 }
 
 template class FollowOrFind<2, float>;

@@ -49,8 +49,8 @@ class Updater {
     const EnlargedFrame& frame = candidates_.last();
     return std::to_string(frame.candidates) + " pairs of boxes enlarged by " +
            core::text_of(std::round(1000 * static_cast<double>(candidates_.margins().relative)) / 10) +
-           " % of their shortest side were tested, since only " + std::to_string(frame.left) + " of the " +
-           std::to_string(frame.changed) + " boxes that changed left their enlarged ones";
+           "% of their shortest side were tested, since only " + std::to_string(frame.left) + " of the " +
+           std::to_string(frame.changed) + " boxes that changed left their enlarged boxes";
   }
 
   /// An index of the last frame's boxes, if one is kept anyway; else null. An index of enlarged boxes would

@@ -32,7 +32,8 @@ const std::vector<WorldOption>& table() {
       {length("margin", "how far a box is enlarged on each side, in the unit of its coordinates"),
        [](WorldOptions& o, const Settings& s) { o.margin = s.number("margin"); }},
       {length("relative_margin",
-              "how far a box is enlarged on each side, over its longest side; the smaller of the two "
+              "how far a box is enlarged on each side, as a fraction of its longest side; the smaller of the "
+              "two "
               "margins counts where both are given"),
        [](WorldOptions& o, const Settings& s) { o.relative_margin = s.number("relative_margin"); }},
       {length("predicted_frames", "frames of motion that an enlarged box covers if a move has a velocity"),
@@ -47,7 +48,7 @@ const std::vector<WorldOption>& table() {
        }},
       {yes_or_no("keep_pairs", "keep the current pairs, which takes 16 bytes per pair", "yes"),
        [](WorldOptions& o, const Settings& s) { o.keep_pairs = s.text("keep_pairs") == "yes"; }},
-      {yes_or_no("quarantine", "take invalid boxes as absent ones instead of refusing them", "no"),
+      {yes_or_no("quarantine", "treat invalid boxes as absent instead of refusing them", "no"),
        [](WorldOptions& o, const Settings& s) {
          o.bad_input = s.text("quarantine") == "yes" ? BadInput::quarantine : BadInput::reject;
        }},

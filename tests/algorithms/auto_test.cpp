@@ -87,7 +87,7 @@ TEST(AutoTracker, ComparesFewBoxesAndKeepsToItForSomeMore) {
   const auto compares = [&](std::size_t count) {
     const std::vector<Box2> boxes = boxes_anywhere(count, random);
     for (int frame = 0; frame < 2; ++frame) tracker.update({boxes, {}}, none, none);
-    return tracker.explanation().starts_with("brute_force, since so few");
+    return tracker.explanation().starts_with("brute_force, because so few");
   };
   std::size_t most = 100;
   while (compares(most) && most < 2000) most += 20;

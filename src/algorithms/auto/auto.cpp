@@ -117,7 +117,7 @@ class AutoSearcher final : public Searcher<D> {
     if (has_handed_over_)
       text +=
           "; it gave up, since its tests were far more than boxes and pairs account for, and a segment tree "
-          "found what was left";
+          "found the remaining pairs";
     return text;
   }
 
@@ -139,22 +139,22 @@ class AutoSearcher final : public Searcher<D> {
     const std::string boxes = std::to_string(count_) + " boxes";
     switch (choice_) {
       case AutoReason::few:
-        return text + boxes + " are so few that comparing all of them costs less than any order";
+        return text + boxes + " are so few that comparing all of them costs less than sorting them";
       case AutoReason::one_axis:
-        return text + "a sweep along one axis leaves few tests a box: " + rounded(tests_) + " in a sample";
+        return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
       case AutoReason::tree:
         return text + boxes + " are too few for cells to pay";
       case AutoReason::dense:
         return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
       case AutoReason::clusters:
-        return text + "boxes stand in clusters: " + rounded(clustering_) +
+        return text + "boxes form clusters: " + rounded(clustering_) +
                " times as many are near each other as evenly spread ones would be";
       case AutoReason::cells:
         return text + boxes + " spread as evenly as these suit cells";
       case AutoReason::few_in_one_place:
       case AutoReason::one_place:
         return text + "a box overlaps some " + rounded(overlaps_) + " of " + boxes +
-               ", so that nothing is gained by parting them";
+               ", so that separating them gains nothing";
       case AutoReason::shapes:
         return text + "the shapes of these " + boxes + " suit cells better than a tree's bounds";
     }

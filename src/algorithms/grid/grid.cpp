@@ -251,7 +251,7 @@ Algorithm grid() {
           "C. Ericson, Real-Time Collision Detection (2005), 7.2",
       .tunables = {{.name = "cell",
                     .summary = "size of a cell, in the boxes' unit; made larger where there would be over 4 "
-                               "cells a box; in tracking, the size of the smallest cells",
+                               "cells per box; in tracking, the size of the smallest cells",
                     .default_value = "auto",
                     .min = std::numeric_limits<float>::min()},
                    core::update_tunable(),

@@ -281,7 +281,7 @@ Algorithm quadtree() {
       .summary = "nodes split at medians until they hold few boxes, which are swept; an octree in 3D",
       .source = "paper.md, section V",
       .tunables = {{.name = "capacity",
-                    .summary = "most boxes in a leaf that could be split",
+                    .summary = "maximum number of boxes in a leaf that could be split",
                     .default_value = "auto",
                     .type = Tunable::Type::integer,
                     .min = 1,

@@ -46,7 +46,7 @@ std::string suits(const std::string& algorithm, const Measurement& measurement, 
   if (algorithm == "brute_force")
     return signals.motion ? fmt::format("comparing what changed with all {} boxes needs no structure",
                                         grouped(signals.boxes))
-                          : fmt::format("{} are so few that comparing all costs less than any order",
+                          : fmt::format("{} are so few that comparing all costs less than sorting them",
                                         counted(signals.boxes, "box", "boxes"));
   if (algorithm == "sweep_and_prune") {
     const std::size_t axis = signals.best_axis();
@@ -55,7 +55,7 @@ std::string suits(const std::string& algorithm, const Measurement& measurement, 
   }
   if (algorithm == "bvh") {
     if (signals.clustering >= clustered)
-      return fmt::format("boxes stand in clusters, to which its bounds fit themselves: {}", tests);
+      return fmt::format("boxes form clusters, to which its bounds fit themselves: {}", tests);
     if (signals.overlaps.value_or(0) >= 6)
       return fmt::format("a box overlaps {} others, which cells would only repeat: {}",
                          rounded(*signals.overlaps), tests);
