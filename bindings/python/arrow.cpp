@@ -149,7 +149,7 @@ struct Stream {
     return 0;
   }
 
-  static const char* get_last_error(ArrowArrayStream*) { return "memory ran out"; }
+  static const char* get_last_error(ArrowArrayStream*) { return "out of memory"; }
 
   static void release(ArrowArrayStream* stream) {
     delete &of(stream);

@@ -142,9 +142,9 @@ bool is_empty_sequence(nb::handle object) {
 std::string text(nb::handle object, const char* name) {
   std::string found;
   if (nb::try_cast(object, found)) return found;
-  throw nb::type_error((std::string(name) + " is of " +
-                        nb::cast<std::string>(object.type().attr("__name__")) + "; expected a str")
-                           .c_str());
+  const auto kind =
+      nb::cast<std::string>(nb::module_::import_("broadside._arguments").attr("kind_of")(object));
+  throw nb::type_error((std::string(name) + " is " + kind + "; expected a str").c_str());
 }
 
 bool truth(nb::handle object) {

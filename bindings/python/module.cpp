@@ -60,7 +60,7 @@ std::size_t threads_of(nb::handle threads, std::string_view spec) {
     throw std::invalid_argument("threads are given as an argument and in '" + std::string(spec) +
                                 "'; expected one of the two");
   if (PyBool_Check(threads.ptr()))
-    throw nb::type_error("threads is of bool; expected an int, or None for all");
+    throw nb::type_error("threads is a bool; expected an int, or None for all");
   int overflow = 0;
   const long count = PyLong_AsLongAndOverflow(threads.ptr(), &overflow);
   if (count == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();

@@ -95,8 +95,8 @@ class CallMutex {
   void check_is_free() const {
     if (owner_ == std::this_thread::get_id())
       throw std::runtime_error(
-          "a handler of a signal has called the object whose call it interrupts; expected it "
-          "to leave that object alone");
+          "a signal handler called the object whose call it interrupts; expected it to leave that object "
+          "alone");
   }
 
   std::mutex mutex_;

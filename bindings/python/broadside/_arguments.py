@@ -6,17 +6,25 @@ import operator
 from typing import Any
 
 
+def kind_of(found: Any) -> str:
+    """The type of an object with its article, such as "an int", or "None"."""
+    if found is None:
+        return "None"
+    kind = type(found).__name__
+    return f"{'an' if kind[0] in 'aeiouAEIOU' else 'a'} {kind}"
+
+
 def text(found: Any, name: str) -> str:
     """A str."""
     if not isinstance(found, str):
-        raise TypeError(f"{name} is of {type(found).__name__}; expected a str")
+        raise TypeError(f"{name} is {kind_of(found)}; expected a str")
     return found
 
 
 def number(found: Any, name: str) -> float:
     """A number as a float."""
     if not hasattr(type(found), "__float__") and not hasattr(type(found), "__index__"):
-        raise TypeError(f"{name} is of {type(found).__name__}; expected a number")
+        raise TypeError(f"{name} is {kind_of(found)}; expected a number")
     try:
         return float(found)
     except OverflowError:
@@ -26,7 +34,7 @@ def number(found: Any, name: str) -> float:
 def integer(found: Any, name: str, least: int, most: int) -> int:
     """An integer from `least` to `most`."""
     if isinstance(found, bool) or not hasattr(type(found), "__index__"):
-        raise TypeError(f"{name} is of {type(found).__name__}; expected an integer")
+        raise TypeError(f"{name} is {kind_of(found)}; expected an integer")
     value = operator.index(found)
     if not least <= value <= most:
         raise ValueError(f"{name} is {value}; expected {least} to {most}")

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _core
+from broadside import _arguments, _core
 
 Rows = NDArray[Any]
 
@@ -234,10 +234,9 @@ def _of_objects(array: Rows, what: str) -> Rows:
     floats = np.empty(array.shape)
     for place, element in np.ndenumerate(array):
         if not isinstance(element, (Real, Decimal)) or isinstance(element, (bool, np.bool_, np.longdouble)):
-            kind = type(element).__name__
             raise TypeError(
-                f"{what} has dtype object (its element in row {place[0]} is of {kind}); expected float32 or float64, or "
-                "integers that float64 holds"
+                f"{what} has dtype object (its element in row {place[0]} is {_arguments.kind_of(element)}); expected "
+                "float32 or float64, or integers that float64 holds"
             )
         try:
             floats[place] = element

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _columns, _core
+from broadside import _arguments, _columns, _core
 from broadside._columns import Choice, Column, Columns
 from broadside._errors import InvalidBoxError
 
@@ -187,13 +187,13 @@ def _as_array(found: Any, name: str, shape: _Shape) -> Rows:
 def _of_sequence(found: Any, name: str) -> Rows:
     """Nested lists and tuples, and whatever else NumPy makes an array of."""
     if isinstance(found, (str, bytes, dict, set, frozenset)) or found is None:
-        raise TypeError(f"{name} is of {type(found).__name__}; expected an array of shape (n, 4) or (n, 6)")
+        raise TypeError(f"{name} is {_arguments.kind_of(found)}; expected an array of shape (n, 4) or (n, 6)")
     try:
         array = np.asarray(found)
     except ValueError as error:
         raise ValueError(f"{name} is no array: {error}; expected rows of the same length") from error
     if array.ndim == 0:
-        raise TypeError(f"{name} is of {type(found).__name__}; expected an array of shape (n, 4) or (n, 6)")
+        raise TypeError(f"{name} is {_arguments.kind_of(found)}; expected an array of shape (n, 4) or (n, 6)")
     if array.dtype.kind == "f" and (np.isfinite(array) & (np.abs(array) >= 2.0**53)).any():
         # NumPy has rounded integers that are mixed with floats.
         return np.asarray(found, dtype=object)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from broadside import _columns, _convert
+from broadside import _arguments, _columns, _convert
 from broadside._columns import Columns
 
 dask = import_module("dask")
@@ -59,7 +59,7 @@ def _chunks_of(found: Any, name: str, columns: str | list[str] | None) -> tuple[
     if isinstance(found, dask_delayed.Delayed):
         return _tasks_of([found])
     if dask.is_dask_collection(found):
-        raise TypeError(f"{name} is of {type(found).__name__}; expected a Dask array, a Dask DataFrame or delayed objects")
+        raise TypeError(f"{name} is {_arguments.kind_of(found)}; expected a Dask array, a Dask DataFrame or delayed objects")
     if _convert.is_empty_sequence(found):
         return {}, []
     if isinstance(found, (list, tuple)) and all(map(_is_chunk, found)):

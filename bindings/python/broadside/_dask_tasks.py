@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _convert
+from broadside import _arguments, _convert
 from broadside._errors import InvalidBoxError
 from broadside._pairs import count, invalid_rows
 from broadside._partition import Partition
@@ -181,7 +181,7 @@ def as_frame(plan: Plan, first: NDArray[Any], second: NDArray[Any]) -> Any:
 
 def _index_of(chunk: Any, where: str) -> Any:
     if not isinstance(chunk, (pandas.DataFrame, pandas.Series)):
-        raise TypeError(f"{where} is of {type(chunk).__name__}; expected a DataFrame, since ids is 'index'")
+        raise TypeError(f"{where} is {_arguments.kind_of(chunk)}; expected a DataFrame, since ids is 'index'")
     if chunk.index.nlevels > 1:
         raise TypeError(f"{where} has an index of {chunk.index.nlevels} levels; expected one level, since ids is 'index'")
     return chunk.index

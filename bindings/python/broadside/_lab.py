@@ -137,7 +137,7 @@ def read(
             numbers in a row, such as "xywh": see `pairs`. For CSV, the names are given to the columns from left to right.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
-        quarantine: Take invalid boxes in as absent ones, rows of minima inf and maxima -inf, with a warning instead of
+        quarantine: Treat invalid boxes as absent, as rows of minima inf and maxima -inf, with a warning instead of
             raising.
 
     Returns:

@@ -172,7 +172,7 @@ class World:
         Both are of the same dimension and dtype. A world and itself are joined like two.
         """
         if not isinstance(other, World):
-            raise TypeError(f"other is of {type(other).__name__}; expected a World")
+            raise TypeError(f"other is {_arguments.kind_of(other)}; expected a World")
         return self._world.join(other._world)
 
     def overlapping(
@@ -254,7 +254,7 @@ class World:
     def __contains__(self, handle: object) -> bool:
         """Whether a handle names a box of the world."""
         if not isinstance(handle, (int, np.integer)) or isinstance(handle, bool):
-            raise TypeError(f"a handle is of {type(handle).__name__}; expected an integer")
+            raise TypeError(f"a handle is {_arguments.kind_of(handle)}; expected an integer")
         return 0 <= int(handle) < 2**64 and self._world.contains(int(handle))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -287,7 +287,7 @@ class Tracker:
         dtype: float64 or float32, as in `World`.
         algorithm: A spec: see `algorithms`.
         threads: The most threads; None: all cores, if there is enough to do.
-        quarantine: Take invalid boxes for absent ones instead of raising.
+        quarantine: Treat invalid boxes as absent instead of raising.
 
     Calls from several threads take turns. A tracker cannot be pickled or copied.
     """

@@ -184,7 +184,7 @@ def _side(one: ChunkedSet, looks: list[Look], ids: str) -> Side:
     for number, dtype in dtypes.items():
         if dtype != first[1]:
             raise TypeError(
-                f"the index of chunk {first[0]} of {one.name} is of {first[1]} and that of chunk {number} of {dtype}; expected "
+                f"the index of chunk {first[0]} of {one.name} has dtype {first[1]} and that of chunk {number} {dtype}; expected "
                 "one dtype, since ids is 'index'"
             )
     return Side(one.name, one.columns, starts, first[1])

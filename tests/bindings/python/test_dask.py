@@ -135,11 +135,11 @@ def test_names_boxes_by_the_index():
     for refused, error, message in (
         (lambda: broadside.dask.pairs(frame, ids="index", sort=True), ValueError, "expected ids of 'row'"),
         (lambda: broadside.dask.pairs(frame, ids="name"), ValueError, "ids is 'name'; expected"),
-        (lambda: broadside.dask.pairs(boxes, ids="index"), TypeError, "chunk 0 of boxes is of ndarray; expected a DataFrame"),
+        (lambda: broadside.dask.pairs(boxes, ids="index"), TypeError, "chunk 0 of boxes is a ndarray; expected a DataFrame"),
         (
             lambda: broadside.dask.pairs([frame_of(boxes), frame_of(boxes).set_index(pd.Index(labels))], ids="index"),
             TypeError,
-            "index of chunk 0 of boxes is of int64 and that of chunk 1 of (str|object)",
+            "index of chunk 0 of boxes has dtype int64 and that of chunk 1 (str|object)",
         ),
     ):
         with pytest.raises(error, match=message):
@@ -202,7 +202,7 @@ def test_refuses_what_does_not_fit():
         (lambda: pairs([boxes, scattered(10, 3)]), ValueError, "chunk 0 of boxes is in 2D and chunk 1 of boxes in 3D"),
         (lambda: pairs(boxes, scattered(10, 3)), ValueError, "chunk 0 of boxes is in 2D and chunk 0 of other in 3D"),
         (lambda: pairs(da.zeros((10, 4), dtype=bool)), TypeError, "chunk 0 of boxes has dtype bool"),
-        (lambda: pairs([dask.delayed("a")]), TypeError, "chunk 0 of boxes is of str"),
+        (lambda: pairs([dask.delayed("a")]), TypeError, "chunk 0 of boxes is a str"),
         (lambda: pairs(frame.xmin), TypeError, "boxes is a Series of float32; expected a DataFrame"),
         (lambda: pairs(frame.xmin, columns=list("abcd")), TypeError, "boxes is a Series of float32; expected a DataFrame"),
         (lambda: pairs(frame, columns=["xmin", "ymin", "a", "b"]), ValueError, "the columns xmin, .*; expected one column a"),

@@ -165,9 +165,9 @@ def test_refuses_questions_that_have_no_answer():
             with pytest.raises(error, match="k is"):
                 index.nearest([[0, 0]], k)
         for t_max in (None, "1"):
-            with pytest.raises(TypeError, match="t_max is of .*; expected a number"):
+            with pytest.raises(TypeError, match="t_max is .*; expected a number"):
                 index.hits([[0, 0]], [[1, 0]], t_max=t_max)
-        with pytest.raises(TypeError, match="points is of NoneType"):
+        with pytest.raises(TypeError, match="points is None"):
             index.containing(None)
 
 
@@ -271,7 +271,7 @@ def test_refuses_options_of_queries_that_do_not_fit():
         for options, error, message in [
             ({"max_distance": -1}, ValueError, "max_distance is -1; expected 0 or more"),
             ({"max_distance": np.nan}, ValueError, "max_distance is nan; expected 0 or more"),
-            ({"max_distance": "1"}, TypeError, "max_distance is of str; expected a number"),
+            ({"max_distance": "1"}, TypeError, "max_distance is a str; expected a number"),
             ({"exclude": [1, 2, 3]}, ValueError, "2 queries and 3 boxes in exclude; expected one for each query, or one"),
             ({"exclude": []}, ValueError, "2 queries and 0 boxes in exclude"),
             ({"exclude": [-1, 2]}, ValueError, "exclude has -1"),

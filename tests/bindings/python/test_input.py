@@ -73,8 +73,8 @@ def test_takes_integers_that_float64_holds_and_no_others():
         (np.zeros((3, 4), bool), TypeError, "dtype bool; expected float32 or float64"),
         (np.zeros((3, 4), complex), TypeError, "dtype complex128; expected"),
         (np.array([["a"] * 4]), TypeError, "dtype <U1"),
-        (np.array([[object()] * 4]), TypeError, r"dtype object \(its element in row 0 is of object\)"),
-        (np.array([[None] * 4]), TypeError, "NoneType"),
+        (np.array([[object()] * 4]), TypeError, r"dtype object \(its element in row 0 is an object\)"),
+        (np.array([[None] * 4]), TypeError, "in row 0 is None"),
         (np.zeros((3, 4), "M8[s]"), TypeError, r"datetime64\[s\]"),
         (np.zeros((3, 4), np.longdouble), TypeError, "float128|longdouble"),
         (np.zeros((3, 5)), ValueError, r"shape \(3, 5\); expected \(n, 4\)"),
@@ -84,7 +84,7 @@ def test_takes_integers_that_float64_holds_and_no_others():
         ([[0, 0, 1, 1], [0, 0]], ValueError, "rows of the same length"),
         ("boxes", TypeError, "str; expected an array"),
         (b"0000", TypeError, "bytes"),
-        (None, TypeError, "NoneType"),
+        (None, TypeError, "in row 0 is None"),
         (7, TypeError, "int; expected an array"),
         ({"xmin": [0]}, TypeError, "dict"),
         (array.array("d", [0, 0, 1, 1]), ValueError, r"shape \(4,\)"),
@@ -118,10 +118,10 @@ def test_refuses_arguments_that_do_not_fit():
     for arguments, error, message in [
         ({"algorithm": "gird"}, broadside.InvalidAlgorithmError, "did you mean 'grid'"),
         ({"algorithm": "grid:cell=-1"}, broadside.InvalidAlgorithmError, "cell"),
-        ({"algorithm": 7}, TypeError, "algorithm is of int; expected a str"),
-        ({"algorithm": None}, TypeError, "algorithm is of NoneType"),
+        ({"algorithm": 7}, TypeError, "algorithm is an int; expected a str"),
+        ({"algorithm": None}, TypeError, "algorithm is None"),
         ({"threads": 2**70}, ValueError, "threads is 1180591620717411303424; expected 1 to 1024"),
-        ({"threads": True}, TypeError, "threads is of bool"),
+        ({"threads": True}, TypeError, "threads is a bool"),
         ({"threads": 1.5}, TypeError, "float|int"),
         ({"output": "pandas"}, ValueError, "expected 'numpy', 'arrow' or 'sparse'"),
         ({"threads": 0}, ValueError, "threads is 0; expected 1 to 1024"),
@@ -137,7 +137,7 @@ def test_refuses_arguments_that_do_not_fit():
         ({"ignored": [0, 1, 2]}, ValueError, r"expected \(n, 2\)"),
         ({"ignored": [[0, 1]], "other": boxes}, ValueError, "one set alone"),
         ({"other": scattered(10, 3)}, ValueError, "2D and other in 3D"),
-        ({"other": "boxes"}, TypeError, "other is of str"),
+        ({"other": "boxes"}, TypeError, "other is a str"),
     ]:
         with pytest.raises(error, match=message):
             broadside.pairs(boxes, **arguments)

@@ -227,7 +227,7 @@ def test_draws(tmp_path):
         broadside.draw(scattered(10), "nothing")
     with pytest.raises(ValueError, match="most is 0"):
         broadside.draw(scattered(10), most=0)
-    with pytest.raises(TypeError, match="algorithms is of list; expected a str"):
+    with pytest.raises(TypeError, match="algorithms is a list; expected a str"):
         broadside.draw(scattered(10), ["grid"])
     with pytest.raises(broadside.InvalidBoxError):
         broadside.draw([[0, 0, np.nan, 1]])

@@ -72,7 +72,7 @@ def test_a_signal_handler_may_not_call_the_object_that_it_interrupts():
     before = signal.signal(signal.SIGALRM, lambda *_: world.update())
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.2)
-        with pytest.raises(RuntimeError, match="a handler of a signal has called the object"):
+        with pytest.raises(RuntimeError, match="a signal handler called the object"):
             world.update()
     finally:
         signal.signal(signal.SIGALRM, before)
