@@ -22,7 +22,7 @@ void refused() { ${code} }
   endif()
 endfunction()
 
-set(sentence "Broadside works on boxes in 2 or 3 dimensions, of float or double")
+set(sentence "Broadside supports boxes of 2 or 3 dimensions with float or double coordinates")
 expect_refusal("World<4> world;" "${sentence}")
 expect_refusal("World<2, int> world;" "${sentence}")
 expect_refusal("const auto bytes = &BoxIndex<4>::bytes;" "${sentence}")

@@ -46,9 +46,9 @@ broadside_status status_of_exception(broadside_error* error) noexcept {
   } catch (const StopAsked&) {
     return written(error, BROADSIDE_STOPPED, "a callback asked to stop");
   } catch (const std::bad_alloc&) {
-    return written(error, BROADSIDE_OUT_OF_MEMORY, "memory ran out");
+    return written(error, BROADSIDE_OUT_OF_MEMORY, "out of memory");
   } catch (const std::length_error&) {
-    return written(error, BROADSIDE_OUT_OF_MEMORY, "more memory was asked for than an array can have");
+    return written(error, BROADSIDE_OUT_OF_MEMORY, "the array would be too large");
   } catch (const std::exception& exception) {
     return written(error, BROADSIDE_FAILED, exception.what());
   } catch (...) {
@@ -60,7 +60,7 @@ void check_api_version(int version) {
   if (version != BROADSIDE_C_API_VERSION)
     throw std::invalid_argument("api_version is " + std::to_string(version) + "; expected " +
                                 std::to_string(BROADSIDE_C_API_VERSION) +
-                                ", that of library " BROADSIDE_VERSION);
+                                ", the version of library " BROADSIDE_VERSION);
 }
 
 void check_size(std::size_t size, std::size_t expected, const char* name) {

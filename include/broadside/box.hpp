@@ -24,7 +24,8 @@ inline constexpr bool is_supported = (D == 2 || D == 3) &&
 /// in one sentence.
 template <int D, typename Real>
 struct SupportedBox {
-  static_assert(is_supported<D, Real>, "Broadside works on boxes in 2 or 3 dimensions, of float or double");
+  static_assert(is_supported<D, Real>,
+                "Broadside supports boxes of 2 or 3 dimensions with float or double coordinates");
   static constexpr bool value = true;
 };
 }  // namespace detail

@@ -398,13 +398,13 @@ class BROADSIDE_RECORDER_ABI Recorder {
 
   bool is_open(const char* call) {
     if (write_) return true;
-    return fail(std::string("recorder: ") + call + "() without a trace; expected a successful open() before");
+    return fail(std::string("recorder: ") + call + "() without a trace; expected a successful open() first");
   }
 
   bool takes_pairs(const char* call) {
     if (!is_open(call)) return false;
     if (has_pairs_) return true;
-    return fail(path_ + ": " + call + "() in a trace without pairs; expected open() with a margin before");
+    return fail(path_ + ": " + call + "() in a trace without pairs; expected open() with a margin first");
   }
 
   bool has_box(std::uint32_t slot) const noexcept {
@@ -420,7 +420,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     const auto refuse_pair = [&](const std::string& why) {
       return fail(path_ + ": " + text_of_pair(first, second) + " " + why);
     };
-    if (first == second) return refuse_pair("of a slot and itself; expected two slots");
+    if (first == second) return refuse_pair("of a slot and itself; expected two different slots");
     for (const std::uint32_t slot : {first, second}) {
       if (!has_box(slot))
         return refuse_pair("names slot " + std::to_string(slot) + ", which is empty; expected a box");
@@ -590,7 +590,7 @@ class BROADSIDE_RECORDER_ABI Recorder {
     if (write_(buffer_.data(), count)) return true;
     write_ = nullptr;
     return fail(path_ +
-                ": cannot be written: " + (errno != 0 ? std::strerror(errno) : "the bytes were not taken"));
+                ": cannot be written: " + (errno != 0 ? std::strerror(errno) : "write() refused the bytes"));
   }
 
   std::string path_;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #if FLT_EVAL_METHOD == 2
-#error "floats are computed in more digits than they have; expected -msse2 -mfpmath=sse"
+#error "floats are computed with excess precision; expected -msse2 -mfpmath=sse"
 #endif
 
 namespace broadside::core {

@@ -65,7 +65,7 @@ void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all
   for (const BoxId id : frame.changed) {
     if (index(id) >= size) {
       throw InvalidFrame(message({"changed box ", index(id), " of a frame of ", boxes.size(),
-                                  " boxes; expected a place in this frame or the last"}));
+                                  " boxes; expected an index in this or the previous frame"}));
     }
     if (index(id) < first && is_invalid(boxes[index(id)])) first = index(id);
   }

@@ -61,7 +61,7 @@ std::string text_of(const History<D, Real>& history, std::size_t max_items) {
     add_lines(text, step.changed.size(), max_items, "\n  ",
               [&](std::size_t i) { return line_of(index(step.changed[i]), step.boxes[i], step.filters, i); });
     if (step.changed.empty()) text += " none";
-    add_pairs("\n  ignored, or no longer:", step.toggled);
+    add_pairs("\n  ignored or no longer ignored:", step.toggled);
   }
   if (history.steps.size() > max_items)
     text += "\n... " + std::to_string(history.steps.size() + 1) + " frames in all";

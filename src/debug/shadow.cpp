@@ -21,7 +21,7 @@ using debug::WrongEvent;
 
 [[noreturn]] void refuse_unlisted(std::size_t frame, const std::string& what) {
   throw InvalidFrame("frame " + std::to_string(frame) + ": " + what +
-                     ", and is not listed; expected every change in the frame's lists");
+                     ", and is not listed; expected every change to be listed");
 }
 
 /// Throws if an unlisted box or its filter differs from the one that the tracker knows. Looks only at boxes
@@ -35,10 +35,10 @@ void check_unlisted(const Frame<D, Real>& last, const Frame<D, Real>& frame,
     const Box<D, Real>& known = last.boxes[i];
     // The tracker knows an invalid box only as an absent one.
     if (box != known && !(core::is_invalid(box) && is_absent(known)))
-      refuse_unlisted(number, "box " + std::to_string(i) + " had " + core::text_of(known) + ", has now " +
+      refuse_unlisted(number, "box " + std::to_string(i) + " had " + core::text_of(known) + ", now has " +
                                   core::text_of(box));
     if (!frame.filters.empty() && frame.filters[i] != last.filters[i])
-      refuse_unlisted(number, "box " + std::to_string(i) + " has another filter than before");
+      refuse_unlisted(number, "box " + std::to_string(i) + " has a different filter than before");
   }
 }
 
@@ -62,7 +62,7 @@ void check_listed(const Pairs& toggled, std::span<const Pair> listed, std::size_
   for (const Pair pair : listed) named.insert(pair);
   for (const Pair pair : toggled) {
     if (!named.contains(pair))
-      refuse_unlisted(frame, "the pair " + debug::text_of(pair) + " is newly ignored or no longer");
+      refuse_unlisted(frame, "the pair " + debug::text_of(pair) + " became ignored or is no longer ignored");
   }
 }
 
@@ -81,7 +81,8 @@ void hand_on(const EventPairs& events, PairSink& begun, PairSink& ended) {
 
 template <int D, typename Real>
 struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
-  /// `name`: the tracker's name in messages. `make`, which may be empty, makes trackers to try histories on.
+  /// `name`: the tracker's name in messages. `make`, which may be empty, makes trackers to replay histories
+  /// on.
   State(Tracker<D, Real> its_tracker, std::string name, Make make, const ShadowOptions& options)
       : tracker(std::move(its_tracker)),
         name_(std::move(name)),
@@ -193,11 +194,11 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
     if (make_) small = debug::smallest_fault<D, Real>(kept, make_, options_.tests);
     const bool reproduced = small.has_value();
     if (reproduced) {
-      text += "\nthe smallest history found in whose last frame it errs:\n";
+      text += "\nthe smallest history found whose last frame shows the fault:\n";
     } else {
-      text +=
-          make_ ? "\na new one does not err in the last " + std::to_string(kept.steps.size() + 1) + " frames"
-                : "\nthere is no other one to try histories on";
+      text += make_ ? "\na new tracker does not fail in the last " + std::to_string(kept.steps.size() + 1) +
+                          " frames"
+                    : "\nthere is no other tracker to replay histories on";
       text += "; in them, these two boxes:\n";
       const std::array<std::size_t, 2> places = {index(pair.first), index(pair.second)};
       small = only<D, Real>(places, kept);

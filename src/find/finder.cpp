@@ -92,7 +92,8 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     const core::DefaultEnvironment environment;
     core::check_count(view.size());
     if (!filters.right_filters.empty())
-      throw InvalidFrame("filters of a right set for a search in one set; expected none");
+      throw InvalidFrame(core::message(
+          {filters.right_filters.size(), " right filters for a search in one set; expected none"}));
     check_filters(filters.filters, view.size(), "");
     const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
     const std::size_t absent = check(boxes);
@@ -120,7 +121,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     core::check_count(boxes.size());
     if (left_count > boxes.size()) {
       throw InvalidFrame(core::message({"a left set of ", left_count, " boxes in an array of ", boxes.size(),
-                                        "; expected no more than there are"}));
+                                        "; expected at most ", boxes.size()}));
     }
     const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
     return deliver(environment, pairs, [&](PairSink& sink) {
@@ -184,7 +185,8 @@ Finder<D, Real>::Finder(const Spec& spec) : Finder(algorithm::require_algorithm(
 
 template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
-  if (searcher == nullptr) throw std::invalid_argument("Finder was given a null searcher; expected one");
+  if (searcher == nullptr)
+    throw std::invalid_argument("Finder was given a null searcher; expected a searcher");
   state_ = std::make_unique<State>(find::checked(std::move(searcher)), false, 1);
 }
 

@@ -65,7 +65,7 @@ class IdCheck final : public core::FilterSink {
       if (index(pair.first) < index(pair.second) && index(pair.second) < boxes_) continue;
       throw std::logic_error(
           core::message({"a searcher wrote the pair (", index(pair.first), ", ", index(pair.second), ") of ",
-                         boxes_, " boxes; expected two different places below their number"}));
+                         boxes_, " boxes; expected two different ids below ", boxes_}));
     }
     target().put(pairs);
   }

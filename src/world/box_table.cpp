@@ -43,16 +43,17 @@ BoxTable<D, Real>::BoxTable(const WorldOptions& options)
       quarantines_(options.bad_input == BadInput::quarantine) {
   if (!boxes_make_pairs_ && !enlarges_) {
     throw std::invalid_argument(
-        "a world is to tell of enlarged boxes and enlarges none; expected a margin, a relative margin or a "
-        "number of predicted frames above 0");
+        "a world reports enlarged boxes but enlarges none; expected a margin, a relative margin or a number "
+        "of "
+        "predicted frames above 0");
   }
 }
 
 template <int D, typename Real>
-void BoxTable<D, Real>::check_invalid(const Box<D, Real>& box, std::size_t index, const char* whose,
+void BoxTable<D, Real>::check_invalid(const Box<D, Real>& box, std::size_t index, const char* what,
                                       std::size_t number) const {
   if (quarantines_ && !is_absent(box)) return;
-  const std::string name = core::message({"the box ", whose, " ", number});
+  const std::string name = core::message({what, " ", number});
   if (is_absent(box)) throw InvalidInput(index, core::message({name, " is absent; expected a box"}));
   throw InvalidInput(index, core::fault_of(box, name, false));
 }

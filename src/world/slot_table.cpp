@@ -39,7 +39,7 @@ const Box<D, Real>* SlotTable<D, Real>::removed_box(std::uint32_t slot) const no
 }
 
 template <int D, typename Real>
-void SlotTable<D, Real>::refuse(Handle handle, const char* action) const {
+void SlotTable<D, Real>::refuse(Handle handle, const char* action, const char* times) const {
   // A free slot has not yet issued a handle of its current generation.
   const bool is_up_to_now = handle.slot < size() ? handle.generation < generations_[handle.slot] ||
                                                        (handle.generation == generations_[handle.slot] &&
@@ -52,9 +52,10 @@ void SlotTable<D, Real>::refuse(Handle handle, const char* action) const {
       !std::ranges::any_of(generations_, [begin](std::uint32_t one) { return one < begin; });
   const char* const why = is_up_to_now && !is_before
                               ? " names a box that was removed"
-                              : " was never issued by this world: it is another world's or made up";
-  throw InvalidHandle(core::message({"cannot ", action, " a box: handle (slot ", handle.slot, ", generation ",
-                                     handle.generation, ")", why, "; expected a box in the world"}));
+                              : " was never issued by this world: it belongs to another world or is invalid";
+  throw InvalidHandle(
+      core::message({"cannot ", action, " a box", times, ": handle (slot ", handle.slot, ", generation ",
+                     handle.generation, ")", why, "; expected a box in the world"}));
 }
 
 template <int D, typename Real>
@@ -94,7 +95,7 @@ std::span<const RemovedBox<D, Real>> SlotTable<D, Real>::remove(std::span<const 
     if (!is_live(handle)) {
       for (; removed_.size() > before; removed_.pop_back(), ++live_)
         states_[removed_.back().slot] = SlotState::live;
-      refuse(handle, is_live(handle) ? "remove twice" : "remove");
+      refuse(handle, "remove", is_live(handle) ? " twice" : "");
     }
     states_[handle.slot] = SlotState::removed;
     places_[handle.slot] = static_cast<std::uint32_t>(removed_.size());

@@ -94,8 +94,9 @@ class SlotTable {
   /// The box that was removed from a slot that is removed or reported; null for other slots.
   const Box<D, Real>* removed_box(std::uint32_t slot) const noexcept;
 
-  /// Throws InvalidHandle, which says why the handle names no box.
-  [[noreturn]] void refuse(Handle handle, const char* action) const;
+  /// Throws InvalidHandle, which says why the handle names no box. `times` follows "a box", as in "a box
+  /// twice".
+  [[noreturn]] void refuse(Handle handle, const char* action, const char* times = "") const;
 
   /// Makes room for `count` calls of add(), and returns how many slots they will append. Throws InvalidFrame
   /// if there would be more slots than ids.

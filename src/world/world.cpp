@@ -63,7 +63,7 @@ template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const core::DefaultEnvironment environment;
   const Box<D, Real> added = box;  // a copy: `box` may be in one of our arrays, which may grow
-  state_->parts.boxes.check(added, 0, "for slot", state_->parts.slots.next());
+  state_->parts.boxes.check(added, 0, "the box for slot", state_->parts.slots.next());
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
   return state_->add(added, options);
 }
@@ -82,7 +82,7 @@ void World<D, Real>::move_to(Handle handle, const Box<D, Real>& box, const Point
   const core::DefaultEnvironment environment;
   world::BoxTable<D, Real>& boxes = state_->parts.boxes;
   const std::uint32_t slot = state_->parts.slots.live_slot(handle, "move");
-  boxes.check(box, 0, "for slot", slot);
+  boxes.check(box, 0, "the box for slot", slot);
   if (velocity != nullptr) boxes.check_velocity(*velocity, 0, "for slot", slot);
   boxes.reserve_changes(1);
   boxes.set(slot, box, velocity);
@@ -98,8 +98,8 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
   if (!velocities.empty()) check_lengths(velocities.size(), "velocities", boxes.size(), "boxes");
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!parts.slots.is_live(handles[i])) parts.slots.refuse(handles[i], "move");
-    parts.boxes.check(boxes[i], i, "to be moved to, number", i);
-    if (!velocities.empty()) parts.boxes.check_velocity(velocities[i], i, "of the box number", i);
+    parts.boxes.check(boxes[i], i, "target box", i);
+    if (!velocities.empty()) parts.boxes.check_velocity(velocities[i], i, "of target box", i);
   }
   parts.boxes.reserve_changes(boxes.size());
   parts.boxes.set(handles, boxes, velocities);
@@ -154,12 +154,12 @@ void World<D, Real>::ignore(Handle a, Handle b) {
 
 template <int D, typename Real>
 void World<D, Real>::unignore(Handle a, Handle b) {
-  state_->parts.ignored.erase(live_pair(state_->parts.slots, a, b, "look up an ignored pair of"));
+  state_->parts.ignored.erase(live_pair(state_->parts.slots, a, b, "stop ignoring a pair of"));
 }
 
 template <int D, typename Real>
 bool World<D, Real>::is_ignored(Handle a, Handle b) const {
-  return state_->parts.ignored.contains(live_pair(state_->parts.slots, a, b, "look up an ignored pair of"));
+  return state_->parts.ignored.contains(live_pair(state_->parts.slots, a, b, "look up a pair of"));
 }
 
 template <int D, typename Real>
@@ -214,7 +214,7 @@ template <int D, typename Real>
 std::span<const HandlePair> World<D, Real>::pairs() const {
   if (!state_->parts.options.keep_pairs) {
     throw std::logic_error(
-        "a world was asked for its pairs and keeps none; expected WorldOptions::keep_pairs, or find_pairs()");
+        "the world does not keep its pairs; expected WorldOptions::keep_pairs, or find_pairs()");
   }
   return state_->parts.current.pairs(state_->parts.slots.generations());
 }

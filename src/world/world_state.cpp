@@ -42,7 +42,7 @@ template <int D, typename Real>
 void WorldState<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
                               std::span<const BoxOptions> options) {
   const BoxTable<D, Real>& table = parts.boxes;
-  for (std::size_t i = 0; i < boxes.size(); ++i) table.check(boxes[i], i, "to be added, number", i);
+  for (std::size_t i = 0; i < boxes.size(); ++i) table.check(boxes[i], i, "added box", i);
   bool has_filters = false;
   bool has_user_data = false;
   for (const BoxOptions& its : options) {

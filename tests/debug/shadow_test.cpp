@@ -129,7 +129,7 @@ TEST(ShadowTracker, ShowsWhatTheTwoBoxesDidWhereTheFaultTakesMoreThanWasKept) {
     EXPECT_FALSE(divergence.reproduced());
     EXPECT_EQ(divergence.history().boxes, (std::vector<Box2>{at(70), at(80)}));
     EXPECT_EQ(divergence.history().steps.size(), 2u);
-    EXPECT_THAT(divergence.what(), HasSubstr("a new one does not err in the last 3 frames"));
+    EXPECT_THAT(divergence.what(), HasSubstr("does not fail in the last 3 frames"));
   }
 }
 
@@ -178,7 +178,7 @@ TEST(ShadowTracker, RefusesAChangeThatIsNotListed) {
   update(shadow, {boxes, {}});
   boxes[1] = at(7);
   const std::string message = message_of<InvalidFrame>([&] { update(shadow, {boxes, {}}); });
-  EXPECT_THAT(message, HasSubstr("frame 1: box 1 had min (5, 0) and max (6, 1), has now min (7, 0)"));
+  EXPECT_THAT(message, HasSubstr("frame 1: box 1 had min (5, 0) and max (6, 1), now has min (7, 0)"));
   EXPECT_THAT(message, HasSubstr("not listed"));
   boxes[1] = at(0);
   EXPECT_EQ(update(shadow, {boxes, {}}).begun, (Pairs{pair(0, 1)})) << "after a refusal all is taken anew";
@@ -193,7 +193,7 @@ TEST(ShadowTracker, RefusesAFilterThatIsNotListed) {
   EXPECT_THAT(message_of<InvalidFrame>([&] {
                 update(shadow, {boxes, {}, filters});
               }),
-              HasSubstr("box 0 has another filter"));
+              HasSubstr("box 0 has a different filter"));
 }
 
 TEST(ShadowTracker, RefusesAnIgnoredPairThatIsNotListed) {

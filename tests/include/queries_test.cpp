@@ -330,7 +330,7 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   EXPECT_EQ(message_of<InvalidQuery>([&] {
               static_cast<void>(index.nearest({0, 0}, 1, {.max_distance = -1}));
             }),
-            "max_distance is -1; expected 0, more, or infinity");
+            "max_distance is -1; expected at least 0, or infinity");
   EXPECT_THROW(static_cast<void>(index.nearest({0, 0}, 1, {.max_distance = nan})), InvalidQuery);
 }
 

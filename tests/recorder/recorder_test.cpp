@@ -300,7 +300,7 @@ TEST(Recorder, RefusesWrongPairsAndGoesOn) {
     return tape.recorder.error();
   };
   EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(2, 2); }),
-            "recorder: pair (2, 2) of a slot and itself; expected two slots");
+            "recorder: pair (2, 2) of a slot and itself; expected two different slots");
   EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(7, 0); }),
             "recorder: pair (7, 0) names slot 7, which is empty; expected a box");
   EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.ignore_pair(0, 7); }),
@@ -330,7 +330,7 @@ TEST(Recorder, TakesPairsOnlyWhereItWasOpenedWithAMargin) {
   EXPECT_FALSE(tape.recorder.set_filter(0, 1, 1));
   EXPECT_EQ(tape.end_frame(), empty_frame + 2 * flat_box);
   EXPECT_THAT(tape.recorder.error(),
-              HasSubstr("add_pair() in a trace without pairs; expected open() with a margin before"));
+              HasSubstr("add_pair() in a trace without pairs; expected open() with a margin first"));
 }
 
 TEST(Recorder, SaysThatNothingIsOpen) {

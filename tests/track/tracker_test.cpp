@@ -154,7 +154,7 @@ TEST(Tracker, RefusesAnIdBeyondThisFrameAndTheLast) {
   EXPECT_EQ(message_of<InvalidFrame>([&] {
               update(tracker, {at(0), at(1)}, {BoxId{2}});
             }),
-            "changed box 2 of a frame of 2 boxes; expected a place in this frame or the last");
+            "changed box 2 of a frame of 2 boxes; expected an index in this or the previous frame");
 }
 
 TEST(Tracker, IsUnchangedByAFrameThatWasRefused) {

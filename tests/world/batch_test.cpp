@@ -43,11 +43,11 @@ TEST_F(WorldBatchTest, AddsAllOrNone) {
   std::vector<Handle> handles(2, first);
   EXPECT_TRUE(message_of<InvalidInput>([&] {
                 world_.add(std::vector<Box2>{at(1), {{nan, 0}, {1, 1}}}, handles);
-              }).starts_with("the box to be added, number 1 has min (nan, 0)"));
+              }).starts_with("added box 1 has min (nan, 0)"));
   EXPECT_EQ(message_of<InvalidInput>([&] {
               world_.add(std::vector<Box2>{absent_box<2>(), at(1)}, handles);
             }),
-            "the box to be added, number 0 is absent; expected a box");
+            "added box 0 is absent; expected a box");
   EXPECT_EQ(message_of<std::invalid_argument>([&] { world_.add(std::vector<Box2>{at(1)}, handles); }),
             "2 handles for 1 boxes; expected one for each");
   EXPECT_THROW(world_.add(std::vector<Box2>{at(1), at(2)}, handles, std::vector<BoxOptions>(3)),
@@ -89,7 +89,7 @@ TEST_F(WorldBatchTest, RemovesAllOrNone) {
   world_.update();
   EXPECT_NE(message_of<InvalidHandle>([&] {
               world_.remove(std::vector<Handle>{handles[0], handles[1], handles[0]});
-            }).find("cannot remove twice a box: handle (slot 0, generation 0)"),
+            }).find("cannot remove a box twice: handle (slot 0, generation 0)"),
             std::string::npos);
   EXPECT_THROW(world_.remove(std::vector<Handle>{handles[0], Handle{7, 7}}), InvalidHandle);
   EXPECT_EQ(world_.size(), 3u);

@@ -87,10 +87,10 @@ TEST(BoxTable, SetsManyBoxesAsItSetsOne) {
 
 TEST(BoxTable, TakesAnInvalidBoxForAnAbsentOneWhereItQuarantines) {
   const Box2 wrong{{1, 0}, {0, 1}};
-  EXPECT_THROW(table_of({}, 1).check(wrong, 0, "for slot", 0), InvalidInput);
+  EXPECT_THROW(table_of({}, 1).check(wrong, 0, "box", 0), InvalidInput);
   auto boxes = table_of({.bad_input = BadInput::quarantine}, 1);
-  EXPECT_NO_THROW(boxes.check(wrong, 0, "for slot", 0));
-  EXPECT_THROW(boxes.check(absent_box<2>(), 0, "for slot", 0), InvalidInput);
+  EXPECT_NO_THROW(boxes.check(wrong, 0, "box", 0));
+  EXPECT_THROW(boxes.check(absent_box<2>(), 0, "box", 0), InvalidInput);
   boxes.set(0, wrong, nullptr);
   EXPECT_TRUE(is_absent(boxes.boxes()[0]));
 }

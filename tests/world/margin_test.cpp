@@ -217,10 +217,9 @@ TEST(WorldMargin, RefusesAVelocityThatIsNone) {
 TEST(WorldMargin, OfEnlargedEventsIsNeeded) {
   WorldOptions options = with_margin(0);
   options.events = WorldEvents::enlarged;
-  EXPECT_EQ(
-      message_of<std::invalid_argument>([&] { World2{options}; }),
-      "a world is to tell of enlarged boxes and enlarges none; expected a margin, a relative margin or a "
-      "number of predicted frames above 0");
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { World2{options}; }),
+            "a world reports enlarged boxes but enlarges none; expected a margin, a relative margin or a "
+            "number of predicted frames above 0");
 }
 
 TEST(EnlargedEvents, TellWhereEnlargedBoxesMeetAndPart) {

@@ -201,7 +201,7 @@ TEST_F(WorldTest, TellsAnotherWorldsHandleFromOneThatWasRemoved) {
   World<2> second({.first_generation = 2000});
   const Handle a = first.add(at(0));
   const Handle b = second.add(at(0));
-  const std::string unknown = "was never issued by this world: it is another world's or made up";
+  const std::string unknown = "was never issued by this world: it belongs to another world or is invalid";
   const auto refusal = [&](const World<2>& world, Handle handle) {
     return message_of<InvalidHandle>([&] { static_cast<void>(world.box(handle)); });
   };

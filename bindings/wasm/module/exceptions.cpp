@@ -156,8 +156,7 @@ Status status_of_exception() noexcept {
   const std::type_info* const type = handled->type;
   const auto& error = *static_cast<const std::exception*>(exception_of(handled));
   if (is_a(type, typeid(std::bad_alloc))) return failed_as(out_of_memory, "out of memory");
-  if (is_a(type, typeid(std::length_error)))
-    return failed_as(out_of_memory, "more memory was asked for than an array can have");
+  if (is_a(type, typeid(std::length_error))) return failed_as(out_of_memory, "the array would be too large");
   if (is_a(type, typeid(InvalidInput)))
     return failed_as(invalid_input, error.what(), static_cast<const InvalidInput&>(error).index());
   const TypeStatus statuses[] = {

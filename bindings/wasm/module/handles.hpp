@@ -30,7 +30,7 @@ inline bool is_handle(double number) noexcept {
 /// Throws InvalidHandle if the number cannot be a handle of any world.
 inline Handle handle_of(double number) {
   if (!is_handle(number))
-    throw InvalidHandle("a handle that no world gave; expected a number that add() returned");
+    throw InvalidHandle("not a handle of any world; expected a number that add() returned");
   const auto bits = static_cast<std::uint64_t>(number);
   return {static_cast<std::uint32_t>(bits) & (max_slots - 1),
           static_cast<std::uint32_t>(bits >> slot_bits) + min_generation};

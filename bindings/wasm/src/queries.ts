@@ -78,7 +78,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     if (!Number.isInteger(k) || k < 0 || k >= 2 ** 32) refuse("k", k, "a whole number of at least 0");
     const { maxDistance = Infinity } = options;
     if (!(typeof maxDistance === "number" && maxDistance >= 0))
-      refuse("maxDistance", maxDistance, "0, more, or Infinity");
+      refuse("maxDistance", maxDistance, "at least 0, or Infinity");
     const { filter, except } = this.#options(options, nearestOptions);
     const view = asksForView(options);
     this.#ask(0, point, this.#dimension, "point");

@@ -39,7 +39,7 @@ void check(const BoxCast<D, Real>& cast) {
     if (!are_finite(corner)) refuse("a ray's origin or a cast box", corner.data(), D, "finite numbers");
   }
   if (!are_finite(cast.direction)) refuse("a cast's direction", cast.direction.data(), D, "finite numbers");
-  if (!(cast.t_max >= 0)) refuse("a cast's t_max", &cast.t_max, 1, "0, more, or infinity");
+  if (!(cast.t_max >= 0)) refuse("a cast's t_max", &cast.t_max, 1, "at least 0, or infinity");
 }
 
 /// Calls a visitor in the floating-point environment of the query's caller.
@@ -92,7 +92,7 @@ bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& vis
   const core::DefaultEnvironment environment;
   if (!is_present(box)) {
     if (is_absent(box)) return true;
-    throw InvalidQuery(core::fault_of(box, "the box or point asked about", true));
+    throw InvalidQuery(core::fault_of(box, "the query's box or point", true));
   }
   if (!environment.is_foreign()) return tree_->find_overlapping(box, visitor, options);
   CallersVisitor callers(visitor);
@@ -124,7 +124,8 @@ bool BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, Visitor<N
   for (const Real coordinate : point) {
     if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
   }
-  if (!(options.max_distance >= 0)) refuse("max_distance", &options.max_distance, 1, "0, more, or infinity");
+  if (!(options.max_distance >= 0))
+    refuse("max_distance", &options.max_distance, 1, "at least 0, or infinity");
   if (count == 0) return true;
   const Real max_squared = options.max_distance * options.max_distance;
   const QueryOptions eligible{options.filter, options.except};

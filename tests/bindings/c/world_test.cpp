@@ -151,7 +151,7 @@ TEST_F(CWorld, FindsNothingFartherThanAGreatestDistance) {
   EXPECT_EQ(count, 0U);
   count = 77;
   EXPECT_EQ(ask(-1), BROADSIDE_INVALID_QUERY);
-  EXPECT_STREQ(error_.message, "max_distance is -1; expected 0, more, or infinity");
+  EXPECT_STREQ(error_.message, "max_distance is -1; expected at least 0, or infinity");
   EXPECT_EQ(ask(std::numeric_limits<double>::quiet_NaN()), BROADSIDE_INVALID_QUERY);
   EXPECT_EQ(count, 77U);
 }

@@ -184,7 +184,7 @@ def test_joins_two_worlds():
     assert len(a.join(a)) == len(brute_force(left, left))
     with pytest.raises(TypeError, match="another dimension"):
         a.join(broadside.World(2))
-    with pytest.raises(TypeError, match="other is of int; expected a World"):
+    with pytest.raises(TypeError, match="other is an int; expected a World"):
         a.join(3)
 
 
@@ -279,7 +279,7 @@ def test_names_the_handle_of_another_world():
     for i, world in enumerate(worlds):
         for j in range(8):
             if i != j:
-                with pytest.raises(broadside.InvalidHandleError, match="never issued by this world: it is another world's"):
+                with pytest.raises(broadside.InvalidHandleError, match="never issued by this world: it belongs to another world"):
                     world.remove(handles[j])
         world.remove(handles[i][2:])
         with pytest.raises(broadside.InvalidHandleError, match="names a box that was removed"):
