@@ -275,7 +275,7 @@ def _unpickled_world(
     return world
 
 
-World.__doc__ = str(World.__doc__).replace("        **options: {options}\n", _world_options.help_text("        "))
+World.__doc__ = _world_options.filled(World.__doc__, own={"first_generation"})
 setattr(World, "__signature__", _world_options.signature(World))  # noqa: B010, mypy sees no such attribute
 
 

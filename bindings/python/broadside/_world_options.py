@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import re
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from broadside import _arguments, _core
@@ -51,13 +53,16 @@ def settings_of(options: dict[str, Any]) -> str:
     return ":".join(["world", *(f"{name}={OPTIONS[name].text(value)}" for name, value in options.items())])
 
 
-def help_text(indent: str) -> str:
-    """A line for each option, for a docstring."""
+def filled(docstring: str | None, own: Collection[str]) -> str:
+    """A docstring whose ``**options: {options}`` is replaced by a line for each option that is not among `own`."""
     lines = []
     for option in OPTIONS.values():
-        values = f" ({', '.join(map(repr, option.choices))})" if option.choices and not option.is_switch else ""
-        lines.append(f"{indent}{option.name}: {option.summary}{values}; by default {option.default!r}.")
-    return "\n".join(lines)
+        if option.name not in own:
+            values = f" ({', '.join(map(repr, option.choices))})" if option.choices and not option.is_switch else ""
+            lines.append(f"{option.name}: {option.summary}{values}; by default {option.default!r}.")
+    return re.sub(
+        r"( *)\*\*options: \{options\}", lambda found: "\n".join(found[1] + line for line in lines), docstring or ""
+    )
 
 
 def signature(function: Any) -> inspect.Signature:
