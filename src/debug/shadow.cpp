@@ -199,7 +199,7 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
       text += make_ ? "\na new tracker does not fail in the last " + std::to_string(kept.steps.size() + 1) +
                           " frames"
                     : "\nthere is no other tracker to replay histories on";
-      text += "; in them, these two boxes:\n";
+      text += "; in the recorded frames, these two boxes:\n";
       const std::array<std::size_t, 2> places = {index(pair.first), index(pair.second)};
       small = only<D, Real>(places, kept);
     }

@@ -43,9 +43,8 @@ BoxTable<D, Real>::BoxTable(const WorldOptions& options)
       quarantines_(options.bad_input == BadInput::quarantine) {
   if (!boxes_make_pairs_ && !enlarges_) {
     throw std::invalid_argument(
-        "a world reports enlarged boxes but enlarges none; expected a margin, a relative margin or a number "
-        "of "
-        "predicted frames above 0");
+        "a world reports enlarged boxes but enlarges none; expected a margin, a relative margin or a "
+        "number of predicted frames above 0");
   }
 }
 

@@ -32,9 +32,8 @@ const std::vector<WorldOption>& table() {
       {length("margin", "how far a box is enlarged on each side, in the unit of its coordinates"),
        [](WorldOptions& o, const Settings& s) { o.margin = s.number("margin"); }},
       {length("relative_margin",
-              "how far a box is enlarged on each side, as a fraction of its longest side; the smaller of the "
-              "two "
-              "margins counts where both are given"),
+              "how far a box is enlarged on each side, as a fraction of its longest side; the smaller of "
+              "the two margins counts where both are given"),
        [](WorldOptions& o, const Settings& s) { o.relative_margin = s.number("relative_margin"); }},
       {length("predicted_frames", "frames of motion that an enlarged box covers if a move has a velocity"),
        [](WorldOptions& o, const Settings& s) { o.predicted_frames = s.number("predicted_frames"); }},
