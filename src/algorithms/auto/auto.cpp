@@ -14,9 +14,9 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/debug/outline.hpp"
 
+#include "algorithms/auto/auto_thresholds.hpp"
 #include "algorithms/auto/overlap_estimate.hpp"
 #include "algorithms/auto/segment_join.hpp"
-#include "algorithms/auto/auto_thresholds.hpp"
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
 #include "core/filter_sink.hpp"
