@@ -1,8 +1,8 @@
 """Measuring: runs that are kept, resumed and refused; with a stand-in for the program, and with the program."""
 
-import lzma
 import io
 import json
+import lzma
 import os
 import stat
 import tempfile
