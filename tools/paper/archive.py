@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
 import json
+import lzma
 import os
 import re
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,15 +23,15 @@ def digest_of(value: object) -> str:
 
 @dataclass(frozen=True)
 class Archive:
-    """A folder of runs: run-1/quadtree_capacity.json.gz and so on."""
+    """A folder of runs: run-1/quadtree_capacity.json.xz and so on."""
 
     folder: Path
 
     def path(self, run: int, experiment: str) -> Path:
-        return self.folder / f"run-{run}" / f"{experiment}.json.gz"
+        return self.folder / f"run-{run}" / f"{experiment}.json.xz"
 
     def run_numbers(self, experiment: str) -> list[int]:
-        folders = [path.parent.name for path in self.folder.glob(f"run-*/{experiment}.json.gz")]
+        folders = [path.parent.name for path in self.folder.glob(f"run-*/{experiment}.json.xz")]
         return sorted(int(name.removeprefix("run-")) for name in folders if re.fullmatch(r"run-[1-9]\d*", name))
 
     def write(self, run: int, experiment: Experiment, book: RuleBook, program: str, is_quick: bool,
@@ -52,7 +51,7 @@ class Archive:
         path = self.path(run, experiment.name)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")
-        with open(part, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=0) as packed:
+        with lzma.open(part, "wb", preset=9) as packed:
             packed.write(json.dumps(content, separators=(",", ":")).encode())
         os.replace(part, path)
 
@@ -60,11 +59,11 @@ class Archive:
         """Throws Unusable, in one line, where the file is of another version of anything."""
         path = self.path(run, experiment.name)
         try:
-            content = json.loads(gzip.decompress(path.read_bytes()))
+            content = json.loads(lzma.decompress(path.read_bytes()))
             check(path, "schema", content["schema"], SCHEMA)
             check(path, "the results' schema", content["results"]["schema"], "broadside.results/2")
             rules = content["rules"]
-        except (OSError, EOFError, ValueError, TypeError, KeyError, zlib.error) as error:
+        except (OSError, EOFError, ValueError, TypeError, KeyError, lzma.LZMAError) as error:
             why = f"it has no {error}" if isinstance(error, KeyError) else error
             raise Unusable(f"{path} cannot be read ({why}); expected a run of {experiment.name}; "
                            f"remove it to measure it again") from None

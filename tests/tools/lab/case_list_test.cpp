@@ -121,9 +121,9 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
   for (const auto& [text, part] :
        {std::pair("{\"schema\": \"broadside.cases/9\", \"cases\": []}", "broadside.cases/1"),
         std::pair("[]", "an object"), std::pair("{", "expected JSON")}) {
-    EXPECT_THAT(
-        message_of<FileError>([&] { read_case_list(text, "list.json", catalogue, scene_finder({})); }),
-        AllOf(HasSubstr("list.json"), HasSubstr(part)));
+    EXPECT_THAT(message_of<FileError>(
+                    [&, &list = text] { read_case_list(list, "list.json", catalogue, scene_finder({})); }),
+                AllOf(HasSubstr("list.json"), HasSubstr(part)));
   }
 }
 

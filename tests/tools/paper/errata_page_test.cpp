@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = BROADSIDE_SOURCE_DIR;
+const fs::path project = BROADSIDE_SOURCE_DIR;
 
 /// Each match of a pattern's first group.
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
@@ -31,7 +31,7 @@ std::vector<std::string> numbers_in(const std::string& text) {
   return matches(text, "(?:^|[^A-Za-z0-9_.])((?:10|[1-9])[a-i]|T[1-9][0-9]?)(?![A-Za-z0-9_-])");
 }
 
-std::string page() { return broadside::text_of(root / "docs" / "paper" / "errata.md"); }
+std::string page() { return broadside::text_of(project / "docs" / "paper" / "errata.md"); }
 
 /// The numbers in the page's table, each in one of the three classes.
 std::set<std::string> classified() {
@@ -67,7 +67,7 @@ TEST(ErrataPage, HasAClassAndAnEntryForEachErratum) {
 
 TEST(ErrataPage, HasATestForEachErratumThatCanBeRun) {
   std::set<std::string> tested;
-  for (const fs::directory_entry& entry : fs::directory_iterator(root / "tests" / "unit" / "paper")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(project / "tests" / "unit" / "paper")) {
     for (const std::string& number : matches(broadside::text_of(entry.path()), R"(^TEST\(Erratum(\w+),)"))
       tested.insert(number);
   }
@@ -81,7 +81,7 @@ TEST(ErrataPage, IsWhatTheListingsAndThePaperReferTo) {
   const std::set<std::string> known = classified();
   std::size_t cited = 0;
   for (const char* const folder : {"tools/paper/listings", "tools/paper/templates/sections"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / folder)) {
       if (!entry.is_regular_file()) continue;
       // The paper also cites statements of the draft, which have numbers of their own.
       for (const std::string& words : matches(broadside::text_of(entry.path()), "((?://|[Ee]rrat).*)$")) {

@@ -1,8 +1,8 @@
 """Measuring: runs that are kept, resumed and refused; with a stand-in for the program, and with the program."""
 
-import gzip
 import io
 import json
+import lzma
 import os
 import stat
 import tempfile
@@ -120,7 +120,7 @@ class Runs(unittest.TestCase):
 
     def test_by_another_program_are_refused_before_anything_is_measured(self):
         self.measure(runs=[2])
-        with self.assertRaisesRegex(Unusable, r"run-2/small.json.gz: the program that measured it is \w+; expected"):
+        with self.assertRaisesRegex(Unusable, r"run-2/small.json.xz: the program that measured it is \w+; expected"):
             self.measure(program=self.program(revision="b"))
         self.assertEqual(self.calls(), 1)
 
@@ -128,16 +128,16 @@ class Runs(unittest.TestCase):
         """Measures, changes what run 2's file says, and expects it refused in a line."""
         self.measure()
         path = self.archive.path(2, "small")
-        content = json.loads(gzip.decompress(path.read_bytes()))
+        content = json.loads(lzma.decompress(path.read_bytes()))
         change(content)
-        path.write_bytes(gzip.compress(json.dumps(content).encode()))
+        path.write_bytes(lzma.compress(json.dumps(content).encode()))
         with self.assertRaisesRegex(Unusable, message) as caught:
             self.archive.results(SMALL, RuleBook())
         self.assertNotIn("\n", str(caught.exception))
 
     def test_of_another_schema_are_refused(self):
         self.refused(lambda content: content.update(schema="broadside.experiment-run/0"),
-                     "run-2/small.json.gz: schema is broadside.experiment-run/0; expected broadside.experiment-run/1")
+                     "run-2/small.json.xz: schema is broadside.experiment-run/0; expected broadside.experiment-run/1")
 
     def test_by_other_rules_are_refused(self):
         self.refused(lambda content: content["rules"].update(digest="0"),
@@ -158,7 +158,7 @@ class Runs(unittest.TestCase):
 
     def test_that_lack_a_part_are_refused(self):
         self.refused(lambda content: content.pop("rules"),
-                     "run-2/small.json.gz cannot be read .it has no 'rules'.; expected")
+                     "run-2/small.json.xz cannot be read .it has no 'rules'.; expected")
 
     def test_that_two_processes_measure_at_once_are_refused(self):
         with self.measuring().alone(), self.assertRaisesRegex(Unusable, "another process measures into"):
@@ -177,7 +177,7 @@ class Runs(unittest.TestCase):
         self.measure()
         path = self.archive.path(2, "small")
         path.write_bytes(path.read_bytes()[:100])
-        with self.assertRaisesRegex(Unusable, "run-2/small.json.gz cannot be read"):
+        with self.assertRaisesRegex(Unusable, "run-2/small.json.xz cannot be read"):
             self.archive.results(SMALL, RuleBook())
 
     def test_with_a_wrong_result_are_refused(self):
