@@ -67,7 +67,7 @@ TEST(ErrataPage, HasAClassAndAnEntryForEachErratum) {
 
 TEST(ErrataPage, HasATestForEachErratumThatCanBeRun) {
   std::set<std::string> tested;
-  for (const fs::directory_entry& entry : fs::directory_iterator(project / "tests" / "unit" / "paper")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(project / "tests" / "tools" / "paper")) {
     for (const std::string& number : matches(broadside::text_of(entry.path()), R"(^TEST\(Erratum(\w+),)"))
       tested.insert(number);
   }
