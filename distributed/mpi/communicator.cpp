@@ -25,14 +25,14 @@ void check(int result, const char* call) {
 enum class ErrorKind : std::uint64_t { invalid_input, invalid_frame, invalid_spec, other };
 
 /// What went wrong on a rank, as it is sent to the others. It takes no memory, which may be what is missing.
-struct RankError {
+struct SentError {
   ErrorKind kind = ErrorKind::other;
   std::uint64_t index = 0;
   std::array<char, 1000> text{};
 };
 
-RankError fault_of(const std::exception_ptr& error, int rank) {
-  RankError fault;
+SentError fault_of(const std::exception_ptr& error, int rank) {
+  SentError fault;
   const auto set = [&](ErrorKind kind, const char* text, std::size_t index = 0) {
     fault.kind = kind;
     fault.index = index;
@@ -88,7 +88,7 @@ void Communicator::settle(const std::exception_ptr& error) {
   int failing = error ? rank_ : size_;
   check(MPI_Allreduce(MPI_IN_PLACE, &failing, 1, MPI_INT, MPI_MIN, comm_), "MPI_Allreduce");
   if (failing == size_) return;
-  RankError fault;
+  SentError fault;
   if (failing == rank_) fault = fault_of(error, rank_);
   check(MPI_Bcast(&fault, sizeof(fault), MPI_BYTE, failing, comm_), "MPI_Bcast");
   const std::string text = fault.text.data();
@@ -96,7 +96,7 @@ void Communicator::settle(const std::exception_ptr& error) {
   if (fault.kind == ErrorKind::invalid_frame) throw InvalidFrame(text);
   if (fault.kind == ErrorKind::invalid_spec) throw InvalidSpec(text);
   if (error) std::rethrow_exception(error);
-  throw RankError(failing, text);
+  throw SentError(failing, text);
 }
 
 void Communicator::check_same(std::uint64_t number, const char* what) {

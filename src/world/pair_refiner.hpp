@@ -46,7 +46,7 @@ class PairRefiner {
 
   const RefinerState& state() const noexcept { return state_; }
   bool is_refining() const noexcept { return state_.is_refining; }
-  bool has_predicate() const noexcept { return predicate_; }
+  bool has_predicate() const noexcept { return predicate_ != nullptr; }
 
   /// Whether the predicate is to be asked about all pairs of the slot again.
   bool asks_about(std::uint32_t slot) const noexcept {

@@ -48,7 +48,7 @@ const FclCollisionManager<S>& FclCollisionManager<S>::same_kind(const Manager* o
 
 template <typename S>
 void FclCollisionManager<S>::collide(Object* object, void* data, CollisionCallBack callback) const {
-  const Query query(*this);
+  const QueryGuard query(*this);
   const std::span<Object* const> objects = objects_.objects();
   box_index().overlapping(objects_.box_of(object),
                           [&](BoxId place) { return !callback(objects[index(place)], object, data); },
@@ -57,7 +57,7 @@ void FclCollisionManager<S>::collide(Object* object, void* data, CollisionCallBa
 
 template <typename S>
 void FclCollisionManager<S>::collide(void* data, CollisionCallBack callback) const {
-  const Query query(*this);
+  const QueryGuard query(*this);
   const std::span<Object* const> objects = objects_.objects();
   std::unique_lock lock(mutex_);
   const std::span<const Pair> pairs = pairs_.pairs(objects_.boxes());
@@ -71,8 +71,8 @@ template <typename S>
 void FclCollisionManager<S>::collide(Manager* other_manager, void* data, CollisionCallBack callback) const {
   const FclCollisionManager& other = same_kind(other_manager);
   if (&other == this) return collide(data, callback);
-  const Query query(*this);
-  const Query other_query(other);
+  const QueryGuard query(*this);
+  const QueryGuard other_query(other);
   const std::span<Object* const> objects = objects_.objects();
   const std::span<Object* const> others = other.objects_.objects();
   std::vector<Pair> pairs;
@@ -102,7 +102,7 @@ S FclCollisionManager<S>::beyond(S reached, std::span<const Box<3, S>> boxes, bo
 
 template <typename S>
 void FclCollisionManager<S>::distance(Object* object, void* data, DistanceCallBack callback) const {
-  const Query query(*this);
+  const QueryGuard query(*this);
   const std::span<Object* const> objects = objects_.objects();
   const std::span<const Box<3, S>> boxes = objects_.boxes();
   const Box<3, S> box = objects_.box_of(object);
@@ -122,7 +122,7 @@ void FclCollisionManager<S>::distance(Object* object, void* data, DistanceCallBa
 
 template <typename S>
 void FclCollisionManager<S>::distance(void* data, DistanceCallBack callback) const {
-  const Query query(*this);
+  const QueryGuard query(*this);
   const std::span<Object* const> objects = objects_.objects();
   const std::span<const Box<3, S>> boxes = objects_.boxes();
   std::vector<Box<3, S>> enlarged(boxes.size());
@@ -149,8 +149,8 @@ template <typename S>
 void FclCollisionManager<S>::distance(Manager* other_manager, void* data, DistanceCallBack callback) const {
   const FclCollisionManager& other = same_kind(other_manager);
   if (&other == this) return distance(data, callback);
-  const Query query(*this);
-  const Query other_query(other);
+  const QueryGuard query(*this);
+  const QueryGuard other_query(other);
   const std::span<const Box<3, S>> boxes = objects_.boxes();
   const std::span<const Box<3, S>> other_boxes = other.objects_.boxes();
   std::vector<Box<3, S>> enlarged(boxes.size());
