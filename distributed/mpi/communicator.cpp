@@ -96,7 +96,7 @@ void Communicator::settle(const std::exception_ptr& error) {
   if (fault.kind == ErrorKind::invalid_frame) throw InvalidFrame(text);
   if (fault.kind == ErrorKind::invalid_spec) throw InvalidSpec(text);
   if (error) std::rethrow_exception(error);
-  throw SentError(failing, text);
+  throw RankError(failing, text);
 }
 
 void Communicator::check_same(std::uint64_t number, const char* what) {

@@ -280,7 +280,7 @@ TEST(CWorldOptions, AreNamedAsInCxxAndFieldsCountInstead) {
     ASSERT_EQ(broadside_world_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &world, &error),
               BROADSIDE_OK);
     const float boxes[][4] = {{0, 0, 1, 1}};
-    const broadside_boxes view{boxes, 1, 0};
+    const broadside_boxes view{BROADSIDE_FLOAT_2D, boxes, 1, 0};
     broadside_handle handle;
     ASSERT_EQ(broadside_world_add(world, &view, nullptr, nullptr, &handle, &error), BROADSIDE_OK);
     EXPECT_EQ(handle.generation, field == 0 ? 7U : 9U);

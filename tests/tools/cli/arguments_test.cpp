@@ -57,7 +57,7 @@ TEST(List, NamesEveryAlgorithmSceneAndFormat) {
   for (const lab::Format& format : lab::formats())
     EXPECT_THAT(ended.output, HasSubstr("\n  " + format.name + " "));
   for (const lab::Format& format : lab::formats()) {
-    for (const lab::Part& part : format.parts)
+    for (const lab::ElementKind& part : format.parts)
       EXPECT_THAT(ended.output, HasSubstr("\n      --boxes " + part.name + "  "));
   }
   std::istringstream lines(ended.output);
