@@ -34,7 +34,9 @@ struct MeasureArguments {
 Exit run(const MeasureArguments& arguments, const lab::Catalogue& catalogue,
          std::span<const std::string> command) {
   if (arguments.only_checks == !arguments.json.empty())
-    throw Unusable("there is --check and --json, or neither; expected one of the two");
+    throw Unusable(
+        std::string(arguments.only_checks ? "both --check and --json are given" : "no --json is given") +
+        "; expected --json FILE for the results, or --check to measure nothing");
   if (!arguments.json.empty()) {
     check_is_no_output("--json", arguments.json);
     check_extension("--json", arguments.json, {".json"});

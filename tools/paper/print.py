@@ -105,9 +105,9 @@ def judged_claim(claim: Claim, finding: Finding, rules: Rules,
                        finding)
 
 
-def write_pages(content: Content, folder: Path) -> list[Path]:
+def write_pages(content: Content, folder: Path, home: Path | None = None) -> list[Path]:
     """Every template as a page of that name, and the figures beside them in figures/. The paper's page is of pandoc's
-    Markdown yet: print_paper makes of it what is read."""
+    Markdown yet: print_paper makes of it what is read. Links lead from `home`, by default the folder."""
     drawings = [figure for experiment in content.experiments for figure in experiment.figures]
     if content.comparison is not None:
         drawings += content.comparison.figures
@@ -124,7 +124,7 @@ def write_pages(content: Content, folder: Path) -> list[Path]:
         shutil.copytree(DIAGRAMS, folder / "diagrams")
     for name, text in pages.items():
         text = re.sub(r"(?<=\]\()\.\./[^)#]*",  # links are written as they are in docs/paper
-                      lambda link: os.path.relpath(DIAGRAMS.parent / link[0], folder), text)
+                      lambda link: os.path.relpath(DIAGRAMS.parent / link[0], home or folder), text)
         (folder / name).write_text(NOTICE + text, encoding="utf-8")
     for drawing in drawings:
         figures.save(drawing, folder / "figures")

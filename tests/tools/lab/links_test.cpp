@@ -48,7 +48,7 @@ TEST(Pages, LinkToFilesOfTheRepository) {
       EXPECT_TRUE(tracked.contains(to)) << page << ": " << (*match)[1].str();
     }
   }
-  EXPECT_GT(links, 300U);
+  EXPECT_GT(links, 200U);
 }
 
 }  // namespace

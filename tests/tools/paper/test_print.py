@@ -208,7 +208,7 @@ class PublishedPages(unittest.TestCase):
         content = gathered(PUBLISHED, None, [], is_whole=True)
         with tempfile.TemporaryDirectory() as name, redirect_stderr(io.StringIO()):
             folder = Path(name)
-            pages = printing.write_pages(content, folder)
+            pages = printing.write_pages(content, folder, home=PAGES)
             printing.print_paper(folder, content, folder / "work", has_pdf=False)
             for page in pages:
                 if page.name != printing.PAPER or HAS_PRINTERS:
