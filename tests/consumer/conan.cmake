@@ -1,7 +1,7 @@
 # Configures the library alone in the empty FOLDER, of those sources of ROOT that Conan's recipe exports.
 cmake_minimum_required(VERSION 3.22)
 file(REMOVE_RECURSE ${FOLDER})
-file(READ ${ROOT}/packaging/conan/conanfile.py recipe)
+file(READ ${ROOT}/tools/packaging/conan/conanfile.py recipe)
 string(REGEX MATCH "for pattern in \\(([^)]*)\\)" found "${recipe}")
 string(REGEX MATCHALL "\"[^\"]+\"" patterns "${CMAKE_MATCH_1}")
 if(NOT patterns)

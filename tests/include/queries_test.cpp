@@ -322,7 +322,7 @@ TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   bad = good;
   bad.t_max = -1;
   EXPECT_THAT(message_of<InvalidQuery>([&] { static_cast<void>(index.first_hit(bad)); }),
-              HasSubstr("is -1; expected 0"));
+              HasSubstr("t_max is -1; expected at least 0"));
   EXPECT_THROW(static_cast<void>(index.first_hit(BoxCast<2>{{{1, 1}, {0, 2}}, {1, 0}})), InvalidQuery);
   EXPECT_THROW(index.overlapping({{1, 1}, {0, 2}}, ignore), InvalidQuery);
   EXPECT_THROW(index.containing({0, nan}, ignore), InvalidQuery);
