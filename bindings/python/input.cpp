@@ -18,7 +18,7 @@ nb::object convert(const char* function) { return nb::module_::import_("broadsid
 std::vector<std::uint64_t> numbers_by(const char* function, nb::handle object, const char* name,
                                       std::uint64_t most) {
   const nb::object array = convert(function)(object, name, most);
-  const Buffer buffer(array, PyBUF_C_CONTIGUOUS);
+  const PythonBuffer buffer(array, PyBUF_C_CONTIGUOUS);
   std::vector<std::uint64_t> numbers(buffer.text().size() / sizeof(std::uint64_t));
   if (!numbers.empty())
     std::memcpy(numbers.data(), buffer.text().data(), numbers.size() * sizeof(std::uint64_t));
@@ -42,7 +42,7 @@ char native_format(const Py_buffer& buffer) {
 
 /// From an array that broadside._convert made.
 std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
-  const Buffer buffer(array, PyBUF_C_CONTIGUOUS);
+  const PythonBuffer buffer(array, PyBUF_C_CONTIGUOUS);
   // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
   std::vector<Filter> filters;
   filters.reserve(count);

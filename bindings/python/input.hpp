@@ -26,15 +26,15 @@ namespace nb = nanobind;
 
 /// The memory of an object. Python does not move or resize it while this lives. The constructor and the
 /// destructor need the GIL.
-class Buffer {
+class PythonBuffer {
  public:
   /// Throws Python's exception if the object has no such memory.
-  Buffer(nb::handle object, int flags) {
+  PythonBuffer(nb::handle object, int flags) {
     if (PyObject_GetBuffer(object.ptr(), &view_, flags) != 0) throw nb::python_error();
   }
-  ~Buffer() { PyBuffer_Release(&view_); }
-  Buffer(const Buffer&) = delete;
-  Buffer& operator=(const Buffer&) = delete;
+  ~PythonBuffer() { PyBuffer_Release(&view_); }
+  PythonBuffer(const PythonBuffer&) = delete;
+  PythonBuffer& operator=(const PythonBuffer&) = delete;
 
   std::string_view text() const noexcept {
     return {static_cast<const char*>(view_.buf), static_cast<std::size_t>(view_.len)};

@@ -82,7 +82,7 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
 nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
                 const std::string& boxes, const std::string& columns, int dimension, std::size_t frame,
                 bool skips_invalid) {
-  std::optional<Buffer> bytes;
+  std::optional<PythonBuffer> bytes;
   if (!content.is_none()) bytes.emplace(content, PyBUF_SIMPLE);
   const std::string path(name.c_str(), name.size());
   lab::ReadOptions options;

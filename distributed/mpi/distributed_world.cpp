@@ -262,7 +262,7 @@ class DistributedWorld<D, Real>::State {
   }
 
   void send_events() {
-    typename Part::Events events;
+    typename Part::PartEvents events;
     comm_.together([&] { events = part_->follow(comm_.size()); });
     std::vector<LargePair> begun = comm_.exchange(std::move(events.begun)).values;
     std::vector<LargePair> ended = comm_.exchange(std::move(events.ended)).values;

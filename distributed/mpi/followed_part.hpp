@@ -43,7 +43,7 @@ class FollowedPart {
   using Region = typename Partition<D, Real>::Region;
 
   /// Events, by the rank that owns the first box.
-  struct Events {
+  struct PartEvents {
     std::vector<std::vector<LargePair>> begun;
     std::vector<std::vector<LargePair>> ended;
   };
@@ -66,8 +66,8 @@ class FollowedPart {
   }
 
   /// Has the tracker take in the changes.
-  Events follow(std::size_t ranks) {
-    Events events{std::vector<std::vector<LargePair>>(ranks), std::vector<std::vector<LargePair>>(ranks)};
+  PartEvents follow(std::size_t ranks) {
+    PartEvents events{std::vector<std::vector<LargePair>>(ranks), std::vector<std::vector<LargePair>>(ranks)};
     free_.reserve(free_.size() + changed_.size());
     EventSink begun(*this, now_, before_, events.begun);
     EventSink ended(*this, before_, now_, events.ended);

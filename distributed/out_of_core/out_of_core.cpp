@@ -30,9 +30,9 @@ using out_of_core::bytes_per_box;
 using out_of_core::CorruptFile;
 using out_of_core::for_each_box;
 using out_of_core::Manifest;
-using out_of_core::PartRecord;
-using out_of_core::PartJoin;
 using out_of_core::PairRun;
+using out_of_core::PartJoin;
+using out_of_core::PartRecord;
 using out_of_core::WorkFolder;
 
 template <int D, typename Real>
@@ -165,9 +165,9 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   void check_is_finished() const {
-    const bool is_finished = manifest_.is_read && std::ranges::all_of(manifest_.parts, [](const PartRecord& part) {
-                               return part.is_joined;
-                             });
+    const bool is_finished =
+        manifest_.is_read &&
+        std::ranges::all_of(manifest_.parts, [](const PartRecord& part) { return part.is_joined; });
     if (!is_finished) throw std::logic_error("OutOfCoreJoin: asked for pairs before run() has finished");
   }
 

@@ -33,7 +33,7 @@ class PartFiles {
   /// of boxes[i]. Returns the parts that can have pairs, named `prefix` and a number.
   template <typename ForEachPiece>
   std::vector<PartRecord> write(const Partition<D, Real>& partition, const std::string& prefix,
-                          const ForEachPiece& for_each_piece) const {
+                                const ForEachPiece& for_each_piece) const {
     std::vector<PartRecord> parts = parts_of(partition, prefix);
     for (std::size_t source = 0; source < sources_; ++source) {
       std::vector<BoxFileWriter<D, Real>> writers = writers_for(parts, source);
@@ -78,7 +78,8 @@ class PartFiles {
     return parts;
   }
 
-  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<PartRecord>& parts, std::size_t source) const {
+  std::vector<BoxFileWriter<D, Real>> writers_for(const std::vector<PartRecord>& parts,
+                                                  std::size_t source) const {
     const std::size_t bytes = std::min<std::size_t>(memory_ / 4 / parts.size(), std::size_t{1} << 20);
     std::vector<BoxFileWriter<D, Real>> writers;
     // A block is copied when it is written.

@@ -42,12 +42,12 @@ class Sources {
   }
 
   /// The first boxes of either source.
-  struct Sample {
+  struct SampledBoxes {
     std::vector<Box<D, Real>> boxes;
     bool is_all = true;  ///< there are no others
   };
-  Sample sample(std::size_t most) const {
-    Sample sample;
+  SampledBoxes sample(std::size_t most) const {
+    SampledBoxes sample;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
       const std::size_t max_yet = most * (source + 1) / sources_.size();
       sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {

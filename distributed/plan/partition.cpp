@@ -80,7 +80,8 @@ class Cutter {
 
   /// The cut that makes the cost per part of the costlier side least; nothing if no cut makes both sides
   /// cheaper than the whole.
-  std::optional<CutChoice> choose(const BoxesAndPairs& items, std::size_t parts_below, std::size_t parts_above) {
+  std::optional<CutChoice> choose(const BoxesAndPairs& items, std::size_t parts_below,
+                                  std::size_t parts_above) {
     examined_.clear();
     for (const Items& some : items) examine(some);
     double all = 0;
@@ -107,7 +108,7 @@ class Cutter {
   }
 
   std::optional<CutChoice> choose_on(std::size_t axis, double all, std::size_t parts_below,
-                                  std::size_t parts_above) {
+                                     std::size_t parts_above) {
     minima_.clear();
     maxima_.clear();
     for (const Weighted<D, Real>& item : examined_) {
@@ -223,18 +224,18 @@ Partition<D, Real>::Partition(std::span<const Cut> cuts, const Region& space)
     : cuts_(cuts.begin(), cuts.end()) {
   // The tree is listed depth first, the lower side before the upper one, and parts are numbered in that
   // order.
-  struct Waiting {
+  struct PendingRegion {
     std::size_t cut;
     Region region;
   };
-  std::vector<Waiting> waiting{{0, space}};
+  std::vector<PendingRegion> waiting{{0, space}};
   std::size_t met = 0;
   const auto refuse = [](std::size_t cut) {
     throw std::invalid_argument("Partition: cut " + std::to_string(cut) +
                                 " leads out of the list or backwards; expected the list that cuts() gave");
   };
   while (!waiting.empty()) {
-    const Waiting next = waiting.back();
+    const PendingRegion next = waiting.back();
     waiting.pop_back();
     if (next.cut != met || next.cut >= cuts_.size() || waiting.size() + 1 >= max_depth) refuse(next.cut);
     ++met;
@@ -245,9 +246,9 @@ Partition<D, Real>::Partition(std::span<const Cut> cuts, const Region& space)
       continue;
     }
     if (cut.axis >= D || std::isnan(cut.at)) refuse(next.cut);
-    Waiting above{cut.above, next.region};
+    PendingRegion above{cut.above, next.region};
     above.region.low[cut.axis] = cut.at;
-    Waiting below{cut.below, next.region};
+    PendingRegion below{cut.below, next.region};
     below.region.high[cut.axis] = cut.at;
     waiting.push_back(above);
     waiting.push_back(below);

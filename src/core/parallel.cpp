@@ -39,9 +39,9 @@ struct OtherWorkerThrew {};
 constexpr std::chrono::milliseconds between_checkpoints{20};
 
 /// Collects a piece's pairs.
-class BufferSink final : public PairSink {
+class PieceSink final : public PairSink {
  public:
-  explicit BufferSink(PairBlocks& blocks) : blocks_(&blocks) {}
+  explicit PieceSink(PairBlocks& blocks) : blocks_(&blocks) {}
 
   PairList take() {
     flush();
@@ -238,7 +238,7 @@ class Parallel::SharedSearch {
   void search_pieces(Delivery& delivery, std::size_t worker, bool only_one) noexcept {
     std::size_t at = 0;
     try {
-      BufferSink buffer(parallel_.blocks_);
+      PieceSink buffer(parallel_.blocks_);
       FilterChain buffered(filters_, buffer);
       FilterChain direct(filters_, target_);
       do {

@@ -40,7 +40,7 @@ LinearRounding fit_axis(std::vector<double>& minima) {
 
 /// Boxes as a structure of arrays, so that a loop compares one with many.
 template <int D>
-class BoxColumns {
+class RoundedColumns {
  public:
   void add(const Box<D, double>& exact, const Box<D>& box) {
     exact_.push_back(exact);
@@ -178,7 +178,7 @@ bool makes_false_pairs(const std::array<LinearRounding, D>& fit, std::span<const
   const auto max_compared =
       std::max(min_compared, static_cast<std::size_t>(std::sqrt(compared_share * size)));
   const std::uint32_t shift = shift_by(hash);
-  BoxColumns<D> columns;
+  RoundedColumns<D> columns;
   const auto take = [&](std::span<const Box<D, double>> from) {
     const std::size_t count = std::min(from.size(), max_compared);
     for (std::size_t i = 0; i < count; ++i) {

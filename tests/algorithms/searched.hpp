@@ -28,7 +28,8 @@ std::optional<Statistics> expect_definition(const Spec& spec, const std::vector<
   const std::size_t left_count = boxes.size() / 3;
   if (left_count > 0) {
     std::vector<Pair> expected = overlapping_pairs(boxes, left_count);
-    for (Pair& pair : expected) pair.second = BoxId(index(pair.second) - left_count);  // its place on the right
+    for (Pair& pair : expected)
+      pair.second = BoxId(index(pair.second) - left_count);  // its place on the right
     EXPECT_EQ(sorted_pairs([&](PairSink& sink) { finder.find_across(boxes, left_count, sink); }), expected);
   }
   return statistics;

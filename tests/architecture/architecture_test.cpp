@@ -43,7 +43,8 @@ std::vector<std::string> registered_names(AlgorithmKind kind) {
 
 TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
   std::size_t files = 0;
-  for (const char* const floor : {"include", "src", "integrations", "distributed", "tools", "tests", "examples"}) {
+  for (const char* const floor :
+       {"include", "src", "integrations", "distributed", "tools", "tests", "examples"}) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
       const fs::path& path = entry.path();
       if (!is_source(path)) continue;
@@ -93,9 +94,9 @@ TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
       breaches("examples/record_box2d/main.cpp",
                "#include <box2d/box2d.h>\n#include <broadside/recorder.hpp>\n#include \"game.hpp\"\n"),
       IsEmpty());
-  EXPECT_THAT(
-      breaches("tools/cli/main.cpp", "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
-      IsEmpty());
+  EXPECT_THAT(breaches("tools/cli/main.cpp",
+                       "#include <CLI/CLI.hpp>\n#include \"lab/verify.hpp\"\n#include <unistd.h>"),
+              IsEmpty());
 }
 
 TEST(IncludeRules, CatchEveryKindOfBreach) {

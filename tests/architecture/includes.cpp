@@ -51,7 +51,8 @@ const std::vector<Rule>& rules() {
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
-      {"tools/paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
+      {"tools/paper/listings/",
+       library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"tools/paper/plain/", library + R"(|"paper/plain/plain\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"distributed/out_of_core/",
@@ -98,7 +99,8 @@ const std::vector<Rule>& rules() {
   return list;
 }
 
-/// Whether `include` names a header in the file's own folder, by its path from `src/`, `tools/` or the project's root.
+/// Whether `include` names a header in the file's own folder, by its path from `src/`, `tools/` or the
+/// project's root.
 bool is_in_own_folder(const std::filesystem::path& path, std::string_view include) {
   const std::filesystem::path header(include.substr(1, include.size() - 2));
   const std::string folder = path.parent_path();

@@ -13,8 +13,8 @@
 
 #include "broadside/queries.hpp"
 
-#include "algorithms/bvh/dynamic_bvh.hpp"
 #include "algorithms/bvh/bvh_index.hpp"
+#include "algorithms/bvh/dynamic_bvh.hpp"
 #include "algorithms/bvh/packed_levels.hpp"
 #include "kernels/bvh_join.hpp"
 #include "kernels/bvh_query.hpp"

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/tools/cli/process.hpp"
 #include "tests/support/rng.hpp"
+#include "tests/tools/cli/process.hpp"
 
 namespace broadside::cli {
 namespace {

@@ -42,7 +42,8 @@ struct Corruption {
 };
 
 /// Corrupts one of the sorted pairs of `boxes` boxes, of which there is at least one.
-inline void corrupt(std::vector<Pair>& pairs, CorruptionKind fault, std::size_t boxes, std::mt19937_64& random) {
+inline void corrupt(std::vector<Pair>& pairs, CorruptionKind fault, std::size_t boxes,
+                    std::mt19937_64& random) {
   const Pair from{BoxId(random() % boxes), BoxId(random() % boxes)};
   auto found = std::ranges::lower_bound(pairs, from);
   if (found == pairs.end()) found = pairs.begin();
@@ -273,17 +274,18 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
       Algorithm algorithm;
       algorithm.name = std::move(name);
       algorithm.in_2d.searcher = [&is_applied, number, &request](const Settings&) {
-        return spoilt_searcher<2>(
-            "grid", [&is_applied, number, &request](std::vector<Pair>& pairs, std::size_t boxes) {
-              // The same place in the array each time, so that it is the same pair while that holds.
-              std::mt19937_64 random(number);
-              const auto fault = static_cast<CorruptionKind>(random() % 3);
-              if (boxes != request.boxes || pairs.empty()) return;
-              // A tracker that finds anew takes no pair twice.
-              corrupt(pairs, request.frames > 0 && fault == CorruptionKind::doubled ? CorruptionKind::dropped : fault, boxes,
-                      random);
-              is_applied = true;
-            });
+        return spoilt_searcher<2>("grid", [&is_applied, number, &request](std::vector<Pair>& pairs,
+                                                                          std::size_t boxes) {
+          // The same place in the array each time, so that it is the same pair while that holds.
+          std::mt19937_64 random(number);
+          const auto fault = static_cast<CorruptionKind>(random() % 3);
+          if (boxes != request.boxes || pairs.empty()) return;
+          // A tracker that finds anew takes no pair twice.
+          corrupt(pairs,
+                  request.frames > 0 && fault == CorruptionKind::doubled ? CorruptionKind::dropped : fault,
+                  boxes, random);
+          is_applied = true;
+        });
       };
       return algorithm;
     };

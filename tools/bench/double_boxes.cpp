@@ -44,28 +44,28 @@ std::string_view name(Call call) {
 }
 
 /// A set of pairs, as far as a hash can tell.
-struct PairSet {
+struct HashedPairs {
   std::uint64_t count = 0;
   std::uint64_t hash = 0;
 
-  friend bool operator==(const PairSet&, const PairSet&) = default;
+  friend bool operator==(const HashedPairs&, const HashedPairs&) = default;
 };
 
-PairSet set_of(std::span<const Pair> pairs) {
-  PairSet set{.count = pairs.size()};
+HashedPairs set_of(std::span<const Pair> pairs) {
+  HashedPairs set{.count = pairs.size()};
   for (const Pair pair : pairs) set.hash += hash(pair);
   return set;
 }
 
 /// One precision's side of a comparison.
 template <int D, typename Real>
-class Side {
+class PrecisionSide {
  public:
-  Side(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
+  PrecisionSide(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
       : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(algorithm) {}
 
   /// Asks once; returns the pairs. The times go to the samples if `keep`.
-  PairSet run(bool keep) {
+  HashedPairs run(bool keep) {
     using Clock = std::chrono::steady_clock;
     std::vector<Pair> pairs = std::move(pairs_);
     pairs.clear();
@@ -78,7 +78,7 @@ class Side {
       samples_.push_back(time.count());
       busy_samples_.push_back(static_cast<double>(busy_end - busy_start));
     }
-    const PairSet set = set_of(pairs);
+    const HashedPairs set = set_of(pairs);
     if (call_ == Call::kept_finder) pairs_ = std::move(pairs);
     return set;
   }
@@ -145,13 +145,13 @@ void compare_precisions(std::span<const std::string_view> algorithms, std::size_
   const std::vector<Box<D>> floats = uniform_boxes<D>(count);
   const std::vector<Box<D, double>> doubles = scaled<D>(floats);
   for (const Call call : calls) {
-    std::optional<PairSet> expected;
+    std::optional<HashedPairs> expected;
     for (const std::string_view algorithm : algorithms) {
-      Side<D, float> in_float(floats, algorithm, call);
-      Side<D, double> in_double(doubles, algorithm, call);
+      PrecisionSide<D, float> in_float(floats, algorithm, call);
+      PrecisionSide<D, double> in_double(doubles, algorithm, call);
       // Round 0 warms up.
       for (std::size_t round = 0; round <= rounds; ++round) {
-        for (const PairSet& found : {in_float.run(round > 0), in_double.run(round > 0)}) {
+        for (const HashedPairs& found : {in_float.run(round > 0), in_double.run(round > 0)}) {
           if (found != expected.value_or(found))
             throw std::runtime_error(fmt::format(
                 "{} in {}D gave {} pairs that are not the {} of the call before; expected one set for all",

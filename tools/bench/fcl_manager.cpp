@@ -72,12 +72,12 @@ class BoxObject final : public fcl::CollisionObject<S> {
 /// The pairs a callback got, as a set. An object is known by its place in memory, so that nothing is timed
 /// but the broad phases: a callback that reads objects waits for their memory.
 template <typename S>
-class PairSet {
+class CallbackPairs {
  public:
-  explicit PairSet(const std::vector<BoxObject<S>>& objects) : first_(objects.data()) {}
+  explicit CallbackPairs(const std::vector<BoxObject<S>>& objects) : first_(objects.data()) {}
 
   static bool take(fcl::CollisionObject<S>* first, fcl::CollisionObject<S>* second, void* data) {
-    auto& set = *static_cast<PairSet*>(data);
+    auto& set = *static_cast<CallbackPairs*>(data);
     const BoxId a = set.id_of(first);
     const BoxId b = set.id_of(second);
     ++set.count_;
@@ -86,7 +86,7 @@ class PairSet {
   }
 
   std::uint64_t count() const { return count_; }
-  friend bool operator==(const PairSet&, const PairSet&) = default;
+  friend bool operator==(const CallbackPairs&, const CallbackPairs&) = default;
 
  private:
   BoxId id_of(const fcl::CollisionObject<S>* object) const {
@@ -116,20 +116,20 @@ struct LeastDistance {
 
 /// A manager and its times.
 template <typename S>
-struct Side {
+struct ManagerSide {
   std::unique_ptr<fcl::BroadPhaseCollisionManager<S>> manager;
   std::vector<double> update_ms{};
   std::vector<double> collide_ms{};
   std::vector<double> frame_ms{};
 
-  PairSet<S> run(const std::vector<fcl::CollisionObject<S>*>& moved, PairSet<S> pairs) {
+  CallbackPairs<S> run(const std::vector<fcl::CollisionObject<S>*>& moved, CallbackPairs<S> pairs) {
     const ProcessorClock watch;
     if (moved.size() == manager->size())
       manager->update();
     else
       manager->update(moved);
     const double updated = watch.milliseconds();
-    manager->collide(&pairs, PairSet<S>::take);
+    manager->collide(&pairs, CallbackPairs<S>::take);
     const double all = watch.milliseconds();
     update_ms.push_back(updated);
     collide_ms.push_back(all - updated);
@@ -216,9 +216,9 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
 
   auto tree = std::make_unique<fcl::DynamicAABBTreeCollisionManager<S>>();
   tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
-  Side<S> fcl_side{std::move(tree)};
-  Side<S> own_side{std::make_unique<FclCollisionManager<S>>()};
-  for (Side<S>* side : {&fcl_side, &own_side}) {
+  ManagerSide<S> fcl_side{std::move(tree)};
+  ManagerSide<S> own_side{std::make_unique<FclCollisionManager<S>>()};
+  for (ManagerSide<S>* side : {&fcl_side, &own_side}) {
     side->manager->registerObjects(pointers);
     side->manager->setup();
   }
@@ -228,7 +228,8 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
   constexpr std::size_t warm_up = 5;
   for (std::size_t frame = 0; frame < warm_up + frames; ++frame) {
     if (frame == warm_up) {
-      for (Side<S>* side : {&fcl_side, &own_side}) side->update_ms = side->collide_ms = side->frame_ms = {};
+      for (ManagerSide<S>* side : {&fcl_side, &own_side})
+        side->update_ms = side->collide_ms = side->frame_ms = {};
       pairs = 0;
     }
     const Step<3, S> step = motion.next();
@@ -238,8 +239,8 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
       moved.push_back(pointers[index(step.changed[i])]);
     }
     const bool own_first = frame % 2 == 0;
-    const PairSet<S> first = (own_first ? own_side : fcl_side).run(moved, PairSet(objects));
-    const PairSet<S> second = (own_first ? fcl_side : own_side).run(moved, PairSet(objects));
+    const CallbackPairs<S> first = (own_first ? own_side : fcl_side).run(moved, CallbackPairs(objects));
+    const CallbackPairs<S> second = (own_first ? fcl_side : own_side).run(moved, CallbackPairs(objects));
     if (first != second)
       throw std::runtime_error(
           fmt::format("frame {}: {} pairs, and {} that are not the same from the other manager", frame,

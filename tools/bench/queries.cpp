@@ -70,9 +70,10 @@ void race(const std::string& what, std::vector<QueryRacer> participants, std::si
 }
 
 template <int D>
-class Queries {
+class BenchedQueries {
  public:
-  Queries(std::size_t boxes, std::size_t queries, std::size_t rounds) : queries_(queries), rounds_(rounds) {
+  BenchedQueries(std::size_t boxes, std::size_t queries, std::size_t rounds)
+      : queries_(queries), rounds_(rounds) {
     const lab::NamedScene uniform = lab::find_scene("uniform");
     boxes_ = lab::make_history<D>(uniform.scene, uniform.spec, {.boxes = boxes}).boxes;
     for (int axis = 0; axis < D; ++axis) {
@@ -207,8 +208,8 @@ void run(std::size_t boxes, std::size_t queries, std::size_t rounds) {
   fmt::print("uniform, {} boxes, batches of {}, {} rounds; {}, {} cores; {}\n", lab::grouped(boxes),
              lab::grouped(queries), rounds, machine.cpu, machine.cores, lab::this_build().compiler);
   fmt::print("{:<32}{:>9}  median ns a query\n", "", "hits");
-  Queries<2>(boxes, queries, rounds).run();
-  Queries<3>(boxes, queries, rounds).run();
+  BenchedQueries<2>(boxes, queries, rounds).run();
+  BenchedQueries<3>(boxes, queries, rounds).run();
 }
 
 }  // namespace

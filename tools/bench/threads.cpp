@@ -56,9 +56,9 @@ class Searching final : public Work {
 };
 
 template <int D>
-class Following final : public Work {
+class FollowingWork final : public Work {
  public:
-  Following(const lab::Entry& entry, const lab::History<D>& input, const Workers& workers)
+  FollowingWork(const lab::Entry& entry, const lab::History<D>& input, const Workers& workers)
       : input_(input), boxes_(input.boxes), tracker_(*entry.algorithm, entry.spec) {
     tracker_.set_workers(workers);
     run();
@@ -87,43 +87,43 @@ class Following final : public Work {
 };
 
 template <int D>
-void compare_all(const ThreadBenchmarkOptions& wishes, lab::AlignedColumns& columns) {
+void compare_all(const ThreadBenchmarkOptions& options, lab::AlignedColumns& columns) {
   const lab::Catalogue catalogue;
-  const lab::NamedScene named = lab::find_scene(wishes.scene);
+  const lab::NamedScene named = lab::find_scene(options.scene);
   const auto history = [&](std::size_t boxes, std::size_t frames, double moving) {
     return lab::make_history<D>(named.scene, named.spec,
                                 {.boxes = boxes, .seed = 1, .frames = frames, .moving = moving});
   };
   for (const double moving : fractions) {
-    const lab::History<D> input = history(wishes.followed_boxes, wishes.rounds, moving);
+    const lab::History<D> input = history(options.followed_boxes, options.rounds, moving);
     for (const lab::Entry& entry : catalogue.select(trackers)) {
       add_gain(
           fmt::format("{}D, {}, {:.3g} % of {} move", D, entry.spec.text(), moving * 100,
                       lab::grouped(input.boxes.size())),
-          [&](const Workers& workers) { return std::make_unique<Following<D>>(entry, input, workers); },
-          wishes.rounds, columns);
+          [&](const Workers& workers) { return std::make_unique<FollowingWork<D>>(entry, input, workers); },
+          options.rounds, columns);
     }
   }
-  const lab::History<D> input = history(wishes.searched_boxes, 0, 0);
+  const lab::History<D> input = history(options.searched_boxes, 0, 0);
   for (const lab::Entry& entry : catalogue.select(finders)) {
     add_gain(
         fmt::format("{}D, {} finds pairs of {}", D, entry.spec.text(), lab::grouped(input.boxes.size())),
         [&](const Workers& workers) { return std::make_unique<Searching<D>>(entry, input, workers); },
-        wishes.rounds, columns);
+        options.rounds, columns);
   }
 }
 
-void run(const ThreadBenchmarkOptions& wishes) {
-  if (wishes.rounds < 2)
+void run(const ThreadBenchmarkOptions& options) {
+  if (options.rounds < 2)
     throw std::invalid_argument(fmt::format(
-        "the number of rounds is {}; expected 2 or more, the first of which does not count", wishes.rounds));
+        "the number of rounds is {}; expected 2 or more, the first of which does not count", options.rounds));
   const lab::Machine machine = lab::this_machine();
   const lab::Build build = lab::this_build();
-  fmt::print("{}, medians of {} rounds; {}, {} cores; {}, {}\n", wishes.scene, wishes.rounds - 1, machine.cpu,
-             machine.cores, build.compiler, build.revision);
+  fmt::print("{}, medians of {} rounds; {}, {} cores; {}, {}\n", options.scene, options.rounds - 1,
+             machine.cpu, machine.cores, build.compiler, build.revision);
   lab::AlignedColumns columns = gain_columns();
-  compare_all<2>(wishes, columns);
-  compare_all<3>(wishes, columns);
+  compare_all<2>(options, columns);
+  compare_all<3>(options, columns);
   fmt::print("{}", text_of_gains(columns));
 }
 

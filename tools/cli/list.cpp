@@ -60,7 +60,7 @@ void print_wrapped(const std::string& begin, std::string_view text) {
 }
 
 /// An algorithm or a scene: a line for itself and one for each of its tunables.
-struct Listed {
+struct ListedItem {
   std::string name;
   std::string kind;
   std::string dimensions;
@@ -68,7 +68,7 @@ struct Listed {
   std::span<const Tunable> tunables;
 };
 
-Listed listed(const auto& described) {
+ListedItem listed(const auto& described) {
   const bool two = described.has_dimension(2);
   const bool three = described.has_dimension(3);
   return {described.name, std::string(name(described.kind)),
@@ -79,15 +79,15 @@ Listed listed(const auto& described) {
           described.summary, described.tunables};
 }
 
-void print_list(std::string_view title, const std::vector<Listed>& list) {
+void print_list(std::string_view title, const std::vector<ListedItem>& list) {
   std::size_t name_width = 0;
   std::size_t kind_width = 0;
-  for (const Listed& item : list) {
+  for (const ListedItem& item : list) {
     name_width = std::max(name_width, item.name.size());
     kind_width = std::max(kind_width, item.kind.size());
   }
   print(fmt::format("{}\n", title));
-  for (const Listed& item : list) {
+  for (const ListedItem& item : list) {
     print_wrapped(fmt::format("  {:<{}}  {:<{}}  {:<5}  ", item.name, name_width, item.kind, kind_width,
                               item.dimensions),
                   item.summary);
@@ -101,7 +101,7 @@ void print_list(std::string_view title, const std::vector<Listed>& list) {
 }
 
 Exit run(const lab::Catalogue& catalogue) {
-  std::vector<Listed> algorithms;
+  std::vector<ListedItem> algorithms;
   for (const Algorithm& algorithm : catalogue.algorithms()) algorithms.push_back(listed(algorithm));
   for (const lab::peers::MissingPeer& peer : lab::peers::missing_peers())
     algorithms.push_back(
@@ -109,7 +109,7 @@ Exit run(const lab::Catalogue& catalogue) {
   print_list("Algorithms (tunables follow the name, each after a colon: grid:cell=2.5:threads=2)",
              algorithms);
 
-  std::vector<Listed> scenes;
+  std::vector<ListedItem> scenes;
   for (const lab::Scene& scene : lab::scenes()) scenes.push_back(listed(scene));
   for (const lab::Scene& scene : lab::missing_scenes())
     scenes.push_back({scene.name, std::string(name(scene.kind)), "", "not there: " + scene.missing, {}});

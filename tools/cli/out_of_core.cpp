@@ -148,12 +148,12 @@ void check_output(const PairsArguments& arguments, const std::filesystem::path& 
                                work.string()));
 }
 
-class Progress {
+class JoinProgress {
  public:
-  explicit Progress(const std::filesystem::path& folder) : folder_(folder.string()) {}
-  ~Progress() { say_at_interruption(""); }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  explicit JoinProgress(const std::filesystem::path& folder) : folder_(folder.string()) {}
+  ~JoinProgress() { say_at_interruption(""); }
+  JoinProgress(const JoinProgress&) = delete;
+  JoinProgress& operator=(const JoinProgress&) = delete;
 
   void operator()(OutOfCoreStage stage, std::uint64_t done, std::uint64_t total) {
     if (stage != stage_) {
@@ -184,7 +184,7 @@ class Progress {
 
 template <int D, typename Real>
 Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const OutOfCoreOptions& options,
-          Progress& progress) {
+          JoinProgress& progress) {
   const lab::Stopwatch watch;
   std::vector<std::unique_ptr<FileBoxes<D, Real>>> sources;
   for (FileToRead& file : files) sources.push_back(std::make_unique<FileBoxes<D, Real>>(std::move(file)));
@@ -267,7 +267,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
     for (FileToRead& file : files) file.options.precision = lab::Precision::float64;
   for (const FileToRead& file : files)
     options.identity += (options.identity.empty() ? "" : " with ") + identity_of(file, arguments.input);
-  Progress progress(options.folder);
+  JoinProgress progress(options.folder);
   options.progress = std::ref(progress);
   options.warn = [&progress](std::string_view text) {
     progress.clear();

@@ -78,10 +78,9 @@ std::string is_dimension(const std::string& text) {
 
 std::string is_seed(const std::string& text) {
   constexpr std::size_t max_digits = 18;
-  const bool fits = !text.empty() && text.size() <= max_digits &&
-                    text.find_first_not_of("0123456789") == std::string::npos;
-  return fits ? ""
-              : fmt::format("seed '{}'; expected a whole number of at most {} digits", text, max_digits);
+  const bool fits =
+      !text.empty() && text.size() <= max_digits && text.find_first_not_of("0123456789") == std::string::npos;
+  return fits ? "" : fmt::format("seed '{}'; expected a whole number of at most {} digits", text, max_digits);
 }
 
 void check_writable(const std::string& option, const std::string& path) {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "lab/formats/byte_source.hpp"
-#include "lab/formats/registry.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/zip_archive.hpp"
 #include "lab/recordings/recordings.hpp"
 #include "lab/report/page.hpp"

@@ -69,7 +69,7 @@ void SegmentJoin<D>::search(const SegmentNode& node) {
   if (node.is_self ? node.a.size() < 2 : node.a.size() == 0 || node.b.size() == 0) return;
   const bool is_short = !node.is_self && std::min(node.a.size(), node.b.size()) <= short_list;
   if (is_short || node.size() <= leaf_size || std::popcount(node.open) == 1) return sweep(node);
-  Cut cut = choose(node);
+  SegmentCut cut = choose(node);
   if (!set_range(node, cut)) return;  // no box begins here, so every pair is found elsewhere
   if (node.depth >= depth_of_medians) set_exact_median(node, cut);
   const std::size_t top = stack_.size();
@@ -82,7 +82,7 @@ void SegmentJoin<D>::search(const SegmentNode& node) {
 
 /// All boxes that begin here begin at one coordinate. Every box that reaches it overlaps them on this axis.
 template <int D>
-void SegmentJoin<D>::decide(const SegmentNode& node, const Cut& cut) {
+void SegmentJoin<D>::decide(const SegmentNode& node, const SegmentCut& cut) {
   const auto reaches = [&](const Reference& reference) { return box(reference).max[cut.axis] >= cut.low; };
   const List a = push(node.a, reaches);
   const List b = node.is_self ? a : push(node.b, reaches);
@@ -90,10 +90,10 @@ void SegmentJoin<D>::decide(const SegmentNode& node, const Cut& cut) {
 }
 
 template <int D>
-void SegmentJoin<D>::cut_in_two(const SegmentNode& node, const Cut& cut) {
+void SegmentJoin<D>::cut_in_two(const SegmentNode& node, const SegmentCut& cut) {
   const std::uint32_t bit = 1U << cut.axis;
-  const Parts a = part(node.a, cut);
-  const Parts b = node.is_self ? a : part(node.b, cut);
+  const SegmentParts a = part(node.a, cut);
+  const SegmentParts b = node.is_self ? a : part(node.b, cut);
   const std::size_t top = stack_.size();
   const auto join_covering = [&](const List& covering, const List& others) {
     if (covering.size() == 0) return;
@@ -110,7 +110,7 @@ void SegmentJoin<D>::cut_in_two(const SegmentNode& node, const Cut& cut) {
 /// Pushes a list's parts: the boxes that begin before the region and cover it, and for each side of the cut
 /// the others that touch it.
 template <int D>
-auto SegmentJoin<D>::part(const List& list, const Cut& cut) -> Parts {
+auto SegmentJoin<D>::part(const List& list, const SegmentCut& cut) -> SegmentParts {
   const std::size_t begin = stack_.size();
   const std::size_t size = list.size();
   stack_.resize(begin + 3 * size);
@@ -160,13 +160,13 @@ auto SegmentJoin<D>::push(const List& list, Wanted wanted) -> List {
 
 /// Chooses the axis on which the sample's median cuts the fewest boxes that do not cover the region.
 template <int D>
-auto SegmentJoin<D>::choose(const SegmentNode& node) -> Cut {
+auto SegmentJoin<D>::choose(const SegmentNode& node) -> SegmentCut {
   std::array<Reference, samples> sampled;
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t at = (2 * i + 1) * node.size() / (2 * samples);
     sampled[i] = stack_[at < node.a.size() ? node.a.begin + at : node.b.begin + (at - node.a.size())];
   }
-  Cut best{};
+  SegmentCut best{};
   std::size_t most = 0;
   for (int axis = 0; axis < D; ++axis) {
     if ((node.open >> axis & 1U) == 0) continue;
@@ -196,7 +196,7 @@ auto SegmentJoin<D>::choose(const SegmentNode& node) -> Cut {
 /// Sets the least and the greatest minimum in the region, and moves the cut between them if it is not there.
 /// False if no box begins in the region.
 template <int D>
-bool SegmentJoin<D>::set_range(const SegmentNode& node, Cut& cut) const {
+bool SegmentJoin<D>::set_range(const SegmentNode& node, SegmentCut& cut) const {
   float low = std::numeric_limits<float>::infinity();
   float high = -low;
   bool any = false;
@@ -218,7 +218,7 @@ bool SegmentJoin<D>::set_range(const SegmentNode& node, Cut& cut) const {
 }
 
 template <int D>
-void SegmentJoin<D>::set_exact_median(const SegmentNode& node, Cut& cut) {
+void SegmentJoin<D>::set_exact_median(const SegmentNode& node, SegmentCut& cut) {
   minima_.clear();
   for_minima(node, cut.axis, [this](float min) { minima_.push_back(min); });
   const float median = core::median(minima_);

@@ -49,7 +49,7 @@ class SegmentJoin {
   };
 
   /// Where a node is cut, and the least and the greatest minimum in its region.
-  struct Cut {
+  struct SegmentCut {
     int axis;
     float at;
     float low;
@@ -57,20 +57,20 @@ class SegmentJoin {
   };
 
   /// The parts into which a cut divides a list.
-  struct Parts {
+  struct SegmentParts {
     List covering;
     List below;
     List above;
   };
 
   void search(const SegmentNode& node);
-  void decide(const SegmentNode& node, const Cut& cut);
-  void cut_in_two(const SegmentNode& node, const Cut& cut);
+  void decide(const SegmentNode& node, const SegmentCut& cut);
+  void cut_in_two(const SegmentNode& node, const SegmentCut& cut);
   void sweep(const SegmentNode& node);
-  Cut choose(const SegmentNode& node);
-  bool set_range(const SegmentNode& node, Cut& cut) const;
-  void set_exact_median(const SegmentNode& node, Cut& cut);
-  Parts part(const List& list, const Cut& cut);
+  SegmentCut choose(const SegmentNode& node);
+  bool set_range(const SegmentNode& node, SegmentCut& cut) const;
+  void set_exact_median(const SegmentNode& node, SegmentCut& cut);
+  SegmentParts part(const List& list, const SegmentCut& cut);
 
   /// Calls `visit(min)` for each of the node's boxes that begins in its region on that axis.
   template <typename Visit>

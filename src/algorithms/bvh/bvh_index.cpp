@@ -170,7 +170,7 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   if (is_empty()) return std::nullopt;
   int exponent = 0;
   const kernels::CastQuery<D> query = in_tree(cast, exponent);
-  First<D, Real> found(*this, cast, options, exponent);
+  FirstHit<D, Real> found(*this, cast, options, exponent);
   found.t_max = algorithm::in_tree(cast.t_max, exponent);
   kernels::find_first_met(tree_.view(), query, found);
   return found.best;
@@ -199,12 +199,12 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     query.allowance = std::numeric_limits<float>::min();
   }
   NearestBoxes<Real> found(count, max_distance_squared);
-  struct Waiting {
+  struct PendingNode {
     float distance;
     std::uint32_t number;
   };
   const kernels::BvhView<D> tree = tree_.view();
-  std::array<Waiting, (kernels::longest_path + 1) * fan_out> waiting;
+  std::array<PendingNode, (kernels::longest_path + 1) * fan_out> waiting;
   std::array<float, fan_out> distances;
   std::size_t waits = 1;
   waiting[0] = {0, tree.root};
@@ -229,7 +229,7 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     }
     // The nearest comes last, since the last one is taken next.
     std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),
-                      [](const Waiting& a, const Waiting& b) {
+                      [](const PendingNode& a, const PendingNode& b) {
                         return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
                       });
   }

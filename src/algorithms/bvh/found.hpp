@@ -12,8 +12,8 @@
 
 #include "broadside/queries.hpp"
 
-#include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/bvh_index.hpp"
+#include "algorithms/bvh/conservative_rounding.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
@@ -42,10 +42,10 @@ class VisitedBoxes final : public kernels::FoundBoxes {
 
 /// The first box that a cast hits; of several hit at once, the one with the least id.
 template <int D, typename Real>
-class First final : public kernels::FoundBoxes {
+class FirstHit final : public kernels::FoundBoxes {
  public:
-  First(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, const QueryOptions<BoxId>& options,
-        int exponent)
+  FirstHit(const BvhIndex<D, Real>& boxes, const BoxCast<D, Real>& cast, const QueryOptions<BoxId>& options,
+           int exponent)
       : boxes_(boxes), cast_(cast), options_(options), exponent_(exponent) {}
 
   bool take() override {

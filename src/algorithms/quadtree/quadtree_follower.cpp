@@ -68,7 +68,7 @@ class QuadtreeFollower final : public Follower<D> {
   static constexpr std::uint32_t bit(std::uint32_t mask, std::uint32_t child) { return mask >> child & 1U; }
 
   /// Whether a mover's old box, its new box, or a box that it touches may be in a node or below it.
-  struct Parts {
+  struct MoverNodes {
     std::uint32_t before;
     std::uint32_t now;
     std::uint32_t seen;
@@ -137,7 +137,7 @@ class QuadtreeFollower final : public Follower<D> {
   }
 
   /// Descends from a node to all nodes that held the mover, will hold it, or may hold boxes that it touches.
-  void visit(std::uint32_t number, std::uint32_t at, const Parts& parts) {
+  void visit(std::uint32_t number, std::uint32_t at, const MoverNodes& parts) {
     const QuadtreeNode<D>& node = tree_[at];
     const core::MovedBox<D>& mover = movers_[number];
     if (node.is_leaf()) {
@@ -162,7 +162,7 @@ class QuadtreeFollower final : public Follower<D> {
   }
 
   /// Makes sure that a mover is in a node.
-  void place(std::uint32_t number, std::uint32_t node, const Parts& parts) {
+  void place(std::uint32_t number, std::uint32_t node, const MoverNodes& parts) {
     const core::MovedBox<D>& mover = movers_[number];
     checkpoint_->count(1 + tree_[node].count / kernels::block_size);  // the blocks in the node's chain
     std::uint32_t slot;

@@ -42,7 +42,9 @@ Algorithm mine() { return *find_algorithm("sweep_and_prune"); }
 namespace broadside::lab {
 namespace {
 
-std::string pasted(const std::string& name) { return project_text("tests/tools/lab/snippets/" + name + ".inc"); }
+std::string pasted(const std::string& name) {
+  return project_text("tests/tools/lab/snippets/" + name + ".inc");
+}
 
 TEST(Snippet, IsWhatIsCompiledHere) {
   constexpr Precision single = Precision::float32;

@@ -22,7 +22,7 @@ History<2> small_history() {
   return history;
 }
 
-const std::vector<Events> small_events = {
+const std::vector<FrameEvents> small_events = {
     {{pair_01}, {}}, {{pair_02, pair_12}, {}}, {{}, {pair_01, pair_02}}};
 
 TEST(ExpectedEvents, AreThoseOfTheDefinition) {
@@ -40,9 +40,9 @@ TEST(ExpectedEvents, AreTheSameFromAnotherReference) {
   EXPECT_EQ(expected.fault, "");
 }
 
-std::uint64_t hash_of_all(const std::vector<Events>& frames) {
+std::uint64_t hash_of_all(const std::vector<FrameEvents>& frames) {
   EventHasher hasher;
-  for (const Events& events : frames) hasher.add(events);
+  for (const FrameEvents& events : frames) hasher.add(events);
   return hasher.hash();
 }
 
@@ -56,7 +56,7 @@ TEST(EventHasher, TellsFramesAndBeginningsAndEndsApart) {
 
 TEST(Difference, NamesFrameKindPairAndBoxes) {
   const std::vector<Box2> boxes = small_history().boxes;
-  const Events expected{{pair_01}, {pair_12}};
+  const FrameEvents expected{{pair_01}, {pair_12}};
   EXPECT_EQ(difference<2>(expected, expected, "mine", 4, boxes), "");
   const std::string missing = difference<2>({{pair_01}, {}}, expected, "mine", 4, boxes);
   EXPECT_THAT(missing, HasSubstr("mine: frame 4, ended: pair (1, 2) is missing"));

@@ -48,9 +48,10 @@ double imbalance(const std::vector<double>& loads) {
 
 /// As many boxes as are wanted, from the distribution of some.
 template <int D>
-class Population {
+class DrawnPopulation {
  public:
-  Population(std::vector<Box<D>> sample, std::uint64_t boxes) : sample_(std::move(sample)), boxes_(boxes) {
+  DrawnPopulation(std::vector<Box<D>> sample, std::uint64_t boxes)
+      : sample_(std::move(sample)), boxes_(boxes) {
     shrinking_ =
         std::min(1.0, std::pow(static_cast<double>(boxes) / static_cast<double>(sample_.size()), -1.0 / D));
     pairs_ = find_pairs(sample_);
@@ -97,7 +98,7 @@ class Population {
 };
 
 template <int D>
-std::vector<Box<D>> drawn_from(const Population<D>& population, std::size_t count, std::uint64_t seed) {
+std::vector<Box<D>> drawn_from(const DrawnPopulation<D>& population, std::size_t count, std::uint64_t seed) {
   lab::Random random(seed);
   std::vector<Box<D>> boxes(count);
   for (Box<D>& box : boxes) box = population.draw(random);
@@ -113,7 +114,7 @@ struct Loads {
 };
 
 template <int D>
-Loads loads_of(const Population<D>& population, const std::vector<Box<D>>& boxes,
+Loads loads_of(const DrawnPopulation<D>& population, const std::vector<Box<D>>& boxes,
                const Partition<D>& partition) {
   std::vector<double> touches(partition.size());
   for (const Box<D>& box : boxes) partition.for_each_part(box, [&](std::size_t part) { touches[part] += 1; });
@@ -198,27 +199,28 @@ double ranks_per_query(const std::vector<Box<D>>& boxes, const Partition<D>& par
 }
 
 template <int D>
-void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& wishes, lab::AlignedColumns& columns) {
+void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& options,
+              lab::AlignedColumns& columns) {
   const std::vector<Box<D>> sample =
-      lab::make_history<D>(named.scene, named.spec, {.boxes = wishes.sample_boxes, .seed = 1}).boxes;
-  for (const std::uint64_t boxes : wishes.boxes) {
-    const Population<D> population(sample, boxes);
-    const std::vector<Box<D>> drawn = drawn_from(population, wishes.drawn, 2);
+      lab::make_history<D>(named.scene, named.spec, {.boxes = options.sample_boxes, .seed = 1}).boxes;
+  for (const std::uint64_t boxes : options.boxes) {
+    const DrawnPopulation<D> population(sample, boxes);
+    const std::vector<Box<D>> drawn = drawn_from(population, options.drawn, 2);
     // A step samples four times as many boxes as the one before, until the cuts are balanced.
     std::size_t steps = 0;
-    std::size_t sampled = wishes.ranks * wishes.sampled_per_rank / 4;
+    std::size_t sampled = options.ranks * options.sampled_per_rank / 4;
     Partition<D> partition;
     Loads loads;
     do {
       sampled *= 4;
-      partition = Partition<D>(drawn_from(population, sampled, 3 + steps), wishes.ranks, boxes);
+      partition = Partition<D>(drawn_from(population, sampled, 3 + steps), options.ranks, boxes);
       loads = loads_of(population, drawn, partition);
-    } while (++steps < 4 && loads.cost > wishes.balanced);
+    } while (++steps < 4 && loads.cost > options.balanced);
     // Sedona samples a hundredth. More than a million would change nothing here.
     const std::size_t hundredth = std::min<std::uint64_t>(boxes / 100, 1'000'000);
     const Loads median =
-        loads_of(population, drawn, MedianCuts<D>::of(drawn_from(population, hundredth, 9), wishes.ranks));
-    const auto ranks = static_cast<double>(wishes.ranks);
+        loads_of(population, drawn, MedianCuts<D>::of(drawn_from(population, hundredth, 9), options.ranks));
+    const auto ranks = static_cast<double>(options.ranks);
     const double elsewhere = (ranks - 1) / ranks;
     const double box_bytes = sizeof(Box<D>) + sizeof(std::uint64_t);
     const double sent =
@@ -230,7 +232,7 @@ void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& wishes, 
                               sizeof(std::uint64_t);
     columns.add({named.spec.text(), fmt::format("{}D", D), fmt::format("{:.0e}", static_cast<double>(boxes)),
                  lab::rounded(population.pairs_per_box()), std::to_string(steps),
-                 lab::grouped(sampled / wishes.ranks), lab::rounded(loads.cost), lab::rounded(loads.boxes),
+                 lab::grouped(sampled / options.ranks), lab::rounded(loads.cost), lab::rounded(loads.boxes),
                  lab::rounded(loads.pairs), lab::rounded(loads.copies), lab::whole(sent), lab::bytes(memory),
                  lab::rounded(median.cost), lab::rounded(median.boxes), lab::rounded(median.pairs),
                  lab::rounded(median.copies), lab::rounded(ranks_per_query(drawn, partition))});
@@ -238,22 +240,22 @@ void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& wishes, 
 }
 
 int run(int count, char** arguments) {
-  PlanBenchmarkOptions wishes;
+  PlanBenchmarkOptions options;
   CLI::App app("Simulates the distributed plan for more boxes and ranks than this machine has.");
-  app.add_option("--scenes", wishes.scenes, "scenes whose distributions are simulated")
+  app.add_option("--scenes", options.scenes, "scenes whose distributions are simulated")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--boxes", wishes.boxes, "numbers of boxes")->delimiter(',')->capture_default_str();
-  app.add_option("--ranks", wishes.ranks, "number of ranks, each with one part")
+  app.add_option("--boxes", options.boxes, "numbers of boxes")->delimiter(',')->capture_default_str();
+  app.add_option("--ranks", options.ranks, "number of ranks, each with one part")
       ->check(CLI::Range(2, 100'000))
       ->capture_default_str();
-  app.add_option("--drawn", wishes.drawn, "boxes drawn to stand for all")
+  app.add_option("--drawn", options.drawn, "boxes drawn to stand for all")
       ->check(CLI::Range(1000, 1'000'000'000))
       ->capture_default_str();
-  app.add_option("--sample", wishes.sampled_per_rank, "boxes sampled by each rank in the first step")
+  app.add_option("--sample", options.sampled_per_rank, "boxes sampled by each rank in the first step")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--balanced", wishes.balanced, "largest cost over the mean at which no step follows")
+  app.add_option("--balanced", options.balanced, "largest cost over the mean at which no step follows")
       ->capture_default_str();
   try {
     app.parse(count, arguments);
@@ -262,16 +264,16 @@ int run(int count, char** arguments) {
   }
   const lab::Machine machine = lab::this_machine();
   const lab::Build build = lab::this_build();
-  fmt::print("{} ranks, {} boxes drawn; {}, {}, {}, {}\n", lab::grouped(wishes.ranks),
-             lab::grouped(wishes.drawn), machine.cpu, build.compiler, build.revision, lab::today());
+  fmt::print("{} ranks, {} boxes drawn; {}, {}, {}, {}\n", lab::grouped(options.ranks),
+             lab::grouped(options.drawn), machine.cpu, build.compiler, build.revision, lab::today());
   lab::AlignedColumns columns("<<>>>>>>>>>>>>>>>");
   columns.add({"scene", "", "boxes", "pairs a box", "steps", "sampled a rank", "cost, largest/mean", "boxes",
                "pairs", "parts a box", "bytes sent a box", "memory a rank", "Sedona: cost", "boxes", "pairs",
                "parts a box", "ArborX: ranks a query"});
-  for (const std::string& name : wishes.scenes) {
+  for (const std::string& name : options.scenes) {
     const lab::NamedScene named = lab::find_scene(name);
-    if (named.scene.has_dimension(2)) simulate<2>(named, wishes, columns);
-    if (named.scene.has_dimension(3)) simulate<3>(named, wishes, columns);
+    if (named.scene.has_dimension(2)) simulate<2>(named, options, columns);
+    if (named.scene.has_dimension(3)) simulate<3>(named, options, columns);
   }
   fmt::print("{}", columns.text(""));
   return 0;

@@ -33,8 +33,8 @@ struct BulletBenchmarkOptions {
 };
 
 std::unique_ptr<btBroadphaseInterface> bullets() { return std::make_unique<btDbvtBroadphase>(); }
-std::unique_ptr<btBroadphaseInterface> ours(const BulletBenchmarkOptions& wishes) {
-  return std::make_unique<BulletBroadphase>(wishes.options);
+std::unique_ptr<btBroadphaseInterface> ours(const BulletBenchmarkOptions& benchmark) {
+  return std::make_unique<BulletBroadphase>(benchmark.options);
 }
 
 double mean(const std::vector<double>& values) {
@@ -63,21 +63,22 @@ void print_times_heading() {
 
 /// A simulation over Bullet's own broad phase that has run to its end, and what it told that.
 struct Recorded {
-  Recorded(const std::string& scene, const BulletBenchmarkOptions& wishes)
-      : Recorded(scene, wishes, std::make_unique<Recording>()) {}
+  Recorded(const std::string& scene, const BulletBenchmarkOptions& benchmark)
+      : Recorded(scene, benchmark, std::make_unique<NotedCalls>()) {}
 
-  const Recording& recording;
+  const NotedCalls& recording;
   Simulation simulation;
 
  private:
-  Recorded(const std::string& scene, const BulletBenchmarkOptions& wishes, std::unique_ptr<Recording> broadphase)
-      : recording(*broadphase), simulation(scene, wishes.bodies, std::move(broadphase)) {
-    for (std::size_t step = 0; step < wishes.steps; ++step) simulation.step();
+  Recorded(const std::string& scene, const BulletBenchmarkOptions& benchmark,
+           std::unique_ptr<NotedCalls> broadphase)
+      : recording(*broadphase), simulation(scene, benchmark.bodies, std::move(broadphase)) {
+    for (std::size_t step = 0; step < benchmark.steps; ++step) simulation.step();
   }
 };
 
 /// Throws unless both hold the same pairs of boxes that overlap; what they hold of enlarged boxes may differ.
-void check_pairs(Replay& one, Replay& other, std::size_t step) {
+void check_pairs(BulletReplay& one, BulletReplay& other, std::size_t step) {
   const auto pairs = one.overlapping_pairs();
   const auto others = other.overlapping_pairs();
   if (pairs == others) return;
@@ -86,21 +87,21 @@ void check_pairs(Replay& one, Replay& other, std::size_t step) {
                   others.size()));
 }
 
-void stage(const BulletBenchmarkOptions& wishes) {
+void stage(const BulletBenchmarkOptions& benchmark) {
   print_times_heading();
-  for (const std::string& scene : wishes.scenes) {
-    const Recorded recorded(scene, wishes);
-    std::vector<double> bullets_us(wishes.steps, 1e30);
-    std::vector<double> ours_us(wishes.steps, 1e30);
-    for (std::size_t round = 0; round < wishes.rounds; ++round) {
-      Replay one(recorded.recording, bullets());
-      Replay other(recorded.recording, ours(wishes));
-      for (std::size_t step = 0; step < wishes.steps; ++step) {
+  for (const std::string& scene : benchmark.scenes) {
+    const Recorded recorded(scene, benchmark);
+    std::vector<double> bullets_us(benchmark.steps, 1e30);
+    std::vector<double> ours_us(benchmark.steps, 1e30);
+    for (std::size_t round = 0; round < benchmark.rounds; ++round) {
+      BulletReplay one(recorded.recording, bullets());
+      BulletReplay other(recorded.recording, ours(benchmark));
+      for (std::size_t step = 0; step < benchmark.steps; ++step) {
         bullets_us[step] = std::min(bullets_us[step], one.step(step));
         ours_us[step] = std::min(ours_us[step], other.step(step));
         if (round == 0) check_pairs(one, other, step);
       }
-      if (round + 1 == wishes.rounds)
+      if (round + 1 == benchmark.rounds)
         fmt::print("{}: {} boxes, {} and {} pairs at the end\n", scene, recorded.simulation.size(),
                    one.pairs(), other.pairs());
     }
@@ -126,7 +127,7 @@ double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::ui
     const btScalar high = half_width * btScalar(random.between(0, 1));
     rays.push_back({{-half_width, low, z}, {half_width, high, -z}});
   }
-  const Stopwatch watch;
+  const ThreadStopwatch watch;
   for (const auto& [from, to] : rays) {
     CountingRay ray(from, to);
     broadphase.rayTest(from, to, ray);
@@ -135,44 +136,44 @@ double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::ui
   return watch.microseconds();
 }
 
-void rays(const BulletBenchmarkOptions& wishes) {
+void rays(const BulletBenchmarkOptions& benchmark) {
   print_times_heading();
-  for (const std::string& scene : wishes.scenes) {
-    const Recorded recorded(scene, wishes);
-    Replay one(recorded.recording, bullets());
-    Replay other(recorded.recording, ours(wishes));
+  for (const std::string& scene : benchmark.scenes) {
+    const Recorded recorded(scene, benchmark);
+    BulletReplay one(recorded.recording, bullets());
+    BulletReplay other(recorded.recording, ours(benchmark));
     std::vector<double> rays_us[2];
     std::vector<double> both_us[2];
     std::size_t met[2] = {0, 0};
     const btScalar half_width = recorded.recording.created[0].call.max.x();  // the floor's
-    for (std::size_t step = 0; step < wishes.steps; ++step) {
+    for (std::size_t step = 0; step < benchmark.steps; ++step) {
       for (const int turn : {0, 1}) {
-        Replay& replay = turn == 0 ? one : other;
+        BulletReplay& replay = turn == 0 ? one : other;
         const double stage_us = replay.step(step);
         rays_us[turn].push_back(cast_rays(replay.broadphase(), half_width, step + 1, met[turn]));
         both_us[turn].push_back(stage_us + rays_us[turn].back());
       }
     }
     fmt::print("{}: {} boxes; a ray meets {:.0f} boxes of Bullet's and {:.0f} of ours\n", scene,
-               recorded.simulation.size(), double(met[0]) / double(100 * wishes.steps),
-               double(met[1]) / double(100 * wishes.steps));
+               recorded.simulation.size(), double(met[0]) / double(100 * benchmark.steps),
+               double(met[1]) / double(100 * benchmark.steps));
     print_times(scene, "100 rays", rays_us[0], rays_us[1]);
     print_times(scene, "with the stage", both_us[0], both_us[1]);
   }
 }
 
-void step(const BulletBenchmarkOptions& wishes) {
+void step(const BulletBenchmarkOptions& benchmark) {
   print_times_heading();
-  for (const std::string& scene : wishes.scenes) {
-    Simulation one(scene, wishes.bodies, bullets());
-    Simulation other(scene, wishes.bodies, ours(wishes));
+  for (const std::string& scene : benchmark.scenes) {
+    Simulation one(scene, benchmark.bodies, bullets());
+    Simulation other(scene, benchmark.bodies, ours(benchmark));
     std::vector<double> stage_us[2];
     std::vector<double> step_us[2];
-    for (std::size_t step = 0; step < wishes.steps; ++step) {
+    for (std::size_t step = 0; step < benchmark.steps; ++step) {
       for (const std::size_t turn : {step % 2, 1 - step % 2}) {
         Simulation& simulation = turn == 0 ? one : other;
         simulation.world().stage_us = 0;
-        const Stopwatch watch;
+        const ThreadStopwatch watch;
         simulation.step();
         step_us[turn].push_back(watch.microseconds());
         stage_us[turn].push_back(simulation.world().stage_us);
@@ -184,36 +185,36 @@ void step(const BulletBenchmarkOptions& wishes) {
   }
 }
 
-void manifolds(const BulletBenchmarkOptions& wishes) {
+void manifolds(const BulletBenchmarkOptions& benchmark) {
   fmt::print("\n{:<8} {:>7} {:>20} {:>22}\n", "", "frames", "contacts at the end", "frames that differ");
-  for (const std::string& scene : wishes.scenes) {
-    Simulation moving(scene, wishes.bodies, bullets());
-    Simulation one(scene, wishes.bodies, bullets());
-    Simulation other(scene, wishes.bodies, ours(wishes));
+  for (const std::string& scene : benchmark.scenes) {
+    Simulation moving(scene, benchmark.bodies, bullets());
+    Simulation one(scene, benchmark.bodies, bullets());
+    Simulation other(scene, benchmark.bodies, ours(benchmark));
     std::size_t different = 0;
-    for (std::size_t step = 0; step < wishes.steps; ++step) {
+    for (std::size_t step = 0; step < benchmark.steps; ++step) {
       moving.step();
       one.detect(moving);
       other.detect(moving);
       different += one.contacts() != other.contacts() ? 1 : 0;
     }
-    fmt::print("{:<8} {:>7} {:>20} {:>22}\n", scene, wishes.steps, other.sums().contacts, different);
+    fmt::print("{:<8} {:>7} {:>20} {:>22}\n", scene, benchmark.steps, other.sums().contacts, different);
   }
 }
 
-void drift(const BulletBenchmarkOptions& wishes) {
+void drift(const BulletBenchmarkOptions& benchmark) {
   fmt::print("\n{:<8} {:>29}   {:>29}\n{:<8} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "energy, kJ, mean",
              "penetration, mm a contact", "", "Bullet", "ours", "differ", "Bullet", "ours", "differ");
-  for (const std::string& scene : wishes.scenes) {
-    Simulation one(scene, wishes.bodies, bullets());
-    Simulation other(scene, wishes.bodies, ours(wishes));
+  for (const std::string& scene : benchmark.scenes) {
+    Simulation one(scene, benchmark.bodies, bullets());
+    Simulation other(scene, benchmark.bodies, ours(benchmark));
     Sums all[2];
-    for (std::size_t step = 0; step < wishes.steps; ++step) {
+    for (std::size_t step = 0; step < benchmark.steps; ++step) {
       for (const int which : {0, 1}) {
         Simulation& simulation = which == 0 ? one : other;
         simulation.step();
         const Sums now = simulation.sums();
-        all[which].energy += now.energy / double(wishes.steps) / 1000;
+        all[which].energy += now.energy / double(benchmark.steps) / 1000;
         all[which].penetration += now.penetration * 1000;
         all[which].contacts += now.contacts;
       }
@@ -231,32 +232,33 @@ int run(int count, char** arguments) {
       {"stage", stage}, {"rays", rays}, {"step", step}, {"manifolds", manifolds}, {"drift", drift}};
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
-  BulletBenchmarkOptions wishes;
-  for (const BulletScene& scene : bullet_scenes()) wishes.scenes.push_back(scene.name);
+  BulletBenchmarkOptions benchmark;
+  for (const BulletScene& scene : bullet_scenes()) benchmark.scenes.push_back(scene.name);
   std::vector<std::string> wanted;
 
   CLI::App program("Bullet over Broadside's broad phase and over its own.");
   program.add_option("parts", wanted, "stage, rays, step, manifolds, drift; all unless some are named")
       ->check(CLI::IsMember(names));
-  program.add_option("--scenes", wishes.scenes, "fall, sheet, statics")
+  program.add_option("--scenes", benchmark.scenes, "fall, sheet, statics")
       ->delimiter(',')
-      ->check(CLI::IsMember(wishes.scenes));
-  program.add_option("-n", wishes.bodies, "Bodies")->capture_default_str()->check(CLI::PositiveNumber);
-  program.add_option("--steps", wishes.steps, "Steps of a simulation")
+      ->check(CLI::IsMember(benchmark.scenes));
+  program.add_option("-n", benchmark.bodies, "Bodies")->capture_default_str()->check(CLI::PositiveNumber);
+  program.add_option("--steps", benchmark.steps, "Steps of a simulation")
       ->capture_default_str()
       ->check(CLI::Range(std::size_t{3}, std::size_t{1000000}));
-  program.add_option("--rounds", wishes.rounds, "Of each step of `stage`, the least time of so many counts")
+  program
+      .add_option("--rounds", benchmark.rounds, "Of each step of `stage`, the least time of so many counts")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  program.add_option("--algorithm", wishes.options.algorithm, "The world's")->capture_default_str();
-  program.add_option("--margin", wishes.options.margin, "By how much boxes are enlarged, in metres")
+  program.add_option("--algorithm", benchmark.options.algorithm, "The world's")->capture_default_str();
+  program.add_option("--margin", benchmark.options.margin, "By how much boxes are enlarged, in metres")
       ->capture_default_str();
   program.add_flag_callback(
-      "--exact", [&] { wishes.options = {.algorithm = wishes.options.algorithm}; },
+      "--exact", [&] { benchmark.options = {.algorithm = benchmark.options.algorithm}; },
       "Pairs of the boxes themselves instead of enlarged ones");
   CLI11_PARSE(program, count, arguments);
   for (const auto& [name, part] : parts) {
-    if (wanted.empty() || std::ranges::find(wanted, name) != wanted.end()) part(wishes);
+    if (wanted.empty() || std::ranges::find(wanted, name) != wanted.end()) part(benchmark);
   }
   return 0;
 }

@@ -22,7 +22,7 @@ struct ProxyMove {
 };
 
 /// Bullet's broad phase, which notes what it is told.
-class Recording final : public btDbvtBroadphase {
+class NotedCalls final : public btDbvtBroadphase {
  public:
   struct Created {
     ProxyMove call;
@@ -57,11 +57,11 @@ class Recording final : public btDbvtBroadphase {
 };
 
 /// A recording played to a broad phase.
-class Replay {
+class BulletReplay {
  public:
-  Replay(const Recording& recording, std::unique_ptr<btBroadphaseInterface> broadphase)
+  BulletReplay(const NotedCalls& recording, std::unique_ptr<btBroadphaseInterface> broadphase)
       : recording_(recording), broadphase_(std::move(broadphase)) {
-    for (const Recording::Created& made : recording.created)
+    for (const NotedCalls::Created& made : recording.created)
       proxies_.push_back(
           broadphase_->createProxy(made.call.min, made.call.max, 0, nullptr, made.group, made.mask, nullptr));
   }
@@ -69,7 +69,7 @@ class Replay {
   /// The microseconds that a step takes.
   double step(std::size_t number) {
     const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
-    const Stopwatch watch;
+    const ThreadStopwatch watch;
     for (std::size_t i = first; i < recording_.ends[number]; ++i) {
       const ProxyMove& call = recording_.calls[i];
       broadphase_->setAabb(proxies_[static_cast<std::size_t>(call.proxy)], call.min, call.max, nullptr);
@@ -96,7 +96,7 @@ class Replay {
   int pairs() const { return broadphase_->getOverlappingPairCache()->getNumOverlappingPairs(); }
 
  private:
-  const Recording& recording_;
+  const NotedCalls& recording_;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
   std::vector<btBroadphaseProxy*> proxies_;
 };

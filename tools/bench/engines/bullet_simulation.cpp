@@ -21,13 +21,13 @@ const std::vector<BulletScene>& bullet_scenes() {
 }
 
 void TimedWorld::updateAabbs() {
-  const Stopwatch watch;
+  const ThreadStopwatch watch;
   btDiscreteDynamicsWorld::updateAabbs();
   stage_us += watch.microseconds();
 }
 
 void TimedWorld::computeOverlappingPairs() {
-  const Stopwatch watch;
+  const ThreadStopwatch watch;
   btDiscreteDynamicsWorld::computeOverlappingPairs();
   stage_us += watch.microseconds();
 }

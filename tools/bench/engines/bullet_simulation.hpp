@@ -14,7 +14,7 @@ namespace broadside::bench {
 
 /// The processor time of this thread, which other programs on the machine disturb less than they do the time
 /// of day.
-class Stopwatch {
+class ThreadStopwatch {
  public:
   double microseconds() const { return now() - start_; }
 

@@ -15,21 +15,21 @@ namespace broadside::bench {
 namespace {
 
 template <int D>
-Outcome race_in(const MotionOptions& wishes, const std::string& algorithms, const std::string& scene,
-                std::size_t boxes, double moving, const Turns& turns) {
+RaceOutcome race_in(const MotionBenchmarkOptions& options, const std::string& algorithms,
+                    const std::string& scene, std::size_t boxes, double moving, const Turns& turns) {
   const lab::Catalogue catalogue;
-  return race<D>(catalogue.select(algorithms), motion_of<D>(scene, wishes.request(boxes, turns, moving)),
+  return race<D>(catalogue.select(algorithms), motion_of<D>(scene, options.request(boxes, turns, moving)),
                  turns);
 }
 
-Outcome race_in(int dimension, const MotionOptions& wishes, const std::string& algorithms, const std::string& scene,
-                std::size_t boxes, double moving, const Turns& turns) {
-  return dimension == 2 ? race_in<2>(wishes, algorithms, scene, boxes, moving, turns)
-                        : race_in<3>(wishes, algorithms, scene, boxes, moving, turns);
+RaceOutcome race_in(int dimension, const MotionBenchmarkOptions& options, const std::string& algorithms,
+                    const std::string& scene, std::size_t boxes, double moving, const Turns& turns) {
+  return dimension == 2 ? race_in<2>(options, algorithms, scene, boxes, moving, turns)
+                        : race_in<3>(options, algorithms, scene, boxes, moving, turns);
 }
 
-std::vector<std::string> scenes_of(const MotionOptions& wishes) {
-  return wishes.scenes.empty() ? std::vector<std::string>{"uniform"} : wishes.scenes;
+std::vector<std::string> scenes_of(const MotionBenchmarkOptions& options) {
+  return options.scenes.empty() ? std::vector<std::string>{"uniform"} : options.scenes;
 }
 
 std::string percent(double moving) { return fmt::format("{:.3g} %", moving * 100); }
@@ -42,20 +42,21 @@ std::vector<double> ten_fractions() {
 }
 
 /// The first runner's median over the least of the others'; 0 where there is none to compare with.
-double over_the_best(const Outcome& outcome) {
+double over_the_best(const RaceOutcome& outcome) {
   double best = INFINITY;
   for (std::size_t i = 1; i < outcome.runners.size(); ++i) {
     if (outcome.runners[i].ran()) best = std::min(best, lab::median(outcome.runners[i].frames_ms));
   }
-  const Runner& first = outcome.runners.front();
+  const RaceRunner& first = outcome.runners.front();
   return first.ran() && std::isfinite(best) ? lab::median(first.frames_ms) / best : 0;
 }
 
-void ways_in(int dimension, const std::string& scene, const MotionOptions& wishes, std::vector<double>& ratios) {
-  const std::string algorithms = wishes.algorithms_or("auto,auto:update=rebuild,auto:update=follow");
-  const std::size_t boxes = wishes.boxes_or(100'000);
-  const Turns turns = wishes.turns(20, 3);
-  const std::vector<double> fractions = wishes.moving.empty() ? ten_fractions() : wishes.moving;
+void ways_in(int dimension, const std::string& scene, const MotionBenchmarkOptions& options,
+             std::vector<double>& ratios) {
+  const std::string algorithms = options.algorithms_or("auto,auto:update=rebuild,auto:update=follow");
+  const std::size_t boxes = options.boxes_or(100'000);
+  const Turns turns = options.turns(20, 3);
+  const std::vector<double> fractions = options.moving.empty() ? ten_fractions() : options.moving;
   const lab::Catalogue catalogue;
   const std::vector<lab::Entry> entries = catalogue.select(algorithms);
   print_heading(scene, dimension, boxes, turns);
@@ -65,9 +66,9 @@ void ways_in(int dimension, const std::string& scene, const MotionOptions& wishe
   head.insert(head.end(), {"over the best", "the last frame"});
   columns.add(head);
   for (const double moving : fractions) {
-    const Outcome outcome = race_in(dimension, wishes, algorithms, scene, boxes, moving, turns);
+    const RaceOutcome outcome = race_in(dimension, options, algorithms, scene, boxes, moving, turns);
     std::vector<std::string> row = {percent(moving), lab::rounded(outcome.mean_movers())};
-    for (const Runner& runner : outcome.runners)
+    for (const RaceRunner& runner : outcome.runners)
       row.push_back(runner.ran() ? lab::rounded(lab::median(runner.frames_ms) * 1e3) : "-");
     const double ratio = over_the_best(outcome);
     if (ratio > 0) ratios.push_back(ratio);
@@ -80,19 +81,19 @@ void ways_in(int dimension, const std::string& scene, const MotionOptions& wishe
 
 }  // namespace
 
-void against_peers(const MotionOptions& wishes) {
+void against_peers(const MotionBenchmarkOptions& options) {
   const std::array<std::string, 2> peers = {"bullet_dbvt,box2d_tree,chipmunk_bb_tree",
                                             "bullet_dbvt,fcl_dynamic_aabb_tree"};
   const std::vector<double> fractions =
-      wishes.moving.empty() ? std::vector<double>{0.01, 0.1, 0.5, 1} : wishes.moving;
-  for (const int dimension : wishes.dimensions) {
-    for (const std::string& scene : scenes_of(wishes)) {
-      const Turns turns = wishes.turns(20, 3);
-      print_heading(scene, dimension, wishes.boxes_or(100'000), turns);
+      options.moving.empty() ? std::vector<double>{0.01, 0.1, 0.5, 1} : options.moving;
+  for (const int dimension : options.dimensions) {
+    for (const std::string& scene : scenes_of(options)) {
+      const Turns turns = options.turns(20, 3);
+      print_heading(scene, dimension, options.boxes_or(100'000), turns);
       for (const double moving : fractions) {
         const std::string& rivals = peers[static_cast<std::size_t>(dimension - 2)];
-        const Outcome outcome = race_in(dimension, wishes, wishes.algorithms_or("auto," + rivals), scene,
-                                        wishes.boxes_or(100'000), moving, turns);
+        const RaceOutcome outcome = race_in(dimension, options, options.algorithms_or("auto," + rivals),
+                                            scene, options.boxes_or(100'000), moving, turns);
         fmt::print("{} moving, {} events a frame\n", percent(moving),
                    lab::rounded(static_cast<double>(outcome.events) / static_cast<double>(turns.frames)));
         print_table(outcome);
@@ -102,23 +103,23 @@ void against_peers(const MotionOptions& wishes) {
   }
 }
 
-void against_ways(const MotionOptions& wishes) {
+void against_ways(const MotionBenchmarkOptions& options) {
   std::vector<double> ratios;
-  for (const int dimension : wishes.dimensions) {
-    for (const std::string& scene : scenes_of(wishes)) ways_in(dimension, scene, wishes, ratios);
+  for (const int dimension : options.dimensions) {
+    for (const std::string& scene : scenes_of(options)) ways_in(dimension, scene, options, ratios);
   }
   if (ratios.empty()) return;
   fmt::print("the first over the best of the others: geometric mean {:.3f}, worst {:.3f}\n\n",
              lab::geometric_mean(ratios), std::ranges::max(ratios));
 }
 
-void one_mover(const MotionOptions& wishes) {
-  for (const int dimension : wishes.dimensions) {
-    for (const std::string& scene : scenes_of(wishes)) {
-      const std::size_t boxes = wishes.boxes_or(1'000'000);
-      const Turns turns = wishes.turns(200, 3);
+void one_mover(const MotionBenchmarkOptions& options) {
+  for (const int dimension : options.dimensions) {
+    for (const std::string& scene : scenes_of(options)) {
+      const std::size_t boxes = options.boxes_or(1'000'000);
+      const Turns turns = options.turns(200, 3);
       print_heading("one mover, " + scene, dimension, boxes, turns);
-      print_table(race_in(dimension, wishes, wishes.algorithms_or("auto"), scene, boxes,
+      print_table(race_in(dimension, options, options.algorithms_or("auto"), scene, boxes,
                           1 / static_cast<double>(boxes), turns));
       fmt::print("\n");
     }

@@ -27,22 +27,26 @@ std::vector<Box<D>> boxes_of(const std::string& scene, std::size_t boxes, std::u
   return lab::make_history<D>(named.scene, named.spec, {.boxes = boxes, .seed = seed}).boxes;
 }
 
-std::string scene_of(const MotionOptions& wishes) { return wishes.scenes.empty() ? "uniform" : wishes.scenes[0]; }
+std::string scene_of(const MotionBenchmarkOptions& options) {
+  return options.scenes.empty() ? "uniform" : options.scenes[0];
+}
 
-double moving_of(const MotionOptions& wishes) { return wishes.moving.empty() ? 0.1 : wishes.moving[0]; }
+double moving_of(const MotionBenchmarkOptions& options) {
+  return options.moving.empty() ? 0.1 : options.moving[0];
+}
 
 template <int D>
-void spikes_in(const MotionOptions& wishes) {
-  const std::size_t boxes = wishes.boxes_or(100'000);
-  const Turns turns = wishes.turns(1'000, 5);
+void spikes_in(const MotionBenchmarkOptions& options) {
+  const std::size_t boxes = options.boxes_or(100'000);
+  const Turns turns = options.turns(1'000, 5);
   const lab::Catalogue catalogue;
-  const Outcome outcome =
-      race<D>(catalogue.select(wishes.algorithms_or("auto")),
-              motion_of<D>(scene_of(wishes), wishes.request(boxes, turns, moving_of(wishes))), turns);
-  print_heading(fmt::format("spikes, {}, {:.3g} % moving", scene_of(wishes), moving_of(wishes) * 100), D,
+  const RaceOutcome outcome =
+      race<D>(catalogue.select(options.algorithms_or("auto")),
+              motion_of<D>(scene_of(options), options.request(boxes, turns, moving_of(options))), turns);
+  print_heading(fmt::format("spikes, {}, {:.3g} % moving", scene_of(options), moving_of(options) * 100), D,
                 boxes, turns);
   print_table(outcome);
-  for (const Runner& runner : outcome.runners) {
+  for (const RaceRunner& runner : outcome.runners) {
     if (!runner.ran()) continue;
     const auto worst = std::ranges::max_element(runner.frames_ms);
     fmt::print("  {}: worst over median {:.2f}, frame {}\n", runner.algorithm,
@@ -54,19 +58,19 @@ void spikes_in(const MotionOptions& wishes) {
 constexpr std::size_t between_jumps = 9;
 
 template <int D>
-void jumps_in(const MotionOptions& wishes) {
-  const std::size_t boxes = wishes.boxes_or(100'000);
-  const Turns turns = wishes.turns(5 * (between_jumps + 1), 5);
+void jumps_in(const MotionBenchmarkOptions& options) {
+  const std::size_t boxes = options.boxes_or(100'000);
+  const Turns turns = options.turns(5 * (between_jumps + 1), 5);
   const lab::Catalogue catalogue;
   const std::string scene = fmt::format("jumps:every={}", between_jumps + 1);
-  const Outcome outcome =
-      race<D>(catalogue.select(wishes.algorithms_or("auto,auto:update=rebuild")),
-              motion_of<D>(scene, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames}), turns);
+  const RaceOutcome outcome =
+      race<D>(catalogue.select(options.algorithms_or("auto,auto:update=rebuild")),
+              motion_of<D>(scene, {.boxes = boxes, .seed = options.seed, .frames = turns.frames}), turns);
   print_heading(scene, D, boxes, turns);
   lab::AlignedColumns columns("<>>>>");
   columns.add({"algorithm", "jump us", "the frame after", "others", "first frame"});
   std::vector<std::pair<std::string, double>> jumps;
-  for (const Runner& runner : outcome.runners) {
+  for (const RaceRunner& runner : outcome.runners) {
     if (!runner.ran()) continue;
     std::array<std::vector<double>, 3> kinds;  // jumps, the frames after, others
     for (std::size_t i = 0; i < runner.frames_ms.size(); ++i) {
@@ -89,15 +93,15 @@ void jumps_in(const MotionOptions& wishes) {
 
 /// Boxes that move, first, and boxes that rest.
 template <int D>
-struct Population {
+struct MovingPopulation {
   std::vector<Box<D>> boxes;
   std::vector<Box<D>> movers;
 };
 
 /// `movers` boxes within the middle of a scene, where about `around` of its boxes are; and those alone.
 template <int D>
-std::array<Population<D>, 2> populations(const std::string& scene, std::size_t resting, std::size_t around,
-                                         std::size_t movers, std::uint64_t seed) {
+std::array<MovingPopulation<D>, 2> populations(const std::string& scene, std::size_t resting,
+                                               std::size_t around, std::size_t movers, std::uint64_t seed) {
   const std::vector<Box<D>> still = boxes_of<D>(scene, resting, seed);
   Box<D> bounds = still.front();
   for (const Box<D>& box : still) bounds = merged(bounds, box);
@@ -110,7 +114,7 @@ std::array<Population<D>, 2> populations(const std::string& scene, std::size_t r
     middle.min[axis] = static_cast<float>(centre - half);
     middle.max[axis] = static_cast<float>(centre + half);
   }
-  std::array<Population<D>, 2> made;
+  std::array<MovingPopulation<D>, 2> made;
   const auto inside = [&middle](const Box<D>& box) {
     for (int axis = 0; axis < D; ++axis) {
       if (box.min[axis] < middle.min[axis] || box.max[axis] > middle.max[axis]) return false;
@@ -121,7 +125,7 @@ std::array<Population<D>, 2> populations(const std::string& scene, std::size_t r
     if (made[0].movers.size() < movers && inside(box)) made[0].movers.push_back(box);
   }
   made[1].movers = made[0].movers;
-  for (Population<D>& world : made) world.boxes = world.movers;
+  for (MovingPopulation<D>& world : made) world.boxes = world.movers;
   for (const Box<D>& box : still) {
     made[0].boxes.push_back(box);
     if (overlap(box, middle)) made[1].boxes.push_back(box);
@@ -130,25 +134,25 @@ std::array<Population<D>, 2> populations(const std::string& scene, std::size_t r
 }
 
 template <int D>
-void rest_in(const MotionOptions& wishes) {
+void rest_in(const MotionBenchmarkOptions& options) {
   constexpr std::size_t around = 10'000;
   constexpr std::size_t movers = 2'000;
-  const std::size_t resting = wishes.boxes_or(1'000'000);
-  Turns turns = wishes.turns(50, 5);
-  const auto both = populations<D>(scene_of(wishes), resting, around, movers, wishes.seed);
+  const std::size_t resting = options.boxes_or(1'000'000);
+  Turns turns = options.turns(50, 5);
+  const auto both = populations<D>(scene_of(options), resting, around, movers, options.seed);
   const lab::Catalogue catalogue;
-  const std::vector<lab::Entry> entries = catalogue.select(wishes.algorithms_or("auto"));
-  print_heading(fmt::format("boxes that rest, {}, {} and {} movers", scene_of(wishes),
+  const std::vector<lab::Entry> entries = catalogue.select(options.algorithms_or("auto"));
+  print_heading(fmt::format("boxes that rest, {}, {} and {} movers", scene_of(options),
                             lab::grouped(both[1].boxes.size() - both[1].movers.size()),
                             lab::grouped(both[0].movers.size())),
                 D, resting, turns);
-  std::array<Outcome, 2> outcomes;
+  std::array<RaceOutcome, 2> outcomes;
   const std::size_t rounds = std::exchange(turns.rounds, 1);
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t world = 0; world < 2; ++world) {
       const StartMotion<D> start = [&]() -> Motion<D> {
         const auto moving = std::make_shared<lab::MovingBoxes<D>>(
-            both[world].movers, lab::SceneRequest{.seed = wishes.seed, .moving = 1, .drift = wishes.drift},
+            both[world].movers, lab::SceneRequest{.seed = options.seed, .moving = 1, .drift = options.drift},
             false);
         return {both[world].boxes, [moving, size = both[world].boxes.size()] {
                   lab::Step<D> step = moving->next();
@@ -177,19 +181,21 @@ void rest_in(const MotionOptions& wishes) {
 }
 
 template <int D>
-void recorded_in(const MotionOptions& wishes, const std::string& engine, const std::string& scenes_of_engine) {
-  const std::size_t boxes = wishes.boxes_or(5'000);
-  const Turns turns = wishes.turns(60, 5);
+void recorded_in(const MotionBenchmarkOptions& options, const std::string& engine,
+                 const std::string& scenes_of_engine) {
+  const std::size_t boxes = options.boxes_or(5'000);
+  const Turns turns = options.turns(60, 5);
   const lab::Catalogue catalogue;
   for (const lab::Scene& scene : lab::scenes()) {
-    const bool wanted = wishes.scenes.empty()
+    const bool wanted = options.scenes.empty()
                             ? scene.name.starts_with(scenes_of_engine) || scene.name == "pile"
-                            : std::ranges::find(wishes.scenes, scene.name) != wishes.scenes.end();
+                            : std::ranges::find(options.scenes, scene.name) != options.scenes.end();
     const bool moves = D == 2 ? bool(scene.history_2d) : bool(scene.history_3d);
     if (!moves || !wanted) continue;
     const StartMotion<D> motion =
-        motion_of<D>(scene.name, {.boxes = boxes, .seed = wishes.seed, .frames = turns.frames});
-    const Outcome outcome = race<D>(catalogue.select(wishes.algorithms_or("auto," + engine)), motion, turns);
+        motion_of<D>(scene.name, {.boxes = boxes, .seed = options.seed, .frames = turns.frames});
+    const RaceOutcome outcome =
+        race<D>(catalogue.select(options.algorithms_or("auto," + engine)), motion, turns);
     print_heading(fmt::format("{} ({}), {:.3g} % moving", scene.name, scene.source,
                               outcome.mean_movers() / static_cast<double>(boxes) * 100),
                   D, boxes, turns);
@@ -198,30 +204,30 @@ void recorded_in(const MotionOptions& wishes, const std::string& engine, const s
   }
 }
 
-bool wants(const MotionOptions& wishes, int dimension) {
-  return std::ranges::find(wishes.dimensions, dimension) != wishes.dimensions.end();
+bool wants(const MotionBenchmarkOptions& options, int dimension) {
+  return std::ranges::find(options.dimensions, dimension) != options.dimensions.end();
 }
 
 }  // namespace
 
-void spikes(const MotionOptions& wishes) {
-  if (wants(wishes, 2)) spikes_in<2>(wishes);
-  if (wants(wishes, 3)) spikes_in<3>(wishes);
+void spikes(const MotionBenchmarkOptions& options) {
+  if (wants(options, 2)) spikes_in<2>(options);
+  if (wants(options, 3)) spikes_in<3>(options);
 }
 
-void jumps(const MotionOptions& wishes) {
-  if (wants(wishes, 2)) jumps_in<2>(wishes);
-  if (wants(wishes, 3)) jumps_in<3>(wishes);
+void jumps(const MotionBenchmarkOptions& options) {
+  if (wants(options, 2)) jumps_in<2>(options);
+  if (wants(options, 3)) jumps_in<3>(options);
 }
 
-void rest(const MotionOptions& wishes) {
-  if (wants(wishes, 2)) rest_in<2>(wishes);
-  if (wants(wishes, 3)) rest_in<3>(wishes);
+void rest(const MotionBenchmarkOptions& options) {
+  if (wants(options, 2)) rest_in<2>(options);
+  if (wants(options, 3)) rest_in<3>(options);
 }
 
-void recorded(const MotionOptions& wishes) {
-  if (wants(wishes, 2)) recorded_in<2>(wishes, "box2d_tree", "box2d_");
-  if (wants(wishes, 3)) recorded_in<3>(wishes, "bullet_dbvt", "bullet_");
+void recorded(const MotionBenchmarkOptions& options) {
+  if (wants(options, 2)) recorded_in<2>(options, "box2d_tree", "box2d_");
+  if (wants(options, 3)) recorded_in<3>(options, "bullet_dbvt", "bullet_");
 }
 
 }  // namespace broadside::bench

@@ -18,7 +18,7 @@ namespace {
 struct MotionBenchmark {
   std::string name;
   std::string what;
-  void (*run)(const MotionOptions&);
+  void (*run)(const MotionBenchmarkOptions&);
 };
 
 const std::vector<MotionBenchmark>& parts() {
@@ -39,7 +39,7 @@ const std::vector<MotionBenchmark>& parts() {
 int run(int count, char** arguments) {
   CLI::App program("Prints a table for each claim about motion.");
   std::vector<std::string> wanted;
-  MotionOptions wishes;
+  MotionBenchmarkOptions options;
   std::string listing;
   std::vector<std::string> names;
   for (const MotionBenchmark& part : parts()) {
@@ -48,33 +48,33 @@ int run(int count, char** arguments) {
   }
   program.footer("Parts; all are run unless some are named:" + listing);
   program.add_option("parts", wanted, "Parts to run")->check(CLI::IsMember(names));
-  program.add_option("--algorithms", wishes.algorithms,
+  program.add_option("--algorithms", options.algorithms,
                      "Instead of a part's own; all others are compared with the first");
-  program.add_option("--scenes", wishes.scenes, "Scenes instead of uniform")->delimiter(',');
-  program.add_option("--traces", wishes.traces, "Files in motion, for the part worlds: instead of scenes")
+  program.add_option("--scenes", options.scenes, "Scenes instead of uniform")->delimiter(',');
+  program.add_option("--traces", options.traces, "Files in motion, for the part worlds: instead of scenes")
       ->delimiter(',')
       ->check(CLI::ExistingFile);
-  program.add_option("--dimension", wishes.dimensions, "2, 3 or 2,3")
+  program.add_option("--dimension", options.dimensions, "2, 3 or 2,3")
       ->delimiter(',')
       ->check(CLI::Range(2, 3));
-  program.add_option("-n", wishes.boxes, "Boxes, instead of a part's own number");
-  program.add_option("--moving", wishes.moving, "Fractions that move")->delimiter(',');
-  program.add_option("--drift", wishes.drift, "What a mover goes in a frame, in boxes")
+  program.add_option("-n", options.boxes, "Boxes, instead of a part's own number");
+  program.add_option("--moving", options.moving, "Fractions that move")->delimiter(',');
+  program.add_option("--drift", options.drift, "What a mover goes in a frame, in boxes")
       ->capture_default_str();
-  program.add_option("--frames", wishes.frames, "Frames after the first");
-  program.add_option("--rounds", wishes.rounds,
+  program.add_option("--frames", options.frames, "Frames after the first");
+  program.add_option("--rounds", options.rounds,
                      "How often the motion is followed anew; of each frame the least time counts");
-  program.add_option("--turn", wishes.in_a_row, "Frames in a row before it is the next one's turn")
+  program.add_option("--turn", options.in_a_row, "Frames in a row before it is the next one's turn")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  program.add_flag("--cold", wishes.is_cold,
+  program.add_flag("--cold", options.is_cold,
                    "Flush the caches before each frame, as the rest of an engine does");
-  program.add_option("--budget", wishes.budget_seconds, "Seconds for all frames of an algorithm")
+  program.add_option("--budget", options.budget_seconds, "Seconds for all frames of an algorithm")
       ->capture_default_str();
-  program.add_option("--seed", wishes.seed, "Of the boxes and their motion")->capture_default_str();
+  program.add_option("--seed", options.seed, "Of the boxes and their motion")->capture_default_str();
   CLI11_PARSE(program, count, arguments);
   for (const MotionBenchmark& part : parts()) {
-    if (wanted.empty() || std::ranges::find(wanted, part.name) != wanted.end()) part.run(wishes);
+    if (wanted.empty() || std::ranges::find(wanted, part.name) != wanted.end()) part.run(options);
   }
   return 0;
 }

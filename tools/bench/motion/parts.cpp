@@ -17,7 +17,7 @@
 
 namespace broadside::bench {
 
-Turns MotionOptions::turns(std::size_t standard_frames, std::size_t standard_rounds) const {
+Turns MotionBenchmarkOptions::turns(std::size_t standard_frames, std::size_t standard_rounds) const {
   return {.frames = frames > 0 ? frames : standard_frames,
           .rounds = rounds > 0 ? rounds : standard_rounds,
           .in_a_row = in_a_row,
@@ -63,14 +63,14 @@ double mean_of(const std::vector<double>& times) {
 
 }  // namespace
 
-void print_table(const Outcome& outcome) {
+void print_table(const RaceOutcome& outcome) {
   lab::AlignedColumns columns("<>>>>>>>><");
   columns.add(
       {"algorithm", "us a frame", "mean", "p99", "worst", "ns a mover", "ratio", "of means", "build us", ""});
   const double movers = std::max(outcome.mean_movers(), 1.0);
   double first = 0;
   double first_mean = 0;
-  for (const Runner& runner : outcome.runners) {
+  for (const RaceRunner& runner : outcome.runners) {
     if (!runner.ran()) {
       columns.add({runner.algorithm, "-", "-", "-", "-", "-", "-", "-", "-", runner.left_out});
       continue;

@@ -12,7 +12,7 @@
 namespace broadside::bench {
 
 /// What the command line asks for; 0, or a list that is empty, stands for a part's own standard.
-struct MotionOptions {
+struct MotionBenchmarkOptions {
   std::string algorithms{};  ///< as Catalogue::select reads it
   std::vector<std::string> scenes{};
   std::vector<std::string> traces{};  ///< files
@@ -43,35 +43,35 @@ template <int D>
 StartMotion<D> motion_of(const std::string& scene, const lab::SceneRequest& request);
 
 /// `auto` against the peers that follow motion, at 1, 10, 50 and 100 % moving.
-void against_peers(const MotionOptions& wishes);
+void against_peers(const MotionBenchmarkOptions& options);
 
 /// `auto` over the better of rebuilding and following, at ten fractions from 0.1 to 100 % moving.
-void against_ways(const MotionOptions& wishes);
+void against_ways(const MotionBenchmarkOptions& options);
 
 /// One mover among a million boxes.
-void one_mover(const MotionOptions& wishes);
+void one_mover(const MotionBenchmarkOptions& options);
 
 /// A thousand frames with a tenth moving: the worst over the median.
-void spikes(const MotionOptions& wishes);
+void spikes(const MotionBenchmarkOptions& options);
 
 /// The frame in which every box jumps, over what a rebuild takes for it.
-void jumps(const MotionOptions& wishes);
+void jumps(const MotionBenchmarkOptions& options);
 
 /// 2,000 movers among 1,000,000 boxes that rest, over the same movers among the 10,000 around them.
-void rest(const MotionOptions& wishes);
+void rest(const MotionBenchmarkOptions& options);
 
 /// Recorded scenes, and the pile at rest: `auto` against the broad phase of the engine that was recorded.
 /// Takes any scene that moves by itself.
-void recorded(const MotionOptions& wishes);
+void recorded(const MotionBenchmarkOptions& options);
 
 /// Worlds, with enlarged boxes and without, over their tracker alone and an engine's broad phase; in scenes,
 /// or in files.
-void worlds(const MotionOptions& wishes);
+void worlds(const MotionBenchmarkOptions& options);
 
 /// Prints what ran: the scene, its boxes, the machine.
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);
 
 /// Prints a line for each runner: times, a mover's share, and how many times the first one's.
-void print_table(const Outcome& outcome);
+void print_table(const RaceOutcome& outcome);
 
 }  // namespace broadside::bench

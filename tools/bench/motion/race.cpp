@@ -39,14 +39,14 @@ class TrackerFollower final : public MotionFollower<D> {
     tracker_.update({boxes_, changed_}, begun, ended);
   }
 
-  const lab::Events& events() override { return events_; }
+  const lab::FrameEvents& events() override { return events_; }
   std::string explanation() const override { return tracker_.explanation(); }
 
  private:
   Tracker<D> tracker_;
   std::vector<Box<D>> boxes_;  // its own, as an engine's are
   std::vector<BoxId> changed_;
-  lab::Events events_;
+  lab::FrameEvents events_;
 };
 
 /// A step from nothing to these boxes.
@@ -66,7 +66,7 @@ struct Told {
 template <int D>
 struct Racer {
   Competitor<D> competitor;
-  Runner* runner;
+  RaceRunner* runner;
   std::unique_ptr<MotionFollower<D>> follower{};  // of this round
   double spent_ms = 0;
   bool done = false;
@@ -81,7 +81,7 @@ class Race {
       participants_.push_back({std::move(competitors[i]), &outcome_.runners[i]});
   }
 
-  Outcome run(const StartMotion<D>& start) {
+  RaceOutcome run(const StartMotion<D>& start) {
     for (std::size_t round = 0; round < turns_.rounds; ++round) {
       Motion<D> motion = start();
       if (round == 0) let_in(motion.boxes);
@@ -176,7 +176,7 @@ class Race {
   }
 
   void check(const Racer<D>& participant, std::size_t frame, std::size_t round) {
-    const lab::Events& events = participant.follower->events();
+    const lab::FrameEvents& events = participant.follower->events();
     lab::EventHasher hasher;
     hasher.add(events);
     std::vector<Told>& told = told_[participant.competitor.definition];
@@ -194,7 +194,7 @@ class Race {
   }
 
   const Turns& turns_;
-  Outcome outcome_;
+  RaceOutcome outcome_;
   std::vector<Racer<D>> participants_;
   std::vector<char> flushed_{};
   std::map<std::string, std::vector<Told>> told_;  // by definition, and frame, the first one too
@@ -202,7 +202,7 @@ class Race {
 
 }  // namespace
 
-double Outcome::mean_movers() const {
+double RaceOutcome::mean_movers() const {
   if (movers.empty()) return 0;
   return static_cast<double>(std::accumulate(movers.begin(), movers.end(), std::size_t{0})) /
          static_cast<double>(movers.size());
@@ -219,23 +219,23 @@ std::vector<Competitor<D>> trackers(std::span<const lab::Entry> entries) {
 }
 
 template <int D>
-Outcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns) {
+RaceOutcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns) {
   return Race<D>(std::move(competitors), turns).run(start);
 }
 
 template <int D>
-Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns) {
+RaceOutcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns) {
   return race<D>(trackers<D>(entries), start, turns);
 }
 
-void merge(Outcome& outcome, Outcome round) {
+void merge(RaceOutcome& outcome, RaceOutcome round) {
   if (outcome.runners.empty()) {
     outcome = std::move(round);
     return;
   }
   for (std::size_t i = 0; i < outcome.runners.size(); ++i) {
-    Runner& runner = outcome.runners[i];
-    const Runner& again = round.runners[i];
+    RaceRunner& runner = outcome.runners[i];
+    const RaceRunner& again = round.runners[i];
     runner.build_ms = std::min(runner.build_ms, again.build_ms);
     for (std::size_t frame = 0; frame < std::min(runner.frames_ms.size(), again.frames_ms.size()); ++frame)
       runner.frames_ms[frame] = std::min(runner.frames_ms[frame], again.frames_ms[frame]);
@@ -244,9 +244,9 @@ void merge(Outcome& outcome, Outcome round) {
 
 template std::vector<Competitor<2>> trackers(std::span<const lab::Entry>);
 template std::vector<Competitor<3>> trackers(std::span<const lab::Entry>);
-template Outcome race(std::vector<Competitor<2>>, const StartMotion<2>&, const Turns&);
-template Outcome race(std::vector<Competitor<3>>, const StartMotion<3>&, const Turns&);
-template Outcome race(std::span<const lab::Entry>, const StartMotion<2>&, const Turns&);
-template Outcome race(std::span<const lab::Entry>, const StartMotion<3>&, const Turns&);
+template RaceOutcome race(std::vector<Competitor<2>>, const StartMotion<2>&, const Turns&);
+template RaceOutcome race(std::vector<Competitor<3>>, const StartMotion<3>&, const Turns&);
+template RaceOutcome race(std::span<const lab::Entry>, const StartMotion<2>&, const Turns&);
+template RaceOutcome race(std::span<const lab::Entry>, const StartMotion<3>&, const Turns&);
 
 }  // namespace broadside::bench

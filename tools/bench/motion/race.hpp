@@ -36,7 +36,7 @@ struct Turns {
 };
 
 /// A tracker in a race.
-struct Runner {
+struct RaceRunner {
   std::string algorithm;            ///< its spec
   std::string left_out{};           ///< why it was not let in; empty if it was
   double build_ms = 0;              ///< the first frame, in which everything is new
@@ -47,8 +47,8 @@ struct Runner {
 };
 
 /// What a race came to.
-struct Outcome {
-  std::vector<Runner> runners;        ///< in the order of the entries
+struct RaceOutcome {
+  std::vector<RaceRunner> runners;    ///< in the order of the entries
   std::vector<std::size_t> movers{};  ///< boxes that changed in each frame
   std::uint64_t events = 0;           ///< begun and ended in all frames but the first
 
@@ -68,7 +68,7 @@ class MotionFollower {
   virtual void update() = 0;
 
   /// The events of the last update, by the places of the motion. Not timed.
-  virtual const lab::Events& events() = 0;
+  virtual const lab::FrameEvents& events() = 0;
 
   /// Throws std::runtime_error if something is wrong that the events of others cannot tell. Not timed.
   virtual void verify() {}
@@ -95,13 +95,13 @@ std::vector<Competitor<D>> trackers(std::span<const lab::Entry> entries);
 /// Lets the competitors follow the motion. Between two frames nothing of theirs is timed: what is timed is an
 /// update() with its events. Throws std::runtime_error if two disagree on the events of a frame.
 template <int D>
-Outcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns);
+RaceOutcome race(std::vector<Competitor<D>> competitors, const StartMotion<D>& start, const Turns& turns);
 
 /// The same with trackers.
 template <int D>
-Outcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns);
+RaceOutcome race(std::span<const lab::Entry> entries, const StartMotion<D>& start, const Turns& turns);
 
 /// Adds a round of the same motion to what others came to: of each frame the least time remains.
-void merge(Outcome& outcome, Outcome round);
+void merge(RaceOutcome& outcome, RaceOutcome round);
 
 }  // namespace broadside::bench

@@ -63,7 +63,7 @@ class WorldFollower final : public MotionFollower<D> {
     told_ = world_.update();
   }
 
-  const lab::Events& events() override {
+  const lab::FrameEvents& events() override {
     for (std::size_t i = 0; i < added_.size(); ++i) {
       handles_[added_[i]] = new_handles_[i];
       place_of_.resize(std::max(place_of_.size(), std::size_t{new_handles_[i].slot} + 1));
@@ -134,17 +134,17 @@ class WorldFollower final : public MotionFollower<D> {
   std::vector<Handle> moved_;
   std::vector<Box<D>> moved_boxes_;
   Events told_;
-  lab::Events events_;
+  lab::FrameEvents events_;
   std::size_t told_pairs_ = 0;  // in the rounds that were verified
   std::size_t exact_pairs_ = 0;
 };
 
 template <int D>
-void race_worlds(const MotionOptions& wishes, const std::string& name, std::size_t boxes,
+void race_worlds(const MotionBenchmarkOptions& benchmark, const std::string& name, std::size_t boxes,
                  const StartMotion<D>& motion, const Turns& turns) {
   const lab::Catalogue catalogue;
   const std::string peer = D == 2 ? "box2d_tree" : "bullet_dbvt";
-  const std::vector<lab::Entry> entries = catalogue.select(wishes.algorithms_or("auto," + peer));
+  const std::vector<lab::Entry> entries = catalogue.select(benchmark.algorithms_or("auto," + peer));
   std::vector<Competitor<D>> competitors = trackers<D>(entries);
   const std::string spec = entries.front().spec.text();
   const auto add = [&](const std::string& its_name, const std::string& definition, WorldOptions options) {
@@ -159,53 +159,55 @@ void race_worlds(const MotionOptions& wishes, const std::string& name, std::size
   add("World, margin", "boxes", options);
   options.events = WorldEvents::enlarged;
   add("World, enlarged", "enlarged", options);
-  const Outcome outcome = race<D>(std::move(competitors), motion, turns);
+  const RaceOutcome outcome = race<D>(std::move(competitors), motion, turns);
   print_heading(fmt::format("worlds, {}, {:.4g} movers", name, outcome.mean_movers()), D, boxes, turns);
   print_table(outcome);
   fmt::print("\n");
 }
 
-void race_trace(const MotionOptions& wishes, const std::string& path) {
+void race_trace(const MotionBenchmarkOptions& benchmark, const std::string& path) {
   const lab::FileContent content = lab::read_file(path);
   const auto race = [&]<int D>(const std::optional<History<D>>& read) {
     if (!read) return false;
     const auto history = std::make_shared<const History<D>>(*read);
     if (history->steps.empty()) throw std::runtime_error(path + " has one frame; expected boxes in motion");
-    Turns turns = wishes.turns(history->steps.size(), 5);
+    Turns turns = benchmark.turns(history->steps.size(), 5);
     turns.frames = std::min(turns.frames, history->steps.size());
     const StartMotion<D> start = [history]() -> Motion<D> {
       return {history->boxes,
               [history, frame = std::size_t{0}]() mutable { return history->steps.at(frame++); }};
     };
-    race_worlds<D>(wishes, path, places_of(*history), start, turns);
+    race_worlds<D>(benchmark, path, places_of(*history), start, turns);
     return true;
   };
   if (!race(content.in_2d)) race(content.in_3d);
 }
 
 template <int D>
-void race_scenes(const MotionOptions& wishes) {
-  const std::size_t boxes = wishes.boxes_or(20'000);
-  const Turns turns = wishes.turns(20, 5);
-  const std::vector<double> fractions = wishes.moving.empty() ? std::vector{0.01, 0.1, 1.0} : wishes.moving;
+void race_scenes(const MotionBenchmarkOptions& benchmark) {
+  const std::size_t boxes = benchmark.boxes_or(20'000);
+  const Turns turns = benchmark.turns(20, 5);
+  const std::vector<double> fractions =
+      benchmark.moving.empty() ? std::vector{0.01, 0.1, 1.0} : benchmark.moving;
   for (const std::string& scene :
-       wishes.scenes.empty() ? std::vector<std::string>{"uniform"} : wishes.scenes) {
+       benchmark.scenes.empty() ? std::vector<std::string>{"uniform"} : benchmark.scenes) {
     for (const double moving : fractions) {
-      race_worlds<D>(wishes, scene, boxes, motion_of<D>(scene, wishes.request(boxes, turns, moving)), turns);
+      race_worlds<D>(benchmark, scene, boxes, motion_of<D>(scene, benchmark.request(boxes, turns, moving)),
+                     turns);
     }
   }
 }
 
 }  // namespace
 
-void worlds(const MotionOptions& wishes) {
-  for (const std::string& path : wishes.traces) race_trace(wishes, path);
-  if (!wishes.traces.empty()) return;
-  for (const int dimension : wishes.dimensions) {
+void worlds(const MotionBenchmarkOptions& benchmark) {
+  for (const std::string& path : benchmark.traces) race_trace(benchmark, path);
+  if (!benchmark.traces.empty()) return;
+  for (const int dimension : benchmark.dimensions) {
     if (dimension == 2)
-      race_scenes<2>(wishes);
+      race_scenes<2>(benchmark);
     else
-      race_scenes<3>(wishes);
+      race_scenes<3>(benchmark);
   }
 }
 

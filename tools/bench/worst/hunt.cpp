@@ -27,7 +27,8 @@ bool is_above(const Finding& finding, const InputResult& result, const Bounds& b
   if (!is_auto(finding.algorithm)) return finding.over_uniform > bounds.over_uniform;
   const bool searches = result.input.call != lab::HardCall::track;
   return finding.over_uniform > bounds.auto_over_uniform || finding.over_best > bounds.auto_over_best ||
-         finding.run.end == MeasuredRun::End::too_slow || finding.run.end == MeasuredRun::End::out_of_memory ||
+         finding.run.end == MeasuredRun::End::too_slow ||
+         finding.run.end == MeasuredRun::End::out_of_memory ||
          (searches && finding.run.peak_bytes > bounds.auto_bytes_per_box);
 }
 
@@ -119,7 +120,8 @@ InputResult Hunter::judged(const lab::HardInput& input, const Runs& runs, const 
       }
     } else if (runs[i].end == MeasuredRun::End::too_slow && !(hunt_.judges_auto && i > 0)) {
       // At least so long: of the calls that were made one has not ended.
-      const double calls = input.call == lab::HardCall::track ? static_cast<double>(hunt_.effort.frames + 1) : 1;
+      const double calls =
+          input.call == lab::HardCall::track ? static_cast<double>(hunt_.effort.frames + 1) : 1;
       finding.over_uniform = hunt_.limit_seconds * 1e3 / static_cast<double>(hunt_.effort.rounds + 1) /
                              calls / uniform[i].milliseconds;
     }

@@ -16,7 +16,7 @@ namespace broadside::bench {
 struct Bounds {
   double auto_over_uniform = 12;
   double auto_over_best = 4;
-  double over_uniform = 100;      ///< of every other algorithm
+  double over_uniform = 100;        ///< of every other algorithm
   double auto_bytes_per_box = 200;  ///< of a search
 };
 
@@ -24,7 +24,7 @@ struct Bounds {
 struct Hunt {
   std::vector<lab::Entry> algorithms;
   std::vector<lab::Entry> references{};  ///< asked in turn where only one algorithm finished
-  Effort effort{};
+  HuntEffort effort{};
   double limit_seconds = 10;      ///< for a run
   double reference_seconds = 30;  ///< for that of a reference
   bool judges_auto = false;       ///< others are run only as long as they may be the best

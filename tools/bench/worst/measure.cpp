@@ -123,7 +123,7 @@ double peak(const lab::AllocationMeter& meter) {
 template <int D, typename Real>
 class Measured {
  public:
-  Measured(const lab::HardInput& input, const Effort& effort)
+  Measured(const lab::HardInput& input, const HuntEffort& effort)
       : effort_(effort),
         is_tracked_(input.call == lab::HardCall::track),
         left_count_(lab::left_count(input, effort.boxes)),
@@ -212,7 +212,7 @@ class Measured {
     return run;
   }
 
-  Effort effort_;
+  HuntEffort effort_;
   bool is_tracked_;
   std::size_t left_count_;
   lab::History<D, Real> history_;
@@ -220,7 +220,7 @@ class Measured {
 };
 
 template <int D, typename Real>
-RunAlgorithm prepare_in(const lab::HardInput& input, const Effort& effort) {
+RunAlgorithm prepare_in(const lab::HardInput& input, const HuntEffort& effort) {
   const auto measured = std::make_shared<const Measured<D, Real>>(input, effort);
   return [measured, max_bytes = effort.max_bytes](const lab::Entry& entry, double seconds) {
     return in_child(seconds, max_bytes, [&] { return measured->run(entry); });
@@ -229,7 +229,7 @@ RunAlgorithm prepare_in(const lab::HardInput& input, const Effort& effort) {
 
 }  // namespace
 
-RunAlgorithm prepare(const lab::HardInput& input, const Effort& effort) {
+RunAlgorithm prepare(const lab::HardInput& input, const HuntEffort& effort) {
   if (input.in_double)
     return input.dimension == 2 ? prepare_in<2, double>(input, effort) : prepare_in<3, double>(input, effort);
   return input.dimension == 2 ? prepare_in<2, float>(input, effort) : prepare_in<3, float>(input, effort);

@@ -26,17 +26,17 @@ struct MeasuredRun {
   std::uint64_t events = 0;       ///< of a tracker: begun and ended in all frames after the first
   std::uint64_t hash = 0;         ///< of both
   double peak_bytes = 0;          ///< taken beyond input and output
-  FaultText fault{};                  ///< what it threw where it failed; ends with 0
+  FaultText fault{};              ///< what it threw where it failed; ends with 0
 
   bool finished() const { return end == End::finished; }
 };
 
 /// How an input is measured.
-struct Effort {
+struct HuntEffort {
   std::size_t boxes = 100'000;
   std::size_t rounds = 2;  ///< timed calls; the first, counted call is not among them
   std::size_t frames = 9;  ///< of a tracker, after its first
-  double max_pairs = 10;  ///< a box, and events a mover and frame: an input with more is left out
+  double max_pairs = 10;   ///< a box, and events a mover and frame: an input with more is left out
   std::uint64_t max_bytes = std::uint64_t{6} << 30;
 };
 
@@ -46,6 +46,6 @@ using RunAlgorithm = std::function<MeasuredRun(const lab::Entry& entry, double s
 /// Makes the boxes of `input` and returns what runs algorithms on them. A run makes one call in which tests,
 /// memory and pairs are counted, then `rounds` that are timed and whose pairs must be the same. A tracker
 /// takes the whole motion once for each.
-RunAlgorithm prepare(const lab::HardInput& input, const Effort& effort);
+RunAlgorithm prepare(const lab::HardInput& input, const HuntEffort& effort);
 
 }  // namespace broadside::bench

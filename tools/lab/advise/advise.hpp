@@ -43,8 +43,8 @@ struct Advice {
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
   std::size_t frames = 0;       ///< ... this many after it
   std::optional<double> floor_ms{};
-  std::vector<Ranked> ranking{};   ///< finalists first; of them and of the others the fastest first,
-                                   ///< those without a time last
+  std::vector<Ranked> ranking{};            ///< finalists first; of them and of the others the fastest first,
+                                            ///< those without a time last
   std::optional<AlgorithmChoice> choice{};  ///< its indices are into the ranking
 
   std::string spec{};     ///< what is advised

@@ -19,10 +19,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const MotionSignals& motion) {
-  return {{"frames", motion.frames},        {"min_moving", motion.min_moving},
-          {"moving", motion.moving},        {"max_moving", motion.max_moving},
-          {"drift", or_null(motion.drift)}, {"jumps", motion.jumps},
-          {"added_per_frame", motion.added},  {"removed_per_frame", motion.removed}};
+  return {{"frames", motion.frames},         {"min_moving", motion.min_moving},    {"moving", motion.moving},
+          {"max_moving", motion.max_moving}, {"drift", or_null(motion.drift)},     {"jumps", motion.jumps},
+          {"added_per_frame", motion.added}, {"removed_per_frame", motion.removed}};
 }
 
 Json json_of(const Signals& signals) {

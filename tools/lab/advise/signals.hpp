@@ -23,9 +23,9 @@ inline constexpr double sides_of_a_jump = 8;
 /// its place or size differs.
 struct MotionSignals {
   std::size_t frames = 0;         ///< after the first
-  double min_moving = 0;        ///< the fraction of the boxes that move, in the calmest frame,
+  double min_moving = 0;          ///< the fraction of the boxes that move, in the calmest frame,
   double moving = 0;              ///< in the mean of all frames
-  double max_moving = 0;         ///< and in the busiest one
+  double max_moving = 0;          ///< and in the busiest one
   std::optional<double> drift{};  ///< how far a mover's centre goes in a frame, in units of its longest side:
                                   ///< the median of all moves; empty where no box with a size moves
   double jumps = 0;               ///< the fraction of these moves that are jumps

@@ -10,11 +10,11 @@ namespace broadside::lab::readers {
 namespace {
 
 /// Names of axes; of two that begin alike, the longer first.
-struct Axis {
+struct AxisNames {
   std::string_view text;
   int axis;
 };
-constexpr auto axis_names = std::to_array<Axis>({
+constexpr auto axis_names = std::to_array<AxisNames>({
     {"x", 0},
     {"y", 1},
     {"z", 2},
@@ -123,7 +123,7 @@ std::optional<Meaning> meaning_of_plain(std::string_view text) {
     if (text == whole.text) return whole.meaning;
   }
   for (const Word& word : words) {
-    for (const Axis& axis : axis_names) {
+    for (const AxisNames& axis : axis_names) {
       if (text.size() != axis.text.size() + word.text.size()) continue;
       const bool is_before = text.starts_with(axis.text) && text.ends_with(word.text);
       const bool is_behind = text.starts_with(word.text) && text.ends_with(axis.text);

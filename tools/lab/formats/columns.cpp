@@ -91,7 +91,8 @@ std::optional<BoundsColumns> choose(const Found& found, int radius, bool are_cho
   }
   if (are_chosen && of(found, Role::position) != none && of(found, Role::size) != none)
     return BoundsColumns{BoundsForm::min_size, of(found, Role::position), of(found, Role::size)};
-  if (is_interval(found)) return BoundsColumns{BoundsForm::min_max, of(found, Role::begin), of(found, Role::end)};
+  if (is_interval(found))
+    return BoundsColumns{BoundsForm::min_max, of(found, Role::begin), of(found, Role::end)};
   for (const Role role : {Role::centre, Role::position, Role::geographic}) {
     if (radius != none && of(found, role) != none && of(found, Role::size) == none)
       return BoundsColumns{BoundsForm::centre_radius, of(found, role), radius};

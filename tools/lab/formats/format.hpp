@@ -51,7 +51,7 @@ struct Format {
   std::string name;
   std::string summary;                  ///< one line
   std::vector<std::string> extensions;  ///< with their dots, in lower case; the first is the usual one
-  std::vector<ElementKind> parts{};            ///< what the boxes can be, the standard first; empty: boxes
+  std::vector<ElementKind> parts{};     ///< what the boxes can be, the standard first; empty: boxes
   bool has_columns = false;             ///< whether ReadOptions::columns applies
   bool has_arrays = false;              ///< whether ReadOptions::array applies
   bool can_skip = false;                ///< whether ReadOptions::say_invalid applies

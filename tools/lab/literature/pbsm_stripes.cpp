@@ -102,7 +102,7 @@ class PbsmStripes final : public Searcher<D> {
   }
 
   /// The references of a set, stripe by stripe, in the order of their minima on the sweep axis.
-  struct Partition {
+  struct Stripes {
     std::vector<StripeEntry<D>> references;
     std::vector<std::size_t> ends;
 
@@ -112,7 +112,7 @@ class PbsmStripes final : public Searcher<D> {
     }
   };
 
-  void partition(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end, Partition& partition) {
+  void partition(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end, Stripes& partition) {
     std::vector<std::size_t>& next = partition.ends;  // first where a stripe's next reference goes
     next.assign(stripes_.cells + 1, 0);
     const auto entries = sorter_.entries(end - begin);
@@ -128,11 +128,11 @@ class PbsmStripes final : public Searcher<D> {
     for (const auto& entry : sorter_.sort()) {
       const Box<D>& box = boxes[entry.place];
       StripeEntry<D> reference{.begin = box.min[sweep_axis_],
-                             .end = box.max[sweep_axis_],
-                             .low = {},
-                             .high = {},
-                             .id = entry.place,
-                             .begins_before = false};
+                               .end = box.max[sweep_axis_],
+                               .low = {},
+                               .high = {},
+                               .id = entry.place,
+                               .begins_before = false};
       for (int i = 0; i < D - 1; ++i) {
         const int axis = (sweep_axis_ + 1 + i) % D;
         reference.low[i] = box.min[axis];
@@ -194,8 +194,8 @@ class PbsmStripes final : public Searcher<D> {
   int partition_axis_ = 1;
   CutAxis stripes_;
   RadixSort<std::uint32_t> sorter_;
-  Partition left_;  // all boxes, where there is one set
-  Partition right_;
+  Stripes left_;  // all boxes, where there is one set
+  Stripes right_;
 };
 
 }  // namespace

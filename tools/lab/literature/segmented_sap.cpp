@@ -36,7 +36,8 @@ class SegmentedSap final : public Searcher<D> {
     file(input.boxes, regions);
     Checkpoint checkpoint(input.workers.checkpoint);
     for (std::size_t region = 0; region + 1 < begins_.size(); ++region)
-      sweep(std::span<const RegionEntry>(members_).subspan(begins_[region], begins_[region + 1] - begins_[region]),
+      sweep(std::span<const RegionEntry>(members_).subspan(begins_[region],
+                                                           begins_[region + 1] - begins_[region]),
             input.left_count, checkpoint, pairs);
     return std::nullopt;
   }
@@ -88,8 +89,8 @@ class SegmentedSap final : public Searcher<D> {
 
   double boxes_per_region_;
   RadixSort<std::uint32_t> sorter_;
-  std::vector<RegionEntry> members_;      // of all regions
-  std::vector<std::size_t> begins_;  // of each region's members
+  std::vector<RegionEntry> members_;  // of all regions
+  std::vector<std::size_t> begins_;   // of each region's members
 };
 
 template <int D>

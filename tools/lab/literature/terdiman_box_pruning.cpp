@@ -37,7 +37,7 @@ constexpr std::size_t crossing = bucket_count<D> - 1;
 
 /// The boxes of one set, dealt into buckets, each sorted along the sweep axis.
 template <int D>
-class Buckets {
+class SweptBuckets {
  public:
   void fill(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end, int sweep_axis) {
     const auto middles = middles_of(boxes.subspan(begin, end - begin), sweep_axis);
@@ -142,9 +142,9 @@ class TerdimanBoxPruning final : public Searcher<D> {
     return centres.widest_axis();
   }
 
-  int axis_;         // the sweep axis; -1: that on which centres vary most
-  Buckets<D> left_;  // all boxes, where there is one set
-  Buckets<D> right_;
+  int axis_;              // the sweep axis; -1: that on which centres vary most
+  SweptBuckets<D> left_;  // all boxes, where there is one set
+  SweptBuckets<D> right_;
 };
 
 }  // namespace

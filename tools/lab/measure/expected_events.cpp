@@ -108,7 +108,7 @@ ExpectedEvents expected_events(const Reference& reference, const History<D, Real
   return expected;
 }
 
-void EventHasher::add(const Events& events) noexcept {
+void EventHasher::add(const FrameEvents& events) noexcept {
   // One step of a polynomial a list: the place in the history counts, the order in the list does not.
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
   hash_ = (hash_ + hash_of(events.begun)) * odd + 1;
@@ -116,8 +116,8 @@ void EventHasher::add(const Events& events) noexcept {
 }
 
 template <int D, typename Real>
-std::string difference(const Events& found, const Events& expected, std::string_view name, std::size_t frame,
-                       BoxSpan<D, Real> boxes) {
+std::string difference(const FrameEvents& found, const FrameEvents& expected, std::string_view name,
+                       std::size_t frame, BoxSpan<D, Real> boxes) {
   if (found == expected) return {};
   const bool begun_differs = found.begun != expected.begun;
   const std::vector<Pair>& list = begun_differs ? found.begun : found.ended;
@@ -140,13 +140,13 @@ template ExpectedEvents expected_events(const Reference&, const History<2, doubl
                                         const std::function<void()>&);
 template ExpectedEvents expected_events(const Reference&, const History<3, double>&,
                                         const std::function<void()>&);
-template std::string difference<2, float>(const Events&, const Events&, std::string_view, std::size_t,
-                                          BoxSpan<2, float>);
-template std::string difference<3, float>(const Events&, const Events&, std::string_view, std::size_t,
-                                          BoxSpan<3, float>);
-template std::string difference<2, double>(const Events&, const Events&, std::string_view, std::size_t,
-                                           BoxSpan<2, double>);
-template std::string difference<3, double>(const Events&, const Events&, std::string_view, std::size_t,
-                                           BoxSpan<3, double>);
+template std::string difference<2, float>(const FrameEvents&, const FrameEvents&, std::string_view,
+                                          std::size_t, BoxSpan<2, float>);
+template std::string difference<3, float>(const FrameEvents&, const FrameEvents&, std::string_view,
+                                          std::size_t, BoxSpan<3, float>);
+template std::string difference<2, double>(const FrameEvents&, const FrameEvents&, std::string_view,
+                                           std::size_t, BoxSpan<2, double>);
+template std::string difference<3, double>(const FrameEvents&, const FrameEvents&, std::string_view,
+                                           std::size_t, BoxSpan<3, double>);
 
 }  // namespace broadside::lab

@@ -13,17 +13,17 @@
 namespace broadside::lab {
 
 /// Pairs begun and ended in one frame, each sorted.
-struct Events {
+struct FrameEvents {
   std::vector<Pair> begun;
   std::vector<Pair> ended;
 
-  friend bool operator==(const Events&, const Events&) = default;
+  friend bool operator==(const FrameEvents&, const FrameEvents&) = default;
 };
 
 /// The expected events of a history.
 struct ExpectedEvents {
-  std::vector<Events> frames;  ///< the first frame's, then one for each step
-  std::string fault;           ///< what is wrong with the reference itself; empty if nothing is
+  std::vector<FrameEvents> frames;  ///< the first frame's, then one for each step
+  std::string fault;                ///< what is wrong with the reference itself; empty if nothing is
 };
 
 /// How many tests of two boxes the definition's events of a history take: in each frame the changed boxes
@@ -41,7 +41,7 @@ ExpectedEvents expected_events(const Reference& reference, const History<D, Real
 /// frame, and for a pair that ends instead of beginning.
 class EventHasher {
  public:
-  void add(const Events& events) noexcept;
+  void add(const FrameEvents& events) noexcept;
   std::uint64_t hash() const noexcept { return hash_; }
 
  private:
@@ -51,7 +51,7 @@ class EventHasher {
 /// What differs first, with `name`, the frame and the boxes in its text; empty if the events are equal and
 /// sorted.
 template <int D, typename Real = float>
-std::string difference(const Events& found, const Events& expected, std::string_view name, std::size_t frame,
-                       BoxSpan<D, Real> boxes);
+std::string difference(const FrameEvents& found, const FrameEvents& expected, std::string_view name,
+                       std::size_t frame, BoxSpan<D, Real> boxes);
 
 }  // namespace broadside::lab

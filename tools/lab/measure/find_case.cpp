@@ -179,7 +179,7 @@ class FindCase {
     if (round > 0) return true;
     for (FindParticipant<D, Real>& participant : participants_) {
       participant.max_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
-                                            benchmark_.effort.slow_seconds);
+                                           benchmark_.effort.slow_seconds);
     }
     return true;
   }

@@ -96,9 +96,9 @@ struct Measurement {
   std::string reason;                  ///< why there is no time: what diverged first, or why it was skipped
   std::optional<double> estimated_ms;  ///< where it was skipped for its budget: a call or a frame
 
-  std::vector<double> samples_ms;    ///< each a whole call, from boxes to pairs, or a frame
-  std::size_t samples_per_round = 1;   ///< the frames of a history; round r of all is on the same boxes
-  std::optional<double> build_ms{};  ///< in motion: the first frame, in which all is new; the median
+  std::vector<double> samples_ms;     ///< each a whole call, from boxes to pairs, or a frame
+  std::size_t samples_per_round = 1;  ///< the frames of a history; round r of all is on the same boxes
+  std::optional<double> build_ms{};   ///< in motion: the first frame, in which all is new; the median
   std::optional<std::uint64_t> pairs;
   std::optional<std::uint64_t> pair_hash;
   std::optional<Statistics> statistics;
@@ -127,8 +127,8 @@ struct Effort {
   double budget_seconds = 0.25;       ///< for one search; a slower algorithm is skipped
   double history_seconds = 1;         ///< for a whole history, from its first frame to its last; likewise
   double share_seconds = 0.1;         ///< timed calls of an algorithm end once they sum to this
-  std::size_t min_rounds = 8;       ///< even if that takes longer
-  std::size_t max_rounds = 100;      ///< even if that takes less time
+  std::size_t min_rounds = 8;         ///< even if that takes longer
+  std::size_t max_rounds = 100;       ///< even if that takes less time
   double slow_seconds = 0.1;          ///< a search that takes longer has slow_rounds rounds
   double slow_history_seconds = 0.8;  ///< a history that takes longer has slow_rounds rounds
   std::size_t slow_rounds = 5;

@@ -117,8 +117,7 @@ MeanRatio geometric_mean(std::span<const RatiosBySeed> pairs) {
     medians.push_back(pairs[i].median());
     std::vector<double> replicates(replicate_count, medians.back());
     // Each pair draws numbers of its own: what they have in common would not average out.
-    if (pairs[i].rounds() >= min_rounds_of_interval)
-      replicates = pairs[i].replicates(replicate_count, i + 1);
+    if (pairs[i].rounds() >= min_rounds_of_interval) replicates = pairs[i].replicates(replicate_count, i + 1);
     for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += std::log(replicates[j]);
   }
   for (double& sum : sums) sum = std::exp(sum / static_cast<double>(pairs.size()));

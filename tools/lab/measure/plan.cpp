@@ -109,21 +109,21 @@ Effort long_effort() {
           .slow_rounds = 5};
 }
 
-std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes) {
-  const bool named = !wishes.scenes.empty();
-  std::vector<std::string> scenes = wishes.scenes;
+std::vector<CaseRequest> plan_of(const ComparePlanOptions& options) {
+  const bool named = !options.scenes.empty();
+  std::vector<std::string> scenes = options.scenes;
   if (!named) {
     for (const Scene& scene : lab::scenes()) {
       if (scene.kind == SceneKind::generated && !scene.hard) scenes.push_back(scene.name);
     }
   }
-  const auto counts = or_standard(wishes.boxes, {standard_boxes});
-  const auto dimensions = or_standard(wishes.dimensions, {2, 3});
-  const auto fractions = or_standard(wishes.moving, {wishes.frames > 0 ? standard_moving : 0.0});
+  const auto counts = or_standard(options.boxes, {standard_boxes});
+  const auto dimensions = or_standard(options.dimensions, {2, 3});
+  const auto fractions = or_standard(options.moving, {options.frames > 0 ? standard_moving : 0.0});
 
   std::vector<CaseRequest> plan;
   for (const std::string& name : scenes) {
-    const Scene scene = wishes.find(name).scene;
+    const Scene scene = options.find(name).scene;
     const auto exists = [&scene](int dimension) { return scene.has_dimension(dimension); };
     if (named && std::ranges::none_of(dimensions, exists)) {
       throw InvalidSpec("scene '" + name +
@@ -135,7 +135,7 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes) {
       const bool moves = moves_by_itself(scene, dimension);
       const std::size_t all =
           scene.kind == SceneKind::file && moves ? std::numeric_limits<std::size_t>::max() : standard_frames;
-      const std::size_t frames = wishes.frames > 0 ? wishes.frames : all;
+      const std::size_t frames = options.frames > 0 ? options.frames : all;
       for (const std::size_t count : counts) {
         for (const double moving : fractions) {
           const CaseRequest request{.scene = name,
@@ -143,8 +143,8 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes) {
                                     .boxes = scene.fixed_count ? 0 : count,
                                     .moving = moves ? 0 : moving,
                                     .frames = moves || moving > 0 ? frames : 0,
-                                    .drift = wishes.drift,
-                                    .teleport = wishes.teleport,
+                                    .drift = options.drift,
+                                    .teleport = options.teleport,
                                     .required = named};
           if (std::ranges::find(plan, request) == plan.end()) plan.push_back(request);
           if (moves) break;

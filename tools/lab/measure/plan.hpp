@@ -52,7 +52,7 @@ struct ComparePlanOptions {
 /// Every combination that exists; others are left out: a dimension that a scene does not have, a count or a
 /// moving fraction where the scene has its own. Throws InvalidSpec if a scene is unknown or has none of the
 /// dimensions, and what a file's reader throws.
-std::vector<CaseRequest> plan_of(const ComparePlanOptions& wishes);
+std::vector<CaseRequest> plan_of(const ComparePlanOptions& options);
 
 /// The cases of `plan` in one of the dimensions.
 std::vector<CaseRequest> in_dimensions(std::vector<CaseRequest> plan, std::span<const int> dimensions);

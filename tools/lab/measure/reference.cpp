@@ -53,7 +53,7 @@ std::vector<Pair> Reference::pairs(BoxSpan<D, Real> boxes, const std::function<v
 
 template <int D, typename Real>
 std::optional<PairDivergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
-                                       std::uint64_t seed) {
+                                           std::uint64_t seed) {
   const std::vector<std::size_t> sample = sample_of(boxes.size(), sampled_boxes, seed);
   std::vector<bool> sampled(boxes.size(), false);
   for (const std::size_t i : sample) sampled[i] = true;
@@ -82,18 +82,18 @@ std::vector<std::size_t> sample_of(std::size_t size, std::size_t count, std::uin
 
 template std::vector<Pair> Reference::pairs<2, float>(BoxSpan<2, float>, const std::function<void()>&) const;
 template std::optional<PairDivergence> check_sample<2, float>(BoxSpan<2, float>, std::span<const Pair>,
-                                                          std::uint64_t);
+                                                              std::uint64_t);
 template std::vector<Pair> Reference::pairs<2, double>(BoxSpan<2, double>,
                                                        const std::function<void()>&) const;
 template std::optional<PairDivergence> check_sample<2, double>(BoxSpan<2, double>, std::span<const Pair>,
-                                                           std::uint64_t);
+                                                               std::uint64_t);
 template std::vector<Pair> Reference::pairs<3, float>(BoxSpan<3, float>, const std::function<void()>&) const;
 template std::optional<PairDivergence> check_sample<3, float>(BoxSpan<3, float>, std::span<const Pair>,
-                                                          std::uint64_t);
+                                                              std::uint64_t);
 template std::vector<Pair> Reference::pairs<3, double>(BoxSpan<3, double>,
                                                        const std::function<void()>&) const;
 template std::optional<PairDivergence> check_sample<3, double>(BoxSpan<3, double>, std::span<const Pair>,
-                                                           std::uint64_t);
+                                                               std::uint64_t);
 
 template <int D, typename Real>
 void check_pair_count(BoxSpan<D, Real> boxes) {

@@ -52,7 +52,7 @@ class Reference {
 /// boxes.
 template <int D, typename Real = float>
 std::optional<PairDivergence> check_sample(BoxSpan<D, Real> boxes, std::span<const Pair> pairs,
-                                       std::uint64_t seed = 1);
+                                           std::uint64_t seed = 1);
 
 /// The hash of a set of pairs, as PairHasher computes it.
 std::uint64_t hash_of(std::span<const Pair> pairs) noexcept;

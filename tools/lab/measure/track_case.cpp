@@ -177,7 +177,7 @@ class TrackCase {
     if (round > 0) return true;
     for (TrackParticipant<D, Real>& participant : participants_) {
       participant.max_rounds = round_limit(*participant.measurement, measurements_, benchmark_.effort,
-                                            benchmark_.effort.slow_history_seconds);
+                                           benchmark_.effort.slow_history_seconds);
     }
     return true;
   }
@@ -324,7 +324,7 @@ class TrackCase {
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<TrackParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<InputEvents>> expectations_;
-  Events events_;                         // of the last update; its memory serves all
+  FrameEvents events_;                    // of the last update; its memory serves all
   std::optional<Statistics> statistics_;  // likewise
   std::size_t touched_ = 0;               // how many events of that memory were written to
   CacheState caches_;

@@ -206,7 +206,8 @@ class FclTreeFollower final : public PeerFollower<D> {
     if (change.changed.size() < change.now.size() / few) {
       ChangedQuery query{&search, change.flags};
       for (const BoxId id : change.changed) {
-        if (is_present(change.now[index(id)])) tree_->collide(&objects_[index(id)], &query, ChangedQuery::take);
+        if (is_present(change.now[index(id)]))
+          tree_->collide(&objects_[index(id)], &query, ChangedQuery::take);
       }
     } else {
       tree_->collide(&search, FclSearch<D>::take);

@@ -53,7 +53,7 @@ class Box2dQueries final : public QueryPeer<2> {
     Answers& answers;
   };
 
-  struct First {
+  struct FirstHitCallback {
     float RayCastCallback(const b2RayCastInput& input, std::int32_t proxy) {
       const BoxId id = peer.id_of_[static_cast<std::size_t>(proxy)];
       const std::optional<float> enter = t_enter(ray, peer.boxes_[index(id)]);
@@ -84,7 +84,7 @@ class Box2dQueries final : public QueryPeer<2> {
   Answers first_hits(std::span<const Ray<2>> rays) override {
     Answers answers;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      First callback{*this, rays[i]};
+      FirstHitCallback callback{*this, rays[i]};
       tree_.RayCast(&callback, converted(rays[i]));
       if (callback.found) answers.add(i, callback.box);
     }

@@ -27,7 +27,8 @@ void append_safe(std::string& page, std::string_view json) {
 
 std::string page_missing() {
   if (!page_template().before.empty()) return "";
-  return "node or the npm packages of web/ were missing at configure time; run tools/setup/setup and configure "
+  return "node or the npm packages of web/ were missing at configure time; run tools/setup/setup and "
+         "configure "
          "again";
 }
 

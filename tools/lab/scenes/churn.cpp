@@ -3,9 +3,9 @@
 #include <limits>
 #include <utility>
 
-#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
 #include "lab/scenes/random.hpp"
+#include "lab/scenes/registry.hpp"
 #include "lab/scenes/scatter.hpp"
 
 namespace broadside::lab {

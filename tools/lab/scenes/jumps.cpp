@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
+#include "lab/scenes/registry.hpp"
 
 namespace broadside::lab::generated {
 namespace {

@@ -16,8 +16,8 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/recordings/recordings.hpp"
-#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
+#include "lab/scenes/registry.hpp"
 #include "src/core/suggestion.hpp"
 
 namespace broadside::lab {

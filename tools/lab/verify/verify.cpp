@@ -99,7 +99,7 @@ std::optional<PairDivergence> compare_pairs(std::vector<Pair> found, std::span<c
   std::sort(found.begin(), found.end());
   const auto diverging = [](PairDivergence::Kind kind, Pair pair, std::string_view how) {
     return PairDivergence{kind, pair, 0,
-                      fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
+                          fmt::format("pair ({}, {}) {}", index(pair.first), index(pair.second), how)};
   };
   std::size_t at = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -116,8 +116,8 @@ std::optional<PairDivergence> compare_pairs(std::vector<Pair> found, std::span<c
 }
 
 template <int D, typename Real>
-PairDivergence explained(PairDivergence divergence, std::string_view name, std::string_view what, std::size_t frame,
-                     BoxSpan<D, Real> boxes) {
+PairDivergence explained(PairDivergence divergence, std::string_view name, std::string_view what,
+                         std::size_t frame, BoxSpan<D, Real> boxes) {
   divergence.frame = frame;
   divergence.text = fmt::format("{}: frame {}, {} {}", name, frame, what, divergence.text);
   for (const BoxId id : {divergence.pair.first, divergence.pair.second}) {
@@ -128,8 +128,9 @@ PairDivergence explained(PairDivergence divergence, std::string_view name, std::
 }
 
 template <int D, typename Real>
-std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
-                                       const ExpectedPairs<D, Real>& expected, std::size_t frame) {
+std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes,
+                                           std::string_view name, const ExpectedPairs<D, Real>& expected,
+                                           std::size_t frame) {
   std::vector<Pair> found;
   PairCollector collector(found);
   finder.find(boxes, collector);
@@ -140,8 +141,8 @@ std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, R
 
 template <int D, typename Real>
 std::optional<PairDivergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
-                                       std::span<const Pair> before, std::span<const Pair> now,
-                                       std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes) {
+                                           std::span<const Pair> before, std::span<const Pair> now,
+                                           std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes) {
   std::vector<Pair> expected_begun;
   std::vector<Pair> expected_ended;
   std::ranges::set_difference(now, before, std::back_inserter(expected_begun));
@@ -152,8 +153,9 @@ std::optional<PairDivergence> check_events(const std::vector<Pair>& begun, const
       return explained<D, Real>(*std::move(divergence), name, what, frame, boxes);
     if (!std::ranges::is_sorted(*events)) {
       const auto unsorted = std::ranges::is_sorted_until(*events);
-      return explained<D, Real>({PairDivergence::Kind::extra, *unsorted, frame, "events are not sorted by id"},
-                                name, what, frame, boxes);
+      return explained<D, Real>(
+          {PairDivergence::Kind::extra, *unsorted, frame, "events are not sorted by id"}, name, what, frame,
+          boxes);
     }
   }
   return std::nullopt;
@@ -161,7 +163,7 @@ std::optional<PairDivergence> check_events(const std::vector<Pair>& begun, const
 
 template <int D, typename Real>
 std::optional<PairDivergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
-                                        std::string_view name, const ExpectedPairs<D, Real>& expected) {
+                                            std::string_view name, const ExpectedPairs<D, Real>& expected) {
   std::vector<Box<D, Real>> boxes = history.boxes;
   std::vector<Pair> before;
   for (std::size_t frame = 0; frame <= history.steps.size(); ++frame) {
@@ -184,46 +186,52 @@ std::optional<PairDivergence> check_tracker(Tracker<D, Real>& tracker, const His
 template std::vector<Pair> reference_pairs<2, float>(BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs_of<2, float>(BoxSpan<2, float>, std::span<const std::size_t>);
 template PairDivergence explained<2, float>(PairDivergence, std::string_view, std::string_view, std::size_t,
-                                        BoxSpan<2, float>);
+                                            BoxSpan<2, float>);
 template std::optional<PairDivergence> check_finder(Finder<2, float>&, BoxSpan<2, float>, std::string_view,
-                                                const ExpectedPairs<2, float>&, std::size_t);
+                                                    const ExpectedPairs<2, float>&, std::size_t);
 template std::optional<PairDivergence> check_tracker(Tracker<2, float>&, const History<2, float>&,
-                                                 std::string_view, const ExpectedPairs<2, float>&);
-template std::optional<PairDivergence> check_events<2, float>(const std::vector<Pair>&, const std::vector<Pair>&,
-                                                          std::span<const Pair>, std::span<const Pair>,
-                                                          std::string_view, std::size_t, BoxSpan<2, float>);
+                                                     std::string_view, const ExpectedPairs<2, float>&);
+template std::optional<PairDivergence> check_events<2, float>(const std::vector<Pair>&,
+                                                              const std::vector<Pair>&, std::span<const Pair>,
+                                                              std::span<const Pair>, std::string_view,
+                                                              std::size_t, BoxSpan<2, float>);
 template std::vector<Pair> reference_pairs<2, double>(BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs_of<2, double>(BoxSpan<2, double>, std::span<const std::size_t>);
 template PairDivergence explained<2, double>(PairDivergence, std::string_view, std::string_view, std::size_t,
-                                         BoxSpan<2, double>);
+                                             BoxSpan<2, double>);
 template std::optional<PairDivergence> check_finder(Finder<2, double>&, BoxSpan<2, double>, std::string_view,
-                                                const ExpectedPairs<2, double>&, std::size_t);
+                                                    const ExpectedPairs<2, double>&, std::size_t);
 template std::optional<PairDivergence> check_tracker(Tracker<2, double>&, const History<2, double>&,
-                                                 std::string_view, const ExpectedPairs<2, double>&);
-template std::optional<PairDivergence> check_events<2, double>(const std::vector<Pair>&, const std::vector<Pair>&,
-                                                           std::span<const Pair>, std::span<const Pair>,
-                                                           std::string_view, std::size_t, BoxSpan<2, double>);
+                                                     std::string_view, const ExpectedPairs<2, double>&);
+template std::optional<PairDivergence> check_events<2, double>(const std::vector<Pair>&,
+                                                               const std::vector<Pair>&,
+                                                               std::span<const Pair>, std::span<const Pair>,
+                                                               std::string_view, std::size_t,
+                                                               BoxSpan<2, double>);
 template std::vector<Pair> reference_pairs<3, float>(BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs_of<3, float>(BoxSpan<3, float>, std::span<const std::size_t>);
 template PairDivergence explained<3, float>(PairDivergence, std::string_view, std::string_view, std::size_t,
-                                        BoxSpan<3, float>);
+                                            BoxSpan<3, float>);
 template std::optional<PairDivergence> check_finder(Finder<3, float>&, BoxSpan<3, float>, std::string_view,
-                                                const ExpectedPairs<3, float>&, std::size_t);
+                                                    const ExpectedPairs<3, float>&, std::size_t);
 template std::optional<PairDivergence> check_tracker(Tracker<3, float>&, const History<3, float>&,
-                                                 std::string_view, const ExpectedPairs<3, float>&);
-template std::optional<PairDivergence> check_events<3, float>(const std::vector<Pair>&, const std::vector<Pair>&,
-                                                          std::span<const Pair>, std::span<const Pair>,
-                                                          std::string_view, std::size_t, BoxSpan<3, float>);
+                                                     std::string_view, const ExpectedPairs<3, float>&);
+template std::optional<PairDivergence> check_events<3, float>(const std::vector<Pair>&,
+                                                              const std::vector<Pair>&, std::span<const Pair>,
+                                                              std::span<const Pair>, std::string_view,
+                                                              std::size_t, BoxSpan<3, float>);
 template std::vector<Pair> reference_pairs<3, double>(BoxSpan<3, double>);
 template std::vector<Pair> reference_pairs_of<3, double>(BoxSpan<3, double>, std::span<const std::size_t>);
 template PairDivergence explained<3, double>(PairDivergence, std::string_view, std::string_view, std::size_t,
-                                         BoxSpan<3, double>);
+                                             BoxSpan<3, double>);
 template std::optional<PairDivergence> check_finder(Finder<3, double>&, BoxSpan<3, double>, std::string_view,
-                                                const ExpectedPairs<3, double>&, std::size_t);
+                                                    const ExpectedPairs<3, double>&, std::size_t);
 template std::optional<PairDivergence> check_tracker(Tracker<3, double>&, const History<3, double>&,
-                                                 std::string_view, const ExpectedPairs<3, double>&);
-template std::optional<PairDivergence> check_events<3, double>(const std::vector<Pair>&, const std::vector<Pair>&,
-                                                           std::span<const Pair>, std::span<const Pair>,
-                                                           std::string_view, std::size_t, BoxSpan<3, double>);
+                                                     std::string_view, const ExpectedPairs<3, double>&);
+template std::optional<PairDivergence> check_events<3, double>(const std::vector<Pair>&,
+                                                               const std::vector<Pair>&,
+                                                               std::span<const Pair>, std::span<const Pair>,
+                                                               std::string_view, std::size_t,
+                                                               BoxSpan<3, double>);
 
 }  // namespace broadside::lab

@@ -51,27 +51,28 @@ std::optional<PairDivergence> compare_pairs(std::vector<Pair> found, std::span<c
 
 /// The same divergence, with the algorithm's name, what was looked at, the frame and both boxes in its text.
 template <int D, typename Real = float>
-PairDivergence explained(PairDivergence divergence, std::string_view name, std::string_view what, std::size_t frame,
-                     BoxSpan<D, Real> boxes);
+PairDivergence explained(PairDivergence divergence, std::string_view name, std::string_view what,
+                         std::size_t frame, BoxSpan<D, Real> boxes);
 
 /// Whether `finder` gives the expected pairs on `boxes`. `name` and `frame` are for the divergence's text.
 template <int D, typename Real>
-std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes, std::string_view name,
-                                       const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>,
-                                       std::size_t frame = 0);
+std::optional<PairDivergence> check_finder(Finder<D, Real>& finder, BoxSpan<D, Real> boxes,
+                                           std::string_view name,
+                                           const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>,
+                                           std::size_t frame = 0);
 
 /// Whether `tracker`, over the whole history, gives in each frame exactly the events that lead from the
 /// expected pairs of the frame before to this frame's, sorted.
 template <int D, typename Real>
-std::optional<PairDivergence> check_tracker(Tracker<D, Real>& tracker, const History<D, Real>& history,
-                                        std::string_view name,
-                                        const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
+std::optional<PairDivergence> check_tracker(
+    Tracker<D, Real>& tracker, const History<D, Real>& history, std::string_view name,
+    const ExpectedPairs<D, Real>& expected = reference_pairs<D, Real>);
 
 /// The first difference between a tracker's events of a frame and the ones that lead from the sorted pairs
 /// `before` to `now`; empty if there is none and the events are sorted.
 template <int D, typename Real = float>
 std::optional<PairDivergence> check_events(const std::vector<Pair>& begun, const std::vector<Pair>& ended,
-                                       std::span<const Pair> before, std::span<const Pair> now,
-                                       std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes);
+                                           std::span<const Pair> before, std::span<const Pair> now,
+                                           std::string_view name, std::size_t frame, BoxSpan<D, Real> boxes);
 
 }  // namespace broadside::lab

@@ -89,7 +89,7 @@ class HistoryCheck {
       Expectation& expected = expectation_for(*entry.algorithm);
       verdict.verified_by = expected.reference.text();
       HistoryParticipant<D, Real> participant{&entry, result_.verdicts.size(), &expected,
-                                       Finder<D, Real>(*entry.algorithm, entry.spec)};
+                                              Finder<D, Real>(*entry.algorithm, entry.spec)};
       if (!history_.steps.empty()) participant.tracker.emplace(*entry.algorithm, entry.spec);
       participants_.push_back(std::move(participant));
     }
@@ -233,10 +233,10 @@ class HistoryCheck {
 
   /// The divergence as seen from the other side.
   static PairDivergence swapped(const PairDivergence& divergence) {
-    return *compare_pairs(
-        divergence.kind == PairDivergence::Kind::extra ? std::vector<Pair>() : std::vector<Pair>{divergence.pair},
-        divergence.kind == PairDivergence::Kind::extra ? std::span(&divergence.pair, 1)
-                                                   : std::span<const Pair>());
+    return *compare_pairs(divergence.kind == PairDivergence::Kind::extra ? std::vector<Pair>()
+                                                                         : std::vector<Pair>{divergence.pair},
+                          divergence.kind == PairDivergence::Kind::extra ? std::span(&divergence.pair, 1)
+                                                                         : std::span<const Pair>());
   }
 
   const History<D, Real>& history_;

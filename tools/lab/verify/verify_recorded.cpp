@@ -78,8 +78,7 @@ class RecordedCheck {
       : recording_(recording),
         options_(options),
         margin_(recording.pairs.front().margin),
-        reference_(named(), known, places_of(recording.history), max_by_definition(recording.pairs.size())) {
-  }
+        reference_(named(), known, places_of(recording.history), max_by_definition(recording.pairs.size())) {}
 
   RecordedVerdict run() {
     RecordedVerdict result{{.algorithm = recorded_pairs_name, .verified_by = reference_.text()}};
@@ -178,8 +177,8 @@ class RecordedCheck {
     } else {
       text += fmt::format(": {} times", playback.pairs().times_reported(pair));
     }
-    return explained<D, Real>({PairDivergence::Kind::missing, pair, fault.first_frame, text}, recorded_pairs_name,
-                              "pair", fault.first_frame, boxes)
+    return explained<D, Real>({PairDivergence::Kind::missing, pair, fault.first_frame, text},
+                              recorded_pairs_name, "pair", fault.first_frame, boxes)
         .text;
   }
 

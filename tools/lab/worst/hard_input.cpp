@@ -131,7 +131,8 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
   input.family = draw_family(family, random);
   input.dimension = random.chance(0.5) ? 2 : 3;
   input.in_double = random.chance(0.5);
-  const std::array<HardCall, 5> calls = {HardCall::find, HardCall::find, HardCall::between, HardCall::track, HardCall::track};
+  const std::array<HardCall, 5> calls = {HardCall::find, HardCall::find, HardCall::between, HardCall::track,
+                                         HardCall::track};
   input.call = family.two_sets ? HardCall::between : one_of(calls, random);
   const std::array<double, 4> parts = {0.5, 0.5, 0.02, 0.98};
   input.left = family.two_sets ? 0.5 : one_of(parts, random);

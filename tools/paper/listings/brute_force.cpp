@@ -6,8 +6,8 @@
 
 #include "kernels/observed_tests.hpp"
 #include "paper/listings/algorithm_1.hpp"
-#include "paper/listings/registry.hpp"
 #include "paper/listings/listing_searcher.hpp"
+#include "paper/listings/registry.hpp"
 
 namespace broadside::paper {
 namespace {

@@ -11,10 +11,10 @@
 #include "broadside/searcher.hpp"
 
 #include "paper/listings/coherent_follower.hpp"
-#include "paper/listings/registry.hpp"
 #include "paper/listings/followers.hpp"
 #include "paper/listings/grid_listing.hpp"
 #include "paper/listings/listing_searcher.hpp"
+#include "paper/listings/registry.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {

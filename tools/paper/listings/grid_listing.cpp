@@ -120,8 +120,7 @@ bool GridListing::may_hold(double references, std::size_t boxes) const {
 bool GridListing::is_too_large(std::span<const Box2> boxes) const {
   if (!is_limited_) return false;
   const double count = count_present(boxes);
-  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? max_auto_cells(count) : max_cells(count)))
-    return true;
+  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? max_auto_cells(count) : max_cells(count))) return true;
   double sum = 0;
   for (const Box2& e : boxes) {
     if (is_present(e)) sum += static_cast<double>(references(cells_of(e)));

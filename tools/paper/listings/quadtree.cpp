@@ -7,10 +7,10 @@
 #include "broadside/searcher.hpp"
 
 #include "paper/listings/coherent_follower.hpp"
-#include "paper/listings/registry.hpp"
 #include "paper/listings/followers.hpp"
 #include "paper/listings/listing_searcher.hpp"
 #include "paper/listings/quadtree_listing.hpp"
+#include "paper/listings/registry.hpp"
 #include "paper/listings/world.hpp"
 
 namespace broadside::paper {

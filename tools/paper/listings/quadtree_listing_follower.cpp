@@ -201,7 +201,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
   QuadTree tree_;
   std::optional<QuadTreeNode> root_;
   std::vector<QuadTreeNode*> before_;  // a mover's leaves
-  double max_references_ = 0;         // of a full tree of this depth
+  double max_references_ = 0;          // of a full tree of this depth
   std::size_t nodes_built_ = 0;
 };
 

@@ -6,9 +6,9 @@
 #include "broadside/searcher.hpp"
 
 #include "paper/listings/coherent_follower.hpp"
-#include "paper/listings/registry.hpp"
 #include "paper/listings/followers.hpp"
 #include "paper/listings/listing_searcher.hpp"
+#include "paper/listings/registry.hpp"
 #include "paper/listings/sweep_listing.hpp"
 
 namespace broadside::paper {

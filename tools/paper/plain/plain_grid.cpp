@@ -51,7 +51,7 @@ struct Cells {
 };
 
 template <int D>
-struct CellEntry {
+struct PlainCellEntry {
   Box<D> box;
   BoxId id;
   std::uint32_t dedup_mask;  // a bit for each axis on which the box begins in an earlier cell
@@ -60,7 +60,7 @@ struct CellEntry {
 /// A cell's boxes as one array.
 template <int D>
 struct EntryArray {
-  std::span<const CellEntry<D>> entries;
+  std::span<const PlainCellEntry<D>> entries;
 
   std::size_t size() const { return entries.size(); }
   float min(std::size_t i, int axis) const { return entries[i].box.min[axis]; }
@@ -77,7 +77,7 @@ struct BoundArrays {
   std::vector<BoxId> ids;
   std::vector<std::uint32_t> dedup_masks;
 
-  void fill(std::span<const CellEntry<D>> entries) {
+  void fill(std::span<const PlainCellEntry<D>> entries) {
     for (int axis = 0; axis < D; ++axis) {
       mins[axis].resize(entries.size());
       maxs[axis].resize(entries.size());
@@ -127,7 +127,7 @@ class PlainGrid final : public Searcher<D> {
   }
 
  private:
-  using Entry = CellEntry<D>;
+  using Entry = PlainCellEntry<D>;
 
   void choose_cells(std::span<const Box<D>> boxes) {
     shape_ = shape_of(boxes, samples_);

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lab/formats/registry.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/registry.hpp"
 #include "tests/support/message.hpp"
 
 namespace broadside::lab {

@@ -19,8 +19,8 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/write_file.hpp"
-#include "lab/scenes/registry.hpp"
 #include "lab/scenes/motion.hpp"
+#include "lab/scenes/registry.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/pipe.hpp"

@@ -118,13 +118,13 @@ class FramesReader {
  private:
   static constexpr std::size_t no_place = SIZE_MAX;
 
-  struct Listed {
+  struct ListedRow {
     std::size_t number;  // of the box, or of its track in the order of the rows
     std::uint64_t line;
     Box<D, double> box;
   };
 
-  Listed listed_as(std::size_t number) {
+  ListedRow listed_as(std::size_t number) {
     return {number, rows_.lines().number(), in_dimension<D>(rows_.box())};
   }
 
@@ -141,11 +141,11 @@ class FramesReader {
   }
 
   void list_track(double frame) {
-    Listed row = listed_as(no_place);
+    ListedRow row = listed_as(no_place);
     const bool is_present = !is_absent(row.box);
     if (is_present) row.number = track();
     // Without a box, the row says no more than that there is the frame.
-    std::vector<Listed>& listed = frames_[frame];
+    std::vector<ListedRow>& listed = frames_[frame];
     if (is_present) listed.push_back(row);
   }
 
@@ -172,7 +172,7 @@ class FramesReader {
       rows_.refuse(BoxColumns::frame, fmt::format("{} or {}: frames follow one another", last, last + 1));
   }
 
-  Step<D, double> step_to(double frame, const std::vector<Listed>& listed) {
+  Step<D, double> step_to(double frame, const std::vector<ListedRow>& listed) {
     ++seen_frames_;
     Step<D, double> step;
     const auto change = [&](std::size_t place, const Box<D, double>& box) {
@@ -180,7 +180,7 @@ class FramesReader {
       step.boxes.push_back(box);
       boxes_[place] = box;
     };
-    for (const Listed& row : listed) {
+    for (const ListedRow& row : listed) {
       std::size_t& place = places_[row.number];
       if (place == no_place) {
         place = boxes_.size();
@@ -202,7 +202,7 @@ class FramesReader {
     return step;
   }
 
-  void refuse_again(double frame, const Listed& row) const {
+  void refuse_again(double frame, const ListedRow& row) const {
     const auto refuse = [&] {
       rows_.lines().refuse(
           row.line,
@@ -220,7 +220,7 @@ class FramesReader {
 
   CsvRows& rows_;
   bool has_tracks_;
-  std::map<double, std::vector<Listed>> frames_;
+  std::map<double, std::vector<ListedRow>> frames_;
   std::unordered_map<std::string, std::size_t> numbers_;  // by track
   std::vector<std::string> names_;                        // of tracks
   std::vector<std::string> ids_;                          // likewise, to be shown

@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/registry.hpp"
 #include "lab/formats/json/json_reader.hpp"
 #include "lab/formats/quarantine.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/text.hpp"
 #include "lab/formats/unread_formats.hpp"
 #include "lab/numbers.hpp"

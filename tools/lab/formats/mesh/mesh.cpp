@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/registry.hpp"
 #include "lab/formats/mesh/elements.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/numbers.hpp"
 
 namespace broadside::lab::readers {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "lab/formats/registry.hpp"
 #include "lab/formats/format.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/pair_filter.hpp"
 
 namespace broadside::lab {

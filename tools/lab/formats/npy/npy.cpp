@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "lab/formats/binary_number.hpp"
-#include "lab/formats/registry.hpp"
 #include "lab/formats/npy/npy_array_writer.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/text.hpp"
 #include "lab/formats/zip_archive.hpp"
 

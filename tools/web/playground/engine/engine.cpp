@@ -30,8 +30,8 @@
 #include "kernels/observed_tests.hpp"
 #ifndef BROADSIDE_OBSERVE
 #include "lab/formats/csv/csv_rows.hpp"
-#include "lab/formats/registry.hpp"
 #include "lab/formats/mesh/indexed_mesh.hpp"
+#include "lab/formats/registry.hpp"
 #include "lab/formats/unread_formats.hpp"
 #endif
 #include "lab/scenes/registry.hpp"
@@ -47,7 +47,7 @@ struct CallInput {
 };
 
 /// What the last call has found.
-struct Answers {
+struct LastAnswers {
   std::string text;
   std::vector<Pair> pairs;       // of a search; those that an update's frame has begun
   std::vector<Pair> more_pairs;  // the tests of a search that was observed; the pairs that ended
@@ -57,7 +57,7 @@ struct Answers {
 };
 
 CallInput input;
-Answers answers;
+LastAnswers answers;
 
 template <int D>
 std::vector<Box<D>> boxes_of(std::size_t count) {
@@ -186,19 +186,19 @@ void outline_of(std::size_t count) {
 }
 
 /// A tracker, and the frame that it took last.
-class Following {
+class FollowedScene {
  public:
-  Following() = default;
-  Following(const Following&) = delete;
-  Following& operator=(const Following&) = delete;
-  virtual ~Following() = default;
+  FollowedScene() = default;
+  FollowedScene(const FollowedScene&) = delete;
+  FollowedScene& operator=(const FollowedScene&) = delete;
+  virtual ~FollowedScene() = default;
 
   /// Takes `count` boxes as the next frame.
   virtual void update(std::size_t count) = 0;
 };
 
 template <int D>
-class FollowingIn final : public Following {
+class FollowingIn final : public FollowedScene {
  public:
   explicit FollowingIn(const std::string& spec) : tracker_(spec) {}
 
@@ -222,7 +222,7 @@ class FollowingIn final : public Following {
   std::vector<Box<D>> before_;
 };
 
-std::map<std::uint32_t, std::unique_ptr<Following>> trackers;
+std::map<std::uint32_t, std::unique_ptr<FollowedScene>> trackers;
 std::uint32_t last_tracker = 0;
 
 /// The scenes of the lab that are made of a formula and stand still.
