@@ -17,6 +17,7 @@
 #include "broadside/queries.hpp"
 #include "broadside/searcher.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/spec.hpp"
 #include "broadside/tracker.hpp"
 #include "broadside/version.hpp"
 #include "broadside/world.hpp"

@@ -20,8 +20,8 @@ template <int D, typename Real>
 class BvhIndex;
 }  // namespace algorithm
 
-/// Finds the boxes of a frame that overlap a box, contain a point, are hit by a ray or a cast box, or are
-/// nearest to a point. Results are exact, by the definitions in queries.hpp and box.hpp.
+/// Finds the boxes of a frame that overlap a box, contain a point, are hit by a ray cast or a box cast, or
+/// are nearest to a point. Results are exact, by the definitions in queries.hpp and box.hpp.
 ///
 ///     BoxIndex<2> index;
 ///     index.update({.boxes = boxes});

@@ -107,10 +107,10 @@ struct WorldOptions {
   /// per pair and some ten nanoseconds per event, and a predicate can only be set before the first update.
   bool keep_pairs = true;
 
-  /// How far a box is enlarged on each side: by `margin`, by `relative_margin` times its longest side, or by
-  /// the smaller of the two if both are above 0. If either of them or `predicted_frames` is above 0, the
-  /// tracker sees enlarged boxes. An enlarged box is replaced only when its box has left it or become far
-  /// smaller. Enlarged boxes are part of the world and of its snapshots.
+  /// How far a box is enlarged on each side (a fat AABB): by `margin`, by `relative_margin` times its longest
+  /// side, or by the smaller of the two if both are above 0. If either of them or `predicted_frames` is above
+  /// 0, the tracker sees enlarged boxes. An enlarged box is replaced only when its box has left it or become
+  /// far smaller. Enlarged boxes are part of the world and of its snapshots.
   double margin = 0;
   double relative_margin = 0;
 

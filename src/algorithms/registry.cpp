@@ -1,4 +1,5 @@
-// The one list of broad-phase algorithms: registration and look-up.
+// Registration and look-up of algorithms. Those of the library are listed in src/CMakeLists.txt
+// (every_algorithm), which generates linked_algorithms().
 #include "algorithms/registry.hpp"
 
 #include <algorithm>

@@ -48,8 +48,8 @@ std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, B
 }
 
 void check_count(std::size_t count) {
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (count > most) throw InvalidFrame(message({count, " boxes; expected at most ", most}));
+  constexpr std::size_t max_count = std::numeric_limits<std::uint32_t>::max();
+  if (count > max_count) throw InvalidFrame(message({count, " boxes; expected at most ", max_count}));
 }
 
 template <int D, typename Real>

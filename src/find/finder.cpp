@@ -145,15 +145,15 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   }
 
   std::size_t check(std::span<const Box<D, Real>> boxes) {
-    const std::size_t absent = search_.count_absent(boxes, workers, bad_input);
+    const std::size_t absent = search_.check_and_count_absent(boxes, workers, bad_input);
     quarantined_.clear();
     if (absent > 0) list_invalid(boxes, 0);
     return absent;
   }
 
   std::size_t check(std::span<const Box<D, Real>> left, std::span<const Box<D, Real>> right) {
-    const std::size_t absent_left = search_.count_absent(left, workers, bad_input, "left ");
-    const std::size_t absent_right = search_.count_absent(right, workers, bad_input, "right ");
+    const std::size_t absent_left = search_.check_and_count_absent(left, workers, bad_input, "left ");
+    const std::size_t absent_right = search_.check_and_count_absent(right, workers, bad_input, "right ");
     quarantined_.clear();
     if (absent_left > 0) list_invalid(left, 0);
     if (absent_right > 0) list_invalid(right, left.size());

@@ -104,8 +104,9 @@ std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Setti
 }
 
 template <int D, typename Real>
-std::size_t Search<D, Real>::count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
-                                          BadInput bad_input, const char* which) {
+std::size_t Search<D, Real>::check_and_count_absent(std::span<const Box<D, Real>> boxes,
+                                                    const Workers& workers, BadInput bad_input,
+                                                    const char* which) {
   if (workers.threads == 1) return core::check_boxes(boxes, 0, bad_input, which);
   core::Parallel parallel;
   parallel.start(workers, boxes.size());
@@ -140,7 +141,7 @@ std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Re
                                                        const SearchOptions<D>& options, PairSink& pairs) {
   const std::span<const Filter> filters = options.filters.filters;
   const std::size_t absent =
-      options.absent ? *options.absent : count_absent(boxes, options.workers, BadInput::quarantine);
+      options.absent ? *options.absent : check_and_count_absent(boxes, options.workers, BadInput::quarantine);
   if (absent == 0) return search_present(boxes, 0, options, BoxFilters(filters), pairs);
   present_.clear();
   ids_.clear();

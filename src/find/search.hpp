@@ -53,8 +53,8 @@ class Search {
 
   /// Checks boxes as core::check_boxes() does, and returns how many are absent or quarantined. With several
   /// workers, each checks a range, and the exception of the first range with an invalid box is thrown.
-  static std::size_t count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
-                                  BadInput bad_input, const char* which = "");
+  static std::size_t check_and_count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
+                                            BadInput bad_input, const char* which = "");
 
   /// Every pair of one set.
   std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,

@@ -18,16 +18,16 @@ template <int D>
 Box<D> bounds(const Block<D>& node) {
   Box<D> box;
   for (int axis = 0; axis < D; ++axis) {
-    FloatVector least_min = all(infinity);
+    FloatVector lower = all(infinity);
     FloatVector greatest_max = all(-infinity);
     for (std::size_t at = 0; at < fan_out; at += lanes) {
       const FloatVector min = load(node.min[axis], at);
       const FloatVector max = load(node.max[axis], at);
       const FloatMask is_there = hn::Le(min, max);
-      least_min = hn::Min(least_min, hn::IfThenElse(is_there, min, all(infinity)));
+      lower = hn::Min(lower, hn::IfThenElse(is_there, min, all(infinity)));
       greatest_max = hn::Max(greatest_max, hn::IfThenElse(is_there, max, all(-infinity)));
     }
-    box.min[axis] = hn::GetLane(hn::MinOfLanes(Floats(), least_min));
+    box.min[axis] = hn::GetLane(hn::MinOfLanes(Floats(), lower));
     box.max[axis] = hn::GetLane(hn::MaxOfLanes(Floats(), greatest_max));
   }
   return box;

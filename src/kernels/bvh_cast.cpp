@@ -21,7 +21,7 @@ namespace {
 
 /// How far a product with the inverse may be from the quotient: a few roundings, also of subnormal numbers.
 constexpr float margin = 1 + 0x1p-20f;
-constexpr float least = 0x1p-126f;
+constexpr float min_normal = 0x1p-126f;
 
 /// As append(); also appends the parameters at which the cast enters these children to `entries_to`.
 template <int D>
@@ -70,7 +70,7 @@ class Cast {
       enter = hn::Max(enter, hn::Mul(hn::Sub(near_bound(node, axis, at), near_side_[axis]), inverse_[axis]));
       leave = hn::Min(leave, hn::Mul(hn::Sub(far_bound(node, axis, at), far_side_[axis]), inverse_[axis]));
     }
-    leave = hn::MulAdd(leave, all(margin), all(least));
+    leave = hn::MulAdd(leave, all(margin), all(min_normal));
     return hn::And(hits, hn::Le(enter, hn::Min(leave, limit)));
   }
 
@@ -107,7 +107,7 @@ class Cast {
   }
 
   /// The parameter up to which bounds count, if boxes count up to `t_max`.
-  static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + least); }
+  static HWY_INLINE FloatVector limit(float t_max) { return all(t_max * margin + min_normal); }
 
  private:
   HWY_INLINE FloatVector near_bound(const Block<D>& node, int axis, std::size_t at) const {

@@ -49,8 +49,8 @@ BoxTable<D, Real>::BoxTable(const WorldOptions& options)
 }
 
 template <int D, typename Real>
-void BoxTable<D, Real>::check_invalid(const Box<D, Real>& box, std::size_t index, const char* what,
-                                      std::size_t number) const {
+void BoxTable<D, Real>::refuse_unless_quarantined(const Box<D, Real>& box, std::size_t index,
+                                                  const char* what, std::size_t number) const {
   if (quarantines_ && !is_absent(box)) return;
   const std::string name = core::message({what, " ", number});
   if (is_absent(box)) throw InvalidInput(index, core::message({name, " is absent; expected a box"}));

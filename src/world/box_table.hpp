@@ -49,7 +49,7 @@ class BoxTable {
   /// Throws InvalidInput, with `index`, if the box is absent, or invalid and not to be quarantined. `what`
   /// and `number` name it, as in "added box 3".
   void check(const Box<D, Real>& box, std::size_t index, const char* what, std::size_t number) const {
-    if (!is_present(box)) check_invalid(box, index, what, number);
+    if (!is_present(box)) refuse_unless_quarantined(box, index, what, number);
   }
 
   /// Throws InvalidInput if a coordinate is not finite, std::logic_error if no frames are predicted.
@@ -120,7 +120,8 @@ class BoxTable {
   static constexpr std::uint8_t changed_mark = 1;  // is in changed_
   static constexpr std::uint8_t moved_mark = 2;    // is in moved_
 
-  void check_invalid(const Box<D, Real>& box, std::size_t index, const char* what, std::size_t number) const;
+  void refuse_unless_quarantined(const Box<D, Real>& box, std::size_t index, const char* what,
+                                 std::size_t number) const;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
   void set_listed(std::span<const Handle> handles, BoxView<D, Real> boxes) noexcept;
 

@@ -137,8 +137,8 @@ void CurrentPairs::merge(Generations generations) const {
   if (log_.empty()) return;
   // Everything that can throw comes first; of that, sorting comes last, since it mixes old and new events.
   const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
-  const std::size_t most = is_long ? pairs_.size() + log_.size() : size_;
-  if (pairs_.capacity() < most) pairs_.reserve(std::max(most, pairs_.capacity() + pairs_.capacity() / 2));
+  const std::size_t needed = is_long ? pairs_.size() + log_.size() : size_;
+  if (pairs_.capacity() < needed) pairs_.reserve(std::max(needed, pairs_.capacity() + pairs_.capacity() / 2));
   if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
   const std::size_t toggled = keep_toggled(generations);
   if (is_long)

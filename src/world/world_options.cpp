@@ -26,7 +26,7 @@ Tunable length(const char* name, const char* summary) {
   return {.name = name, .summary = summary, .default_value = "0"};
 }
 
-/// To add an option, add it here and to WorldOptions.
+/// To add an option, add it here and to WorldOptions; for snapshots to keep it, also to snapshot_codec.cpp.
 const std::vector<WorldOption>& table() {
   static const std::vector<WorldOption> options = {
       {length("margin", "how far a box is enlarged on each side, in the unit of its coordinates"),

@@ -1,4 +1,4 @@
-// KeptWorld: a world that JavaScript holds.
+// WasmWorld: a world that JavaScript holds.
 #pragma once
 
 #include <cstddef>

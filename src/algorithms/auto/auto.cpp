@@ -176,7 +176,7 @@ class AutoSearcher final : public Searcher<D> {
     if (tests_ <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
-    if (overlaps_ >= Limits::most_pairs * count / 2) return AutoReason::one_place;
+    if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;
     if (overlaps_ >= Limits::many_overlaps) return AutoReason::dense;
     std::array<float, D> reach;
     for (int axis = 0; axis < D; ++axis)
@@ -194,7 +194,7 @@ class AutoSearcher final : public Searcher<D> {
     estimate_.take(boxes, size < 2 * Limits::boxes_of_a_line ? 32 : 48);
     estimate_.compare();
     overlaps_ = half * estimate_.overlap_on_all();
-    if (estimate_.overlap_on_all() >= Limits::most_pairs)
+    if (estimate_.overlap_on_all() >= Limits::dense_pair_share)
       return size <= Limits::few_boxes_in_one_place ? AutoReason::few_in_one_place : AutoReason::one_place;
     if (size < Limits::boxes_of_a_line) return AutoReason::tree;
     std::array<double, D> overlap = estimate_.overlap();

@@ -14,9 +14,10 @@ struct AutoThresholds {
   /// Up to this many boxes brute_force is the fastest.
   static constexpr std::size_t few_boxes = D == 2 ? 256 : 400;
 
-  /// Also up to this many if at least `most_pairs` of all pairs overlap: reporting is then most of the work.
+  /// Also up to this many if at least `dense_pair_share` of all pairs overlap: reporting is then most of the
+  /// work.
   static constexpr std::size_t few_boxes_in_one_place = 1000;
-  static constexpr double most_pairs = 0.5;
+  static constexpr double dense_pair_share = 0.5;
 
   /// Up to this many boxes a grid takes longer to lay out than it saves over a tree, except for shapes for
   /// which a tree's bounds overlap, and for boxes of one size in 3D.

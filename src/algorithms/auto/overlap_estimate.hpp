@@ -89,14 +89,14 @@ class OverlapEstimate {
   std::array<float, D> range() const {
     std::array<float, D> range;
     for (int axis = 0; axis < D; ++axis) {
-      float least = std::numeric_limits<float>::max();
-      float greatest = std::numeric_limits<float>::lowest();
+      float lowest = std::numeric_limits<float>::max();
+      float highest = std::numeric_limits<float>::lowest();
       for (std::size_t i = 0; i < count_; ++i) {
         if (!std::isfinite(min_[axis][i])) continue;
-        least = std::min(least, min_[axis][i]);
-        greatest = std::max(greatest, min_[axis][i]);
+        lowest = std::min(lowest, min_[axis][i]);
+        highest = std::max(highest, min_[axis][i]);
       }
-      range[axis] = std::max(greatest - least, 0.0F);
+      range[axis] = std::max(highest - lowest, 0.0F);
     }
     return range;
   }

@@ -167,7 +167,7 @@ auto SegmentJoin<D>::choose(const SegmentNode& node) -> SegmentCut {
     sampled[i] = stack_[at < node.a.size() ? node.a.begin + at : node.b.begin + (at - node.a.size())];
   }
   SegmentCut best{};
-  std::size_t most = 0;
+  std::size_t max_parted = 0;
   for (int axis = 0; axis < D; ++axis) {
     if ((node.open >> axis & 1U) == 0) continue;
     std::array<float, samples> minima;
@@ -185,8 +185,8 @@ auto SegmentJoin<D>::choose(const SegmentNode& node) -> SegmentCut {
       parted += static_cast<std::size_t>(is_covering || !(b.min[axis] < at && b.max[axis] >= at));
     }
     if (count > 0 && minima[0] == high) parted = 1;
-    if (parted <= most) continue;
-    most = parted;
+    if (parted <= max_parted) continue;
+    max_parted = parted;
     best.axis = axis;
     best.at = at;
   }

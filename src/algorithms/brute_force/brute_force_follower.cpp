@@ -9,8 +9,8 @@
 #include "algorithms/event_sinks.hpp"
 #include "algorithms/followers.hpp"
 #include "core/grow.hpp"
+#include "kernels/find_changes.hpp"
 #include "kernels/kept_run.hpp"
-#include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
 namespace {

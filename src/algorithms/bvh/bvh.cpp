@@ -16,7 +16,7 @@
 #include "algorithms/followers.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/waste.hpp"
+#include "algorithms/sweep_bounds.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
 #include "kernels/bvh_join.hpp"

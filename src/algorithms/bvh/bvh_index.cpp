@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/bvh/found.hpp"
+#include "algorithms/bvh/query_results.hpp"
 #include "core/input_check.hpp"
 
 namespace broadside::algorithm {
@@ -109,7 +109,7 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
   }
   // Beyond these limits, an inverse, or a parameter computed by the definition, may overflow or lose its last
   // places. The axis is then left undecided, so that the tree's bounds do not overrule the definition.
-  constexpr Real least = is_float<Real> ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
+  constexpr Real min_usual = is_float<Real> ? Real{0x1p-125f} : static_cast<Real>(0x1p-900);
   constexpr int max_exponent = 800;
   for (int axis = 0; axis < D; ++axis) {
     const Real direction = cast.direction[axis];
@@ -122,7 +122,7 @@ kernels::CastQuery<D> BvhIndex<D, Real>::in_tree(const BoxCast<D, Real>& cast, i
     query.inverse[axis] = 1;
     if (direction == 0) {
       query.course[axis] = kernels::Course::still;
-    } else if (is_usual(direction, least) && is_usual(scaled, Real{0x1p-125f}) &&
+    } else if (is_usual(direction, min_usual) && is_usual(scaled, Real{0x1p-125f}) &&
                std::abs(exponent) <= max_exponent) {
       query.course[axis] = direction > 0 ? kernels::Course::forward : kernels::Course::backward;
       query.inverse[axis] = static_cast<float>(1 / scaled);

@@ -18,9 +18,9 @@ namespace broadside::algorithm {
 /// A float below `value` by at least half a unit in the last place, or -inf. At most 2^100, so that
 /// computations with it do not overflow.
 inline float rounded_down(double value) noexcept {
-  constexpr double most = 0x1p100;
-  if (value >= most) return static_cast<float>(most);
-  if (value < -most) return -std::numeric_limits<float>::infinity();
+  constexpr double max_value = 0x1p100;
+  if (value >= max_value) return static_cast<float>(max_value);
+  if (value < -max_value) return -std::numeric_limits<float>::infinity();
   const auto nearest = static_cast<float>(value);
   if (nearest == 0) return -std::numeric_limits<float>::min();
   const auto bits = std::bit_cast<std::uint32_t>(nearest);
@@ -39,12 +39,14 @@ class ConservativeRounding {
 
   Box<D> box(const Box<D, double>& box) const noexcept {
     // A difference that overflows is clamped, so that scaling it does not exceed the true value.
-    constexpr double most = std::numeric_limits<double>::max();
+    constexpr double max_value = std::numeric_limits<double>::max();
     Box<D> rounded;
     for (int axis = 0; axis < D; ++axis) {
       const core::LinearRounding& rounding = fit_[axis];
-      rounded.min[axis] = rounded_down(std::min(box.min[axis] - rounding.origin(), most) * rounding.scale());
-      rounded.max[axis] = rounded_up(std::max(box.max[axis] - rounding.origin(), -most) * rounding.scale());
+      rounded.min[axis] =
+          rounded_down(std::min(box.min[axis] - rounding.origin(), max_value) * rounding.scale());
+      rounded.max[axis] =
+          rounded_up(std::max(box.max[axis] - rounding.origin(), -max_value) * rounding.scale());
     }
     return rounded;
   }

@@ -11,7 +11,7 @@
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
 
-#include "algorithms/bvh/arrange.hpp"
+#include "algorithms/bvh/box_order.hpp"
 #include "algorithms/bvh/bvh_packer.hpp"
 #include "core/grow.hpp"
 #include "kernels/bvh.hpp"

@@ -15,7 +15,7 @@
 #include "broadside/box.hpp"
 
 #include "core/sample.hpp"
-#include "kernels/moved.hpp"
+#include "kernels/find_changes.hpp"
 
 namespace broadside::algorithm {
 

@@ -23,7 +23,7 @@
 #include "algorithms/grid/grid_sweep.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/waste.hpp"
+#include "algorithms/sweep_bounds.hpp"
 #include "core/large_array.hpp"
 #include "core/parallel.hpp"
 #include "core/prefix_sum.hpp"

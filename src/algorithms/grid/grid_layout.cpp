@@ -84,13 +84,13 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
     };
     for (;;) {
       double product = 1;
-      int most = 0;
+      int densest_axis = 0;
       for (int axis = 0; axis < gridded; ++axis) {
         product *= references(axis);
-        if (references(axis) > references(most)) most = axis;
+        if (references(axis) > references(densest_axis)) densest_axis = axis;
       }
       if (product <= max_references_per_box) break;
-      cells[most] = std::max(1.0, std::floor(cells[most] / 2));
+      cells[densest_axis] = std::max(1.0, std::floor(cells[densest_axis] / 2));
     }
     set(sample, cells);
     return;
@@ -114,13 +114,13 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
   };
   std::array<double, gridded> best{};
   best.fill(1);
-  double least = cost(best);
+  double min_cost = cost(best);
   for (double extents = 1; extents < 1e6; extents *= 1.4) {
     const auto cells = cells_of_size(
         [&](const core::AxisSample& on_axis) { return extents * std::max(on_axis.mean_extent, 1e-30); });
     if (std::ranges::all_of(cells, [](double cells_on_axis) { return cells_on_axis <= 1; })) break;
-    if (const double found = cost(cells); found < least) {
-      least = found;
+    if (const double found = cost(cells); found < min_cost) {
+      min_cost = found;
       best = cells;
     }
   }

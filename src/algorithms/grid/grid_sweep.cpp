@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/waste.hpp"
+#include "algorithms/sweep_bounds.hpp"
 #include "core/prefix_sum.hpp"
 #include "core/sorted_boxes.hpp"
 #include "kernels/sweep.hpp"

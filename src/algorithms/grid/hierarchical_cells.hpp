@@ -14,7 +14,7 @@
 #include "algorithms/grid/cell_levels.hpp"
 #include "core/grow.hpp"
 #include "kernels/block_pool.hpp"
-#include "kernels/moved.hpp"
+#include "kernels/find_changes.hpp"
 
 namespace broadside::algorithm {
 

@@ -16,7 +16,7 @@
 #include "algorithms/followers.hpp"
 #include "algorithms/quadtree/quadtree_nodes.hpp"
 #include "core/grow.hpp"
-#include "kernels/moved.hpp"
+#include "kernels/find_changes.hpp"
 
 namespace broadside::algorithm {
 namespace {

@@ -12,15 +12,15 @@ namespace {
 /// The greatest of some numbers, ignoring NaN. Several independent chains hide the latency of each step.
 float greatest(const float* numbers, std::size_t count) {
   constexpr std::size_t chains = 8;
-  std::array<float, chains> most;
-  most.fill(-std::numeric_limits<float>::infinity());
+  std::array<float, chains> maxima;
+  maxima.fill(-std::numeric_limits<float>::infinity());
   std::size_t i = 0;
   for (; i + chains <= count; i += chains) {
     for (std::size_t chain = 0; chain < chains; ++chain)
-      most[chain] = most[chain] < numbers[i + chain] ? numbers[i + chain] : most[chain];
+      maxima[chain] = maxima[chain] < numbers[i + chain] ? numbers[i + chain] : maxima[chain];
   }
-  for (; i < count; ++i) most[0] = most[0] < numbers[i] ? numbers[i] : most[0];
-  return *std::max_element(most.begin(), most.end());
+  for (; i < count; ++i) maxima[0] = maxima[0] < numbers[i] ? numbers[i] : maxima[0];
+  return *std::max_element(maxima.begin(), maxima.end());
 }
 
 /// Moves the element at `from` to `to`, and shifts the elements between by one.

@@ -11,8 +11,8 @@
 #include "broadside/pair.hpp"
 
 #include "core/grow.hpp"
+#include "kernels/find_changes.hpp"
 #include "kernels/kept_run.hpp"
-#include "kernels/moved.hpp"
 
 namespace broadside::algorithm {
 

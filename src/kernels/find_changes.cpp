@@ -4,8 +4,8 @@
 // lists and prefetches the blocks in question. The second compares a box, now and before, with the sixteen
 // boxes of each block at once, and lists the blocks with hits without a branch. The third writes their pairs.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/moved.cpp"
-#include "kernels/moved.hpp"
+#define HWY_TARGET_INCLUDE "kernels/find_changes.cpp"
+#include "kernels/find_changes.hpp"
 
 #include <bit>
 #include <utility>

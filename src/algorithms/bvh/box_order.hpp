@@ -46,15 +46,15 @@ int widest_axis(std::span<const NumberedBox<D>> boxes) {
   int widest = 0;
   float greatest_spread = -1;
   for (int axis = 0; axis < D; ++axis) {
-    float least = middle(boxes.front().box, axis);
-    float greatest = least;
+    float lowest = middle(boxes.front().box, axis);
+    float highest = lowest;
     for (const NumberedBox<D>& one : boxes) {
-      least = std::min(least, middle(one.box, axis));
-      greatest = std::max(greatest, middle(one.box, axis));
+      lowest = std::min(lowest, middle(one.box, axis));
+      highest = std::max(highest, middle(one.box, axis));
     }
-    if (!(greatest - least > greatest_spread)) continue;
+    if (!(highest - lowest > greatest_spread)) continue;
     widest = axis;
-    greatest_spread = greatest - least;
+    greatest_spread = highest - lowest;
   }
   return widest;
 }

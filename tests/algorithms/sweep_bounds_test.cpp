@@ -1,5 +1,5 @@
 // is_wasteful() where the answer is beyond doubt.
-#include "algorithms/waste.hpp"
+#include "algorithms/sweep_bounds.hpp"
 
 #include <gtest/gtest.h>
 

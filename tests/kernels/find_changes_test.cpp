@@ -1,6 +1,6 @@
 // The kernels of trackers on every instruction set: what moved boxes begin and cease to overlap, by
 // definition.
-#include "kernels/moved.hpp"
+#include "kernels/find_changes.hpp"
 
 #include <algorithm>
 #include <set>
