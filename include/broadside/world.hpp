@@ -127,6 +127,10 @@ struct WorldOptions {
   /// a move within the enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
   WorldEvents events = WorldEvents::exact;
 
+  /// The most boxes that the world may hold, so that its memory is bounded; 0: no limit. add() throws
+  /// InvalidFrame and restore() InvalidSnapshot where there would be more, and change nothing.
+  std::uint32_t max_boxes = 0;
+
   /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
 
@@ -399,7 +403,7 @@ class BROADSIDE_PUBLIC World {
 
   /// The world as bytes; may be called at any time, also between changes and their update. The bytes hold all
   /// that the world's future depends on, except the predicate, the workers, your own tracker, and the options
-  /// bad_input, shadow and first_generation: a world that restores them keeps its own. O(slots + pairs). The
+  /// bad_input, max_boxes, shadow and first_generation: a world that restores them keeps its own. O(slots + pairs). The
   /// bytes are the same on every machine: see docs/snapshot-format.md.
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
     std::vector<std::byte> bytes;

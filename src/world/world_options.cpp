@@ -53,6 +53,14 @@ const std::vector<WorldOption>& table() {
        }},
       {yes_or_no("shadow", "check each update by brute force, for debugging", "no"),
        [](WorldOptions& o, const Settings& s) { o.shadow = s.text("shadow") == "yes"; }},
+      {{.name = "max_boxes",
+        .summary = "the most boxes that the world may hold; 0: no limit",
+        .default_value = "0",
+        .type = Type::integer,
+        .max = std::numeric_limits<std::uint32_t>::max()},
+       [](WorldOptions& o, const Settings& s) {
+         o.max_boxes = static_cast<std::uint32_t>(s.integer("max_boxes"));
+       }},
       {{.name = "first_generation",
         .summary = "generation of the first handles: worlds that begin far apart refuse each other's handles",
         .default_value = "0",

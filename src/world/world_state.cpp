@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "core/message.hpp"
 #include "kernels/overlap_flags.hpp"
 #include "world/snapshot_codec.hpp"
 
@@ -13,6 +14,10 @@ namespace broadside::world {
 
 template <int D, typename Real>
 void WorldState<D, Real>::reserve(std::size_t count, bool with_filters, bool with_user_data) {
+  const std::size_t max_boxes = parts.options.max_boxes;
+  if (max_boxes != 0 && count > max_boxes - std::min(max_boxes, parts.slots.live()))
+    throw InvalidFrame(core::message({parts.slots.live() + count, " boxes in a world; expected at most ",
+                                      max_boxes, ", its option max_boxes"}));
   const std::size_t added = parts.slots.reserve(count);
   const std::size_t size = parts.slots.size();
   parts.boxes.reserve(added, with_filters);
@@ -172,6 +177,11 @@ template <int D, typename Real>
 void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
   const auto decoded = SnapshotCodec<D, Real>::decode(bytes, parts, tracker);
   WorldParts<D, Real>& restored = *decoded.parts;
+  const std::size_t max_boxes = parts.options.max_boxes;
+  if (max_boxes != 0 && restored.slots.live() > max_boxes)
+    throw InvalidSnapshot(
+        core::message({"a snapshot has ", restored.slots.live(), " boxes; expected at most ", max_boxes,
+                       ", the world's option max_boxes"}));
   query_index.mark_differences(parts.boxes, restored.boxes);
   std::optional<WorldTracker<D, Real>> another;
   if (decoded.spec != tracker.spec()) another.emplace(tracker.remade(decoded.spec));

@@ -36,13 +36,14 @@ TEST(WorldOptionTable, HasTheDefaultsOfTheStruct) {
   EXPECT_EQ(named.keep_pairs, plain.keep_pairs);
   EXPECT_EQ(named.bad_input, plain.bad_input);
   EXPECT_EQ(named.shadow, plain.shadow);
+  EXPECT_EQ(named.max_boxes, plain.max_boxes);
   EXPECT_EQ(named.first_generation, plain.first_generation);
 }
 
 TEST(WorldOptionTable, SetsEachOption) {
   const WorldOptions options = world_options(
       "world:margin=0.5:relative_margin=0.25:predicted_frames=2:events=enlarged:keep_pairs=no:quarantine=yes:"
-      "shadow=yes:first_generation=4294967295");
+      "shadow=yes:max_boxes=7:first_generation=4294967295");
   EXPECT_EQ(options.margin, 0.5);
   EXPECT_EQ(options.relative_margin, 0.25);
   EXPECT_EQ(options.predicted_frames, 2);
@@ -50,6 +51,7 @@ TEST(WorldOptionTable, SetsEachOption) {
   EXPECT_FALSE(options.keep_pairs);
   EXPECT_EQ(options.bad_input, BadInput::quarantine);
   EXPECT_TRUE(options.shadow);
+  EXPECT_EQ(options.max_boxes, 7U);
   EXPECT_EQ(options.first_generation, 4294967295U);
 }
 

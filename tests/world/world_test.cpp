@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
@@ -311,6 +312,23 @@ TEST_F(WorldTest, LosesNoEventWhenAnUpdateFails) {
   EXPECT_EQ(listed(events.ended), (HandlePairs{{a, b}}));
   EXPECT_EQ(listed(events.begun), (HandlePairs{{a, c}}));
   EXPECT_EQ(world.box(b), at(1));
+}
+
+TEST(WorldMaxBoxes, BoundsWhatIsAddedAndRestored) {
+  World2 world({.algorithm = "grid", .max_boxes = 2});
+  const Handle first = world.add(at(0));
+  world.add(at(1));
+  EXPECT_THAT(message_of<InvalidFrame>([&] { world.add(at(2)); }), testing::HasSubstr("3 boxes"));
+  std::vector<Handle> handles(2);
+  EXPECT_THROW(world.add(std::vector{at(2), at(3)}, handles), InvalidFrame);
+  EXPECT_EQ(world.size(), 2U);
+  world.remove(first);
+  world.add(at(2));
+  const std::vector<std::byte> snapshot = world.snapshot();
+  World2 smaller({.algorithm = "grid", .max_boxes = 1});
+  EXPECT_THROW(smaller.restore(snapshot), InvalidSnapshot);
+  EXPECT_EQ(smaller.size(), 0U);
+  World2({.algorithm = "grid", .max_boxes = 2}).restore(snapshot);
 }
 
 TEST_F(WorldTest, RefusesABadSpec) { EXPECT_THROW(World2("no_such_algorithm"), InvalidSpec); }
