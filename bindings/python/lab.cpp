@@ -70,7 +70,7 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
       return lab::advise(catalogue(), "boxes", history, options);
     });
     nb::list ranking;
-    for (const lab::Ranked& ranked : advice.ranking)
+    for (const lab::RankedAlgorithm& ranked : advice.ranking)
       ranking.append(nb::make_tuple(ranked.measurement.algorithm, ranked.milliseconds));
     return nb::make_tuple(advice.spec, advice.milliseconds, advice.reasons, advice.changes, ranking,
                           advice.all_verified(), lab::text_of(advice));

@@ -47,7 +47,7 @@ double measure(const lab::Catalogue& catalogue, const lab::CaseRequest& request,
   if (!advice.all_verified())
     throw std::runtime_error(request.scene + ": not verified; expected everything to be");
   std::vector<std::string> specs;
-  for (const lab::Ranked& ranked : advice.ranking) {
+  for (const lab::RankedAlgorithm& ranked : advice.ranking) {
     if (ranked.milliseconds <= margin_of_rivals * advice.milliseconds)
       specs.push_back(ranked.measurement.algorithm);
   }

@@ -87,15 +87,15 @@ std::string text_of(const Converted& converted, const std::filesystem::path& pat
 }
 
 std::string text_of_left_out(const Converted& converted, const Format& format) {
-  constexpr std::size_t most = 20;
+  constexpr std::size_t max_names = 20;
   const std::vector<std::string>& names = converted.left_out;
   if (!converted.left_out_pairs.empty())  // of a trace, which is no table
     return "left out the recorded pairs: " + converted.left_out_pairs;
   if (names.empty()) return {};
   std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
+  for (std::size_t i = 0; i < std::min(names.size(), max_names); ++i)
     list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
-  if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
+  if (names.size() > max_names) list += fmt::format(" and {} more", names.size() - max_names);
   return fmt::format("left out {} {}: format {} holds bounds{}",
                      names.size() == 1 ? "the column" : "the columns", list, format.name,
                      format.keeps_ids ? " and ids (--ids)" : " alone");

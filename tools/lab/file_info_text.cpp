@@ -55,14 +55,14 @@ std::string sizes_text(const FileInfo& info) {
     bins[1].boxes += bins[0].boxes;
     bins.erase(bins.begin());
   }
-  const auto most = static_cast<double>(std::ranges::max(bins, {}, &SizeBin::boxes).boxes);
+  const auto max_boxes = static_cast<double>(std::ranges::max(bins, {}, &SizeBin::boxes).boxes);
   AlignedColumns table(">><");
   table.add({"longest side", "boxes", ""});
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const double from = std::ldexp(1, bins[i].exponent);
     const std::string range = i == 0 && is_merged ? fmt::format("below {:.4g}", 2 * from)
                                                   : fmt::format("{:.4g} to {:.4g}", from, 2 * from);
-    const double bar = std::ceil(longest_bar * static_cast<double>(bins[i].boxes) / most);
+    const double bar = std::ceil(longest_bar * static_cast<double>(bins[i].boxes) / max_boxes);
     table.add({range, grouped(bins[i].boxes), std::string(static_cast<std::size_t>(bar), '#')});
   }
   std::string text = table.text("  ");

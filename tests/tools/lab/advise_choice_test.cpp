@@ -27,28 +27,28 @@ class Field {
     measurement.outcome = Outcome::verified;
     measurement.samples_ms.assign(10, milliseconds);
     measurements_.push_back(measurement);
-    rivals_.push_back({&measurements_.back(), milliseconds, is_variant});
+    candidates_.push_back({&measurements_.back(), milliseconds, is_variant});
     return *this;
   }
   Field& variant(const std::string& spec, double milliseconds) { return add(spec, milliseconds, true); }
   Measurement& last() { return measurements_.back(); }
 
-  std::optional<AlgorithmChoice> choice(bool by_time = true) const { return choose(rivals_, by_time); }
+  std::optional<AlgorithmChoice> choice(bool by_time = true) const { return choose(candidates_, by_time); }
   std::string chosen() const {
-    const auto choice = choose(rivals_);
-    return choice ? rivals_[choice->chosen].measurement->algorithm : "";
+    const auto choice = choose(candidates_);
+    return choice ? candidates_[choice->chosen].measurement->algorithm : "";
   }
 
  private:
   std::deque<Measurement> measurements_;
-  std::vector<Rival> rivals_;
+  std::vector<Candidate> candidates_;
 };
 
 TEST(AlgorithmChoice, TakesTheFastest) {
   Field field;
   field.add("bvh", 3).add("grid", 2).add("quadtree", 4);
   EXPECT_EQ(field.chosen(), "grid");
-  EXPECT_EQ(field.choice()->why, Why::fastest);
+  EXPECT_EQ(field.choice()->why, ChoiceReason::fastest);
 }
 
 TEST(AlgorithmChoice, TakesTheFirstOfTwoThatAreEquallyFast) {
@@ -59,7 +59,7 @@ TEST(AlgorithmChoice, PrefersAutoWhereItIsHardlySlower) {
   Field near;
   near.add("grid", 1).add("auto", 1.03);
   EXPECT_EQ(near.chosen(), "auto");
-  EXPECT_EQ(near.choice()->why, Why::automatic);
+  EXPECT_EQ(near.choice()->why, ChoiceReason::automatic);
   EXPECT_EQ(near.choice()->fastest_plain, 0u);
   EXPECT_EQ(Field().add("grid", 1).add("auto", 1.05).chosen(), "grid");
   // Under the clock's own noise all are the same.
@@ -70,7 +70,7 @@ TEST(AlgorithmChoice, TakesAutoWhereTimesSayNothing) {
   Field field;
   field.add("grid", 1).add("auto", 3).variant("grid:cell=2", 0.1);
   EXPECT_EQ(field.choice(false)->chosen, 1u);
-  EXPECT_EQ(field.choice(false)->why, Why::automatic);
+  EXPECT_EQ(field.choice(false)->why, ChoiceReason::automatic);
   EXPECT_EQ(Field().add("bvh", 2).choice(false)->chosen, 0u);
 }
 
@@ -79,7 +79,7 @@ TEST(AlgorithmChoice, TakesAVariantOnlyIfItIsClearlyFasterThanAllPlainOnes) {
   Field clear;
   clear.add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 0.9).variant("grid:cell=4", 0.92);
   EXPECT_EQ(clear.chosen(), "grid:cell=2");
-  EXPECT_EQ(clear.choice()->why, Why::variant);
+  EXPECT_EQ(clear.choice()->why, ChoiceReason::variant);
   EXPECT_EQ(Field().add("bvh", 1).add("grid", 1.2).variant("grid:cell=2", 1.1).chosen(), "bvh");
 }
 
@@ -151,7 +151,7 @@ Advice made_up() {
   advice.milliseconds = 1;
   for (const auto& [spec, time, tests] : std::vector<std::tuple<std::string, double, std::uint64_t>>{
            {"grid", 1, 4000}, {"sweep_and_prune", 3.1, 88'000}}) {
-    Ranked ranked;
+    RankedAlgorithm ranked;
     ranked.measurement.algorithm = spec;
     ranked.measurement.outcome = Outcome::verified;
     ranked.measurement.samples_ms.assign(5, time);
@@ -161,7 +161,7 @@ Advice made_up() {
     ranked.is_finalist = true;
     advice.ranking.push_back(ranked);
   }
-  advice.choice = AlgorithmChoice{0, Why::fastest, 0};
+  advice.choice = AlgorithmChoice{0, ChoiceReason::fastest, 0};
   return advice;
 }
 

@@ -75,7 +75,7 @@ TEST(Advise, MeasuresBoxesOfDoublesInDouble) {
   EXPECT_EQ(advice.signals.precision, Precision::float64);
   EXPECT_DOUBLE_EQ(*advice.signals.overlaps, 2 * 49.0 / 50);
   EXPECT_THAT(advice.snippet, HasSubstr("DoubleBox2"));
-  for (const Ranked& ranked : advice.ranking)
+  for (const RankedAlgorithm& ranked : advice.ranking)
     EXPECT_EQ(ranked.measurement.pairs, 49u) << ranked.measurement.algorithm;
 }
 
@@ -87,7 +87,7 @@ TEST(Advise, MeasuresMotionAndTriesBothWaysOfAuto) {
   EXPECT_EQ(advice.frames, 20u);
   EXPECT_THAT(advice.snippet, HasSubstr("World3"));
   std::vector<std::string> specs;
-  for (const Ranked& ranked : advice.ranking) specs.push_back(ranked.measurement.algorithm);
+  for (const RankedAlgorithm& ranked : advice.ranking) specs.push_back(ranked.measurement.algorithm);
   EXPECT_THAT(specs, AllOf(Contains("auto:update=rebuild"), Contains("auto:update=follow"), Contains("bvh")));
 }
 
@@ -137,7 +137,7 @@ TEST(Advise, MeasuresOneThreadWhateverThreadsAreAllowed) {
   const Advice advice = advise(Catalogue(), "row", row(50), options);
   EXPECT_TRUE(advice.all_verified());
   std::map<std::string, bool> is_variant;
-  for (const Ranked& ranked : advice.ranking) is_variant[ranked.measurement.algorithm] = ranked.is_variant;
+  for (const RankedAlgorithm& ranked : advice.ranking) is_variant[ranked.measurement.algorithm] = ranked.is_variant;
   ASSERT_THAT(is_variant,
               AllOf(Contains(Key("grid")), Contains(Key("auto")), Contains(Key("auto:threads=0"))));
   EXPECT_FALSE(is_variant["auto"]);

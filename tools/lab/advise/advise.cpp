@@ -55,12 +55,12 @@ std::size_t typical_frames(const History<D, Real>& history, std::size_t frames) 
 template <int D, typename Real>
 History<D, Real> window(const History<D, Real>& history, double budget_seconds, Advice& advice) {
   const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
-  double most = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
+  double max_frames = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
   // The definition is asked about every frame.
   constexpr double max_places_by_definition = 5'000;
   if (places <= max_places_by_definition)
-    most = std::min(most, std::max(budget_seconds * 2e8 / (places * places), 8.0));
-  advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(most));
+    max_frames = std::min(max_frames, std::max(budget_seconds * 2e8 / (places * places), 8.0));
+  advice.frames = std::min(history.steps.size(), static_cast<std::size_t>(max_frames));
   if (advice.frames < history.steps.size()) advice.first_frame = typical_frames(history, advice.frames);
   History<D, Real> part{history.boxes, {}};
   for (std::size_t i = 0; i < advice.first_frame; ++i) apply(history.steps[i], part.boxes);
@@ -141,12 +141,12 @@ class Adviser {
       for (std::size_t i = 0; i < second.size(); ++i) add(std::move(second[i]), variant[i], true);
     }
     for (Measurement& measurement : first) {
-      const auto same = [&](const Ranked& ranked) {
+      const auto same = [&](const RankedAlgorithm& ranked) {
         return ranked.measurement.algorithm == measurement.algorithm;
       };
       if (std::ranges::none_of(advice_.ranking, same)) add(std::move(measurement), false, false);
     }
-    std::ranges::stable_sort(advice_.ranking, {}, [](const Ranked& ranked) {
+    std::ranges::stable_sort(advice_.ranking, {}, [](const RankedAlgorithm& ranked) {
       return std::tuple(!ranked.is_finalist, !is_timed(ranked.measurement), ranked.milliseconds);
     });
     conclude();
@@ -250,18 +250,18 @@ class Adviser {
   }
 
   void conclude() {
-    std::vector<Rival> rivals;
-    for (const Ranked& ranked : advice_.ranking) {
+    std::vector<Candidate> candidates;
+    for (const RankedAlgorithm& ranked : advice_.ranking) {
       if (!ranked.is_finalist) break;
-      rivals.push_back({&ranked.measurement, ranked.milliseconds, ranked.is_variant});
+      candidates.push_back({&ranked.measurement, ranked.milliseconds, ranked.is_variant});
     }
-    for (const Ranked& ranked : advice_.ranking) {
+    for (const RankedAlgorithm& ranked : advice_.ranking) {
       const auto& pairs = ranked.measurement.pairs;
       if (ranked.measurement.outcome != Outcome::verified || !pairs || advice_.signals.boxes == 0) continue;
       advice_.signals.overlaps = 2 * static_cast<double>(*pairs) / static_cast<double>(advice_.signals.boxes);
       break;
     }
-    advice_.choice = choose(rivals, advice_.signals.boxes >= 2 || advice_.signals.motion.has_value());
+    advice_.choice = choose(candidates, advice_.signals.boxes >= 2 || advice_.signals.motion.has_value());
     if (!advice_.choice) return;
     const Measurement& chosen = advice_.ranking[advice_.choice->chosen].measurement;
     advice_.spec = chosen.algorithm;
@@ -283,7 +283,7 @@ class Adviser {
 }  // namespace
 
 bool Advice::all_verified() const {
-  const auto failed = [](const Ranked& ranked) { return ranked.measurement.outcome == Outcome::failed; };
+  const auto failed = [](const RankedAlgorithm& ranked) { return ranked.measurement.outcome == Outcome::failed; };
   return choice.has_value() && std::ranges::none_of(ranking, failed);
 }
 

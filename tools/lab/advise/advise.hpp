@@ -25,7 +25,7 @@ struct AdviseOptions {
 };
 
 /// An algorithm that was measured, and the result.
-struct Ranked {
+struct RankedAlgorithm {
   Measurement measurement;
   double milliseconds = 0;  ///< a call or a frame: of each input, or frame, the least of its samples, and the
                             ///< median of these; an estimate or infinite where it did not take part
@@ -43,12 +43,12 @@ struct Advice {
   std::size_t first_frame = 0;  ///< of a long history only some frames are measured: from this one on ...
   std::size_t frames = 0;       ///< ... this many after it
   std::optional<double> floor_ms{};
-  std::vector<Ranked> ranking{};            ///< finalists first; of them and of the others the fastest first,
+  std::vector<RankedAlgorithm> ranking{};            ///< finalists first; of them and of the others the fastest first,
                                             ///< those without a time last
   std::optional<AlgorithmChoice> choice{};  ///< its indices are into the ranking
 
   std::string spec{};     ///< what is advised
-  double milliseconds{};  ///< that it takes, a call or a frame, as in Ranked
+  double milliseconds{};  ///< that it takes, a call or a frame, as in RankedAlgorithm
   double p99_ms{};
   std::vector<std::string> reasons{};  ///< sentences: why it, and why not the others
   std::vector<std::string> changes{};  ///< and what would change the advice, as far as it was measured

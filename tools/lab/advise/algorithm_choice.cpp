@@ -18,39 +18,39 @@ namespace broadside::lab {
 
 namespace {
 
-bool is_eligible(const Rival& rival) {
-  return rival.measurement->outcome == Outcome::verified && is_timed(*rival.measurement);
+bool is_eligible(const Candidate& candidate) {
+  return candidate.measurement->outcome == Outcome::verified && is_timed(*candidate.measurement);
 }
 
-bool is_peer(const Rival& rival) { return is_foreign(rival.measurement->kind); }
+bool is_peer(const Candidate& candidate) { return is_foreign(candidate.measurement->kind); }
 
 /// Of each input, in rotation, the least sample.
-std::vector<double> least_of(std::span<const double> samples, std::size_t inputs) {
-  std::vector<double> least(samples.begin(),
+std::vector<double> min_samples(std::span<const double> samples, std::size_t inputs) {
+  std::vector<double> minima(samples.begin(),
                             samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
-  for (std::size_t i = least.size(); i < samples.size(); ++i)
-    least[i % inputs] = std::min(least[i % inputs], samples[i]);
-  return least;
+  for (std::size_t i = minima.size(); i < samples.size(); ++i)
+    minima[i % inputs] = std::min(minima[i % inputs], samples[i]);
+  return minima;
 }
 
-/// The fastest of the rivals that `counts` accepts; empty if there are none.
+/// The fastest of the candidates that `counts` accepts; empty if there are none.
 template <typename Counts>
-std::optional<std::size_t> fastest(std::span<const Rival> rivals, const Counts& counts) {
+std::optional<std::size_t> fastest(std::span<const Candidate> candidates, const Counts& counts) {
   std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (!is_eligible(rivals[i]) || !counts(rivals[i])) continue;
-    if (!best || rivals[i].milliseconds < rivals[*best].milliseconds) best = i;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!is_eligible(candidates[i]) || !counts(candidates[i])) continue;
+    if (!best || candidates[i].milliseconds < candidates[*best].milliseconds) best = i;
   }
   return best;
 }
 
 /// "auto", whatever threads it has.
-bool is_auto(const Rival& rival) {
-  const std::string& spec = rival.measurement->algorithm;
-  return !rival.is_variant && spec.substr(0, spec.find(':')) == default_algorithm;
+bool is_auto(const Candidate& candidate) {
+  const std::string& spec = candidate.measurement->algorithm;
+  return !candidate.is_variant && spec.substr(0, spec.find(':')) == default_algorithm;
 }
 
-bool is_clearly_faster(const Rival& variant, const Rival& plain) {
+bool is_clearly_faster(const Candidate& variant, const Candidate& plain) {
   return variant.milliseconds * margin_of_variants <= plain.milliseconds &&
          plain.milliseconds - variant.milliseconds > indifferent_ms &&
          part_of_rounds(*variant.measurement, *plain.measurement) >= rounds_of_variants;
@@ -59,13 +59,13 @@ bool is_clearly_faster(const Rival& variant, const Rival& plain) {
 }  // namespace
 
 double undisturbed(std::span<const double> samples, std::size_t inputs) {
-  return median(least_of(samples, inputs));
+  return median(min_samples(samples, inputs));
 }
 
 double undisturbed_mean(std::span<const double> samples, std::size_t inputs) {
-  const std::vector<double> least = least_of(samples, inputs);
-  if (least.empty()) throw std::invalid_argument("0 samples; expected at least 1");
-  return std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
+  const std::vector<double> minima = min_samples(samples, inputs);
+  if (minima.empty()) throw std::invalid_argument("0 samples; expected at least 1");
+  return std::accumulate(minima.begin(), minima.end(), 0.0) / static_cast<double>(minima.size());
 }
 
 double part_of_rounds(const Measurement& a, const Measurement& b) {
@@ -77,29 +77,29 @@ double part_of_rounds(const Measurement& a, const Measurement& b) {
   return rounds == 0 ? 0 : static_cast<double>(longer) / static_cast<double>(rounds);
 }
 
-std::optional<AlgorithmChoice> choose(std::span<const Rival> rivals, bool by_time) {
-  const auto plain = fastest(rivals, [](const Rival& rival) { return !rival.is_variant && !is_peer(rival); });
+std::optional<AlgorithmChoice> choose(std::span<const Candidate> candidates, bool by_time) {
+  const auto plain = fastest(candidates, [](const Candidate& candidate) { return !candidate.is_variant && !is_peer(candidate); });
   if (!plain) return std::nullopt;
-  const double least = rivals[*plain].milliseconds;
-  AlgorithmChoice choice{*plain, is_auto(rivals[*plain]) ? Why::automatic : Why::fastest, *plain, {}};
-  const auto automatic = fastest(rivals, is_auto);
-  if (automatic && !by_time) return AlgorithmChoice{*automatic, Why::automatic, *plain, {}};
+  const double min_time = candidates[*plain].milliseconds;
+  AlgorithmChoice choice{*plain, is_auto(candidates[*plain]) ? ChoiceReason::automatic : ChoiceReason::fastest, *plain, {}};
+  const auto automatic = fastest(candidates, is_auto);
+  if (automatic && !by_time) return AlgorithmChoice{*automatic, ChoiceReason::automatic, *plain, {}};
   if (automatic) {
-    const double time = rivals[*automatic].milliseconds;
-    if (time <= least * margin_of_auto || time - least <= indifferent_ms) {
+    const double time = candidates[*automatic].milliseconds;
+    if (time <= min_time * margin_of_auto || time - min_time <= indifferent_ms) {
       choice.chosen = *automatic;
-      choice.why = Why::automatic;
+      choice.why = ChoiceReason::automatic;
     }
   }
-  const auto variant = fastest(rivals, [&](const Rival& rival) {
-    return rival.is_variant && !is_peer(rival) && is_clearly_faster(rival, rivals[*plain]);
+  const auto variant = fastest(candidates, [&](const Candidate& candidate) {
+    return candidate.is_variant && !is_peer(candidate) && is_clearly_faster(candidate, candidates[*plain]);
   });
   if (variant) {
     choice.chosen = *variant;
-    choice.why = Why::variant;
+    choice.why = ChoiceReason::variant;
   }
-  const auto peer = fastest(rivals, is_peer);
-  if (peer && rivals[*peer].milliseconds < rivals[choice.chosen].milliseconds) choice.peer = peer;
+  const auto peer = fastest(candidates, is_peer);
+  if (peer && candidates[*peer].milliseconds < candidates[choice.chosen].milliseconds) choice.peer = peer;
   return choice;
 }
 

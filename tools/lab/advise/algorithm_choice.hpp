@@ -27,23 +27,23 @@ inline constexpr double margin_of_auto = 1.04;
 inline constexpr double indifferent_ms = 0.0002;
 
 /// A measured algorithm.
-struct Rival {
+struct Candidate {
   const Measurement* measurement;
   double milliseconds;      ///< the time that counts, where it was verified
   bool is_variant = false;  ///< whether a tunable is set that the user did not ask for
 };
 
 /// The reason for the choice.
-enum class Why {
+enum class ChoiceReason {
   fastest,    ///< it is the fastest plain algorithm
   automatic,  ///< it is auto, and the fastest plain algorithm is hardly faster
   variant     ///< it is a variant that is clearly faster than all plain algorithms
 };
 
-/// The choice. Numbers are indices of rivals.
+/// The choice. Numbers are indices of candidates.
 struct AlgorithmChoice {
   std::size_t chosen;
-  Why why;
+  ChoiceReason why;
   std::size_t fastest_plain;  ///< the fastest algorithm whose tunables are its own choice
   std::optional<std::size_t>
       peer{};  ///< another library that is faster than what was chosen, the fastest one
@@ -64,7 +64,7 @@ double part_of_rounds(const Measurement& a, const Measurement& b);
 /// Chooses among the verified; empty if none of ours and the paper's was. Of equals the first is
 /// taken. `by_time` is false where there is nothing to find and times say nothing: then it is auto, if that
 /// is among them.
-std::optional<AlgorithmChoice> choose(std::span<const Rival> rivals, bool by_time = true);
+std::optional<AlgorithmChoice> choose(std::span<const Candidate> candidates, bool by_time = true);
 
 /// The settings that are worth a try: cells of some multiples of the boxes' size, capacities, axes, and where
 /// boxes move each way to follow them. The entry's own values stay as they are. Empty for an algorithm

@@ -43,7 +43,7 @@ Json json_of(const Signals& signals) {
   return json;
 }
 
-Json json_of(const Ranked& ranked) {
+Json json_of(const RankedAlgorithm& ranked) {
   const Measurement& measurement = ranked.measurement;
   const std::vector<double>& samples = measurement.samples_ms;
   const bool timed = !samples.empty();
@@ -118,7 +118,7 @@ std::string json_of(const Advice& advice, std::span<const std::string> command) 
   add("advice", advice_json(advice));
   text += ",\n\"ranking\": [";
   std::string_view separator = "\n";
-  for (const Ranked& ranked : advice.ranking) {
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     text += separator;
     text += json_text(json_of(ranked));
     separator = ",\n";

@@ -82,7 +82,7 @@ std::string sweep_text(double tests, const Signals& signals) {
 }
 
 /// Why it takes longer than the chosen one: only what the numbers of the two bear out, else nothing.
-std::string hinders(const Ranked& slow, const Ranked& chosen, const Signals& signals) {
+std::string hinders(const RankedAlgorithm& slow, const RankedAlgorithm& chosen, const Signals& signals) {
   const Measurement& of = slow.measurement;
   const Measurement& best = chosen.measurement;
   const std::string name = base_of(of.algorithm);
@@ -117,9 +117,9 @@ std::string what_auto_takes(const Measurement& chooser, const std::string& name,
 
 /// The fastest of the settings made by hand that is faster than what is advised, by more than sentences
 /// count; null where there is none.
-const Ranked* faster_variant(const Advice& advice) {
-  const Ranked* fastest = nullptr;
-  for (const Ranked& ranked : advice.ranking) {
+const RankedAlgorithm* faster_variant(const Advice& advice) {
+  const RankedAlgorithm* fastest = nullptr;
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     if (!ranked.is_variant || !is_timed(ranked.measurement) ||
         ranked.milliseconds * as_fast > advice.milliseconds)
       continue;
@@ -141,20 +141,20 @@ std::vector<std::string> reasons_of(const Advice& advice) {
   const Measurement& fastest = advice.ranking[choice.fastest_plain].measurement;
   const std::string name = base_of(chosen.algorithm);
   const double time = advice.milliseconds;
-  const double least = advice.ranking[choice.fastest_plain].milliseconds;
+  const double min_time = advice.ranking[choice.fastest_plain].milliseconds;
   if (advice.signals.boxes < 2 && !advice.signals.motion)
     return {fmt::format(
         "with fewer than two boxes there are no pairs, whatever finds them; {} chooses once there are",
         default_algorithm)};
   switch (choice.why) {
-    case Why::automatic: {
+    case ChoiceReason::automatic: {
       std::string text =
           choice.chosen == choice.fastest_plain
               ? fmt::format("{} is the fastest that sets its own options", chosen.algorithm)
               : fmt::format(
                     "{} takes {} the time of {}, the fastest that sets its own options, which is "
                     "within what repeated measurements differ by",
-                    chosen.algorithm, times(time / least), fastest.algorithm);
+                    chosen.algorithm, times(time / min_time), fastest.algorithm);
       text += ", and it chooses anew when the boxes change";
       if (!chosen.explanation.empty())
         text += fmt::format(". {}: {}", advice.mode == Mode::find ? "For these boxes" : "In the last frame",
@@ -162,20 +162,20 @@ std::vector<std::string> reasons_of(const Advice& advice) {
       reasons.push_back(text);
       break;
     }
-    case Why::fastest:
+    case ChoiceReason::fastest:
       reasons.push_back(fmt::format("{} is the fastest that sets its own options: {}", chosen.algorithm,
                                     suits(name, chosen, advice.signals)));
       break;
-    case Why::variant:
+    case ChoiceReason::variant:
       reasons.push_back(
           fmt::format("{} takes {:.0f} % less time than {}, the fastest that sets its own options, and is "
                       "the faster one in "
                       "{:.0f} % of the rounds; it is for boxes like these only",
-                      chosen.algorithm, (1 - time / least) * 100, fastest.algorithm,
+                      chosen.algorithm, (1 - time / min_time) * 100, fastest.algorithm,
                       part_of_rounds(chosen, fastest) * 100));
       break;
   }
-  if (const Ranked* const faster = faster_variant(advice)) {
+  if (const RankedAlgorithm* const faster = faster_variant(advice)) {
     reasons.push_back(
         fmt::format("{} takes {} the time, but it is for boxes like these only, and was the faster one in "
                     "{:.0f} % of the "
@@ -185,7 +185,7 @@ std::vector<std::string> reasons_of(const Advice& advice) {
                     100 * (1 - 1 / margin_of_variants)));
   }
   std::size_t others = 0;
-  for (const Ranked& ranked : advice.ranking) {
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     const Measurement& other = ranked.measurement;
     if (ranked.is_variant || &other == &chosen || !is_timed(other) || is_foreign(other.kind)) continue;
     const double ratio = ranked.milliseconds / time;
@@ -207,8 +207,8 @@ std::vector<std::string> reasons_of(const Advice& advice) {
 
 namespace {
 
-const Ranked* find(const Advice& advice, std::string_view spec) {
-  for (const Ranked& ranked : advice.ranking) {
+const RankedAlgorithm* find(const Advice& advice, std::string_view spec) {
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     if (ranked.measurement.algorithm == spec && is_timed(ranked.measurement)) return &ranked;
   }
   return nullptr;
@@ -216,8 +216,8 @@ const Ranked* find(const Advice& advice, std::string_view spec) {
 
 /// From which moving fraction on finding anew is the cheaper way, by the times of both ways here.
 std::string break_even(const Advice& advice) {
-  const Ranked* const rebuild = find(advice, "auto:update=rebuild");
-  const Ranked* const follow = find(advice, "auto:update=follow");
+  const RankedAlgorithm* const rebuild = find(advice, "auto:update=rebuild");
+  const RankedAlgorithm* const follow = find(advice, "auto:update=follow");
   const double moving = advice.signals.motion ? advice.signals.motion->moving : 0;
   if (rebuild == nullptr || follow == nullptr || !(moving > 0)) return "";
   const double anew = rebuild->milliseconds;
@@ -242,9 +242,9 @@ std::vector<std::string> changes_of(const Advice& advice) {
   const Measurement& chosen = advice.ranking[advice.choice->chosen].measurement;
   const double time = advice.milliseconds;
   if (const std::string text = break_even(advice); !text.empty()) changes.push_back(text);
-  const Ranked* leanest = nullptr;
-  const Ranked* steadiest = nullptr;
-  for (const Ranked& ranked : advice.ranking) {
+  const RankedAlgorithm* leanest = nullptr;
+  const RankedAlgorithm* steadiest = nullptr;
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     const Measurement& other = ranked.measurement;
     if (!is_timed(other) || is_foreign(other.kind) || ranked.is_variant || &other == &chosen) continue;
     if (chosen.peak_bytes && other.peak_bytes && *other.peak_bytes * 5 <= *chosen.peak_bytes * 3 &&

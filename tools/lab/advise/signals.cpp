@@ -205,14 +205,14 @@ Signals signals_of(const History<D, Real>& history) {
   Signals signals{.dimension = D, .precision = precision_of<Real>};
   std::vector<Box<D, Real>> boxes = history.boxes;
   std::vector<Box<D, Real>> fullest = boxes;
-  std::size_t most = present_count<D, Real>(boxes);
+  std::size_t max_present = present_count<D, Real>(boxes);
   MotionCollector<D, Real> motion;
   for (const Step<D, Real>& step : history.steps) {
     motion.take(step, boxes);
     apply(step, boxes);
     const std::size_t there = present_count<D, Real>(boxes);
-    if (there <= most) continue;
-    most = there;
+    if (there <= max_present) continue;
+    max_present = there;
     fullest = boxes;
   }
   look_at<D, Real>(fullest, signals);

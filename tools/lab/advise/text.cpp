@@ -37,7 +37,7 @@ std::string verdict_with_reason(const Measurement& measurement) {
 
 /// The table; a line stands before the algorithms that were in the first round only.
 std::string with_first_round_apart(std::string table, const Advice& advice) {
-  const auto first = std::ranges::find(advice.ranking, false, &Ranked::is_finalist);
+  const auto first = std::ranges::find(advice.ranking, false, &RankedAlgorithm::is_finalist);
   if (first == advice.ranking.begin() || first == advice.ranking.end()) return table;
   std::size_t place = table.find('\n') + 1;  // after the head
   for (auto finalist = advice.ranking.begin(); finalist != first; ++finalist)
@@ -53,7 +53,7 @@ std::string table(const Advice& advice) {
   if (moves) head.insert(head.begin() + 2, "p99");
   columns.add(head);
   const double chosen = advice.milliseconds;
-  for (const Ranked& ranked : advice.ranking) {
+  for (const RankedAlgorithm& ranked : advice.ranking) {
     const Measurement& measurement = ranked.measurement;
     const bool timed = is_timed(measurement);
     const auto memory = [&](const std::optional<std::uint64_t>& count) {

@@ -47,18 +47,18 @@ bool ByteSource::is_compressed() {
   return decompressor_ != nullptr;
 }
 
-std::size_t ByteSource::read(char* to, std::size_t most) {
+std::size_t ByteSource::read(char* to, std::size_t max_bytes) {
   begin();
   if (decompressor_ == nullptr) {
-    if (rest_.empty()) return has_ended_ ? 0 : read_some(to, most);
-    const std::size_t count = std::min(rest_.size(), most);
+    if (rest_.empty()) return has_ended_ ? 0 : read_some(to, max_bytes);
+    const std::size_t count = std::min(rest_.size(), max_bytes);
     std::memcpy(to, rest_.data(), count);
     rest_.remove_prefix(count);
     return count;
   }
   while (true) {
     if (rest_.empty() && !has_ended_) fill();
-    const auto [taken, given] = decompressor_->decompress(rest_, {to, most});
+    const auto [taken, given] = decompressor_->decompress(rest_, {to, max_bytes});
     rest_.remove_prefix(taken);
     if (given > 0) return given;
     if (!rest_.empty() || !has_ended_) continue;
@@ -83,8 +83,8 @@ void ByteSource::fill() {
   has_ended_ = got == 0;
 }
 
-std::size_t ByteSource::read_some(char* to, std::size_t most) {
-  const std::int64_t got = platform::read(descriptor_, to, most);
+std::size_t ByteSource::read_some(char* to, std::size_t max_bytes) {
+  const std::int64_t got = platform::read(descriptor_, to, max_bytes);
   if (got < 0) throw FileError(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
   return static_cast<std::size_t>(got);
 }

@@ -63,12 +63,12 @@ class ByteSource {
 
   /// The next bytes, as many as there are now, up to `most`; 0 at the end. Throws FileError, also where what
   /// is compressed is damaged or cut off.
-  std::size_t read(char* to, std::size_t most);
+  std::size_t read(char* to, std::size_t max_bytes);
 
  private:
   void begin();
   void fill();
-  std::size_t read_some(char* to, std::size_t most);
+  std::size_t read_some(char* to, std::size_t max_bytes);
 
   int descriptor_;  // none for bytes in memory
   std::string name_;

@@ -29,12 +29,12 @@ class Gzip final : public Decompressor {
       inflateReset(&stream_);
       is_in_member_ = true;
     }
-    constexpr std::size_t most = std::numeric_limits<uInt>::max();
+    constexpr std::size_t max_bytes = std::numeric_limits<uInt>::max();
     // zlib only reads from there.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(from.data()));
-    stream_.avail_in = static_cast<uInt>(std::min(from.size(), most));
+    stream_.avail_in = static_cast<uInt>(std::min(from.size(), max_bytes));
     stream_.next_out = reinterpret_cast<Bytef*>(to.data());
-    stream_.avail_out = static_cast<uInt>(std::min(to.size(), most));
+    stream_.avail_out = static_cast<uInt>(std::min(to.size(), max_bytes));
     const int result = inflate(&stream_, Z_NO_FLUSH);
     const auto taken = static_cast<std::size_t>(reinterpret_cast<const char*>(stream_.next_in) - from.data());
     const auto given = static_cast<std::size_t>(reinterpret_cast<char*>(stream_.next_out) - to.data());

@@ -167,13 +167,13 @@ std::string_view Input::bytes() {
 /// Reads all bytes into memory.
 void Input::copy() {
   kept_ = buffer_->peek(0);
-  const std::uint64_t most = max_copied_bytes(is_device_);
+  const std::uint64_t max_bytes = max_copied_bytes(is_device_);
   std::size_t used = kept_.size();
   try {
-    while (used <= most) {
+    while (used <= max_bytes) {
       // Never beyond what may be read, since the old bytes are kept until they are copied.
       kept_.resize(
-          std::min<std::uint64_t>(std::max<std::uint64_t>(2 * used, std::uint64_t{1} << 16), most + 1));
+          std::min<std::uint64_t>(std::max<std::uint64_t>(2 * used, std::uint64_t{1} << 16), max_bytes + 1));
       const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
       if (got == 0) {
         kept_.resize(used);

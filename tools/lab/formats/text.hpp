@@ -16,8 +16,8 @@ inline std::string plainly(std::string_view text) {
 }
 
 /// The beginning of `text` in quotes, with '?' for every character that is not printable ASCII.
-inline std::string shown(std::string_view text, std::size_t most = 60) {
-  return "'" + plainly(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
+inline std::string shown(std::string_view text, std::size_t max_chars = 60) {
+  return "'" + plainly(text.substr(0, max_chars)) + (text.size() > max_chars ? "...'" : "'");
 }
 
 /// Takes the first word off the text; empty where there is none left.

@@ -48,7 +48,7 @@ std::uint64_t spread(std::uint64_t value) noexcept {
 template <int D>
 class MortonCurve {
  public:
-  MortonCurve(std::span<const Box<D>> boxes, int axis_bits) : most_(std::ldexp(1.0, axis_bits) - 1) {
+  MortonCurve(std::span<const Box<D>> boxes, int axis_bits) : max_cell_(std::ldexp(1.0, axis_bits) - 1) {
     low_.fill(std::numeric_limits<double>::infinity());
     std::array<double, D> high;
     high.fill(-std::numeric_limits<double>::infinity());
@@ -62,7 +62,7 @@ class MortonCurve {
     }
     for (int axis = 0; axis < D; ++axis) {
       if (low_[axis] > high[axis]) low_[axis] = 0;  // none is finite
-      scale_[axis] = high[axis] > low_[axis] ? most_ / (high[axis] - low_[axis]) : 0;
+      scale_[axis] = high[axis] > low_[axis] ? max_cell_ / (high[axis] - low_[axis]) : 0;
     }
   }
 
@@ -71,7 +71,7 @@ class MortonCurve {
     for (int axis = 0; axis < D; ++axis) {
       const double place = (centre_of(box, axis) - low_[axis]) * scale_[axis];
       // A NaN, as of a box that is infinite both ways, is not above 0.
-      const double inside = place > 0 ? std::min(place, most_) : 0;
+      const double inside = place > 0 ? std::min(place, max_cell_) : 0;
       code |= spread<D>(static_cast<std::uint64_t>(inside)) << axis;
     }
     return code;
@@ -82,7 +82,7 @@ class MortonCurve {
     return (double{box.min[axis]} + double{box.max[axis]}) / 2;
   }
 
-  double most_;
+  double max_cell_;
   std::array<double, D> low_;
   std::array<double, D> scale_;
 };
@@ -152,12 +152,12 @@ class KarrasLbvh final : public Searcher<D> {
   /// Karras' algorithm for internal node i: the direction and length of its range, and where it splits.
   void make_node(std::int64_t i) {
     const int direction = prefix(i, i + 1) > prefix(i, i - 1) ? 1 : -1;
-    const int least = prefix(i, i - direction);
-    std::int64_t most = 2;
-    while (prefix(i, i + most * direction) > least) most *= 2;
+    const int min_prefix = prefix(i, i - direction);
+    std::int64_t max_length = 2;
+    while (prefix(i, i + max_length * direction) > min_prefix) max_length *= 2;
     std::int64_t length = 0;
-    for (std::int64_t step = most / 2; step > 0; step /= 2) {
-      if (prefix(i, i + (length + step) * direction) > least) length += step;
+    for (std::int64_t step = max_length / 2; step > 0; step /= 2) {
+      if (prefix(i, i + (length + step) * direction) > min_prefix) length += step;
     }
     const std::int64_t other_end = i + length * direction;
 

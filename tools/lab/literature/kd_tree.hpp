@@ -251,11 +251,11 @@ class KdTree {
     const auto left = static_cast<double>(nodes_[node.children[0]].population);
     const auto right = static_cast<double>(nodes_[node.children[1]].population);
     const double here = all - left - right;
-    const double most = (all * all - all) / 2;
-    const double least = all * all / 4 - all / 2;
+    const double max_tests = (all * all - all) / 2;
+    const double min_tests = all * all / 4 - all / 2;
     const double tests = (here * here + left * left + right * right - all) / 2 + here * (left + right);
     const double balance = left < right ? left / (right + here) : right / (left + here);
-    return (tests - least) / (most - least) > balance;
+    return (tests - min_tests) / (max_tests - min_tests) > balance;
   }
 
   bool is_flagged(std::uint32_t id) const noexcept { return search_.flags.empty() || search_.flags[id] != 0; }

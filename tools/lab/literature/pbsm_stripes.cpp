@@ -51,8 +51,8 @@ class PbsmStripes final : public Searcher<D> {
     // No more stripes than boxes, where these are points.
     const double stripes = std::ceil(extent.length() / (width_ * extent.mean));
     const bool finite = stripes >= 1;  // not NaN
-    const auto most = static_cast<double>(boxes.size());
-    stripes_ = extent.cut(finite ? static_cast<std::size_t>(std::min(stripes, most)) : 1);
+    const auto max_stripes = static_cast<double>(boxes.size());
+    stripes_ = extent.cut(finite ? static_cast<std::size_t>(std::min(stripes, max_stripes)) : 1);
 
     Checkpoint checkpoint(input.workers.checkpoint);
     if (left == 0) {

@@ -105,20 +105,20 @@ class TwoLayerGrid final : public Searcher<D> {
   }
 
   static std::array<double, D> standard_tiles(const std::array<Extent, D>& extents, std::size_t boxes) {
-    const auto most = static_cast<double>(boxes);
+    const auto box_count = static_cast<double>(boxes);
     std::array<double, D> tiles;
     for (int axis = 0; axis < D; ++axis) {
       const double length = extents[axis].length();
-      const double side = std::max(extents_per_tile * extents[axis].mean, length / most);
+      const double side = std::max(extents_per_tile * extents[axis].mean, length / box_count);
       tiles[axis] = length > 0 ? length / side : 1;
     }
-    shrink(tiles, most / boxes_per_tile);
+    shrink(tiles, box_count / boxes_per_tile);
     return tiles;
   }
 
   /// Makes `tiles` at least 1 on each axis and at most `most` in all, by the same factor on each axis where
   /// that is possible.
-  static void shrink(std::array<double, D>& tiles, double most) {
+  static void shrink(std::array<double, D>& tiles, double max_tiles) {
     for (double& count : tiles) count = count > 1 ? count : 1;
     // In each step another axis may come down to 1.
     for (int step = 0; step < D; ++step) {
@@ -128,8 +128,8 @@ class TwoLayerGrid final : public Searcher<D> {
         all *= count;
         divided += count > 1 ? 1 : 0;
       }
-      if (all <= most || divided == 0) return;
-      const double factor = std::pow(std::max(most, 1.0) / all, 1.0 / divided);
+      if (all <= max_tiles || divided == 0) return;
+      const double factor = std::pow(std::max(max_tiles, 1.0) / all, 1.0 / divided);
       for (double& count : tiles) count = std::max(1.0, count * factor);
     }
   }

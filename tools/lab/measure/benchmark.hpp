@@ -59,7 +59,7 @@ struct Benchmark {
   std::span<const Algorithm> known;  ///< where references are taken from
   Effort effort;
   Watch watch;
-  Taking taking{};
+  MeasureOptions measure_options{};
 };
 
 /// Milliseconds since construction, to the nanosecond.

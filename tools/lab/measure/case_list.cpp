@@ -33,11 +33,11 @@ auto at_place(const JsonPlace& place, const Step& step) {
   }
 }
 
-std::size_t count_from(const JsonPlace& place, std::size_t least, std::size_t most = SIZE_MAX) {
+std::size_t count_from(const JsonPlace& place, std::size_t min_count, std::size_t max_count = SIZE_MAX) {
   const std::uint64_t count = place.count();
-  if (count < least || count > most) {
-    place.refuse(most == SIZE_MAX ? fmt::format("a whole number of at least {}", least)
-                                  : fmt::format("a whole number from {} to {}", least, most));
+  if (count < min_count || count > max_count) {
+    place.refuse(max_count == SIZE_MAX ? fmt::format("a whole number of at least {}", min_count)
+                                  : fmt::format("a whole number from {} to {}", min_count, max_count));
   }
   return count;
 }
@@ -73,15 +73,15 @@ void read_effort(const JsonPlace& place, Effort& effort) {
     place.refuse(fmt::format("no fewer max_rounds than min_rounds, {}", effort.min_rounds));
 }
 
-void read_taking(const JsonPlace& place, ListedCase& listed) {
-  listed.taking.times = false;
+void read_measure_options(const JsonPlace& place, ListedCase& listed) {
+  listed.measure_options.times = false;
   for (const JsonPlace& part : place.list()) {
     const std::string what = part.text();
     if (what == "time" || what == "phases")
-      listed.taking.times = true;
+      listed.measure_options.times = true;
     else if (what != "counts" && what != "memory")
       part.refuse("time, counts, memory or phases");
-    listed.taking.phases = listed.taking.phases || what == "phases";
+    listed.measure_options.phases = listed.measure_options.phases || what == "phases";
   }
 }
 
@@ -134,8 +134,8 @@ void read_boxes(const JsonPlace& place, ListedCase& listed) {
   CaseRequest& request = listed.request;
   if (scene.fixed_count && place.has("boxes"))
     place.at("boxes").refuse(fmt::format("none: scene '{}' has a count of its own", scene.name));
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (!scene.fixed_count) request.boxes = count_from(place.at("boxes"), 1, most);
+  constexpr std::size_t max_boxes = std::numeric_limits<std::uint32_t>::max();
+  if (!scene.fixed_count) request.boxes = count_from(place.at("boxes"), 1, max_boxes);
 
   const bool moves = moves_by_itself(scene, request.dimension);
   if (place.has("frames")) request.frames = count_from(place.at("frames"), 1);
@@ -149,7 +149,7 @@ void read_boxes(const JsonPlace& place, ListedCase& listed) {
   }
   if (!moves && request.frames > 0 && !(request.moving > 0))
     place.at("frames").refuse("the fraction that is moving as well, above 0");
-  if (listed.taking.made_anew && request.frames > 0)
+  if (listed.measure_options.made_anew && request.frames > 0)
     place.at("made_anew").refuse("false where boxes move: a tracker keeps its structure");
 
   const JsonPlace files = place.at("scene");
@@ -187,7 +187,7 @@ void read_algorithms(const JsonPlace& place, const Catalogue& catalogue, ListedC
     listed.algorithms += (listed.algorithms.empty() ? "" : ",") + text;
   }
   if (listed.algorithms.empty()) place.refuse("at least one spec");
-  if (listed.taking.phases && !has_phases)
+  if (listed.measure_options.phases && !has_phases)
     place.refuse(
         "a listing of the paper that has phases here, such as paper_grid, since they are to be taken");
 }
@@ -218,8 +218,8 @@ ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const 
   if (listed.name.empty()) place.at("name").refuse("a name");
   listed.effort = effort;
   if (place.has("effort")) read_effort(place.at("effort"), listed.effort);
-  if (place.has("take")) read_taking(place.at("take"), listed);
-  if (place.has("made_anew")) listed.taking.made_anew = place.at("made_anew").truth();
+  if (place.has("take")) read_measure_options(place.at("take"), listed);
+  if (place.has("made_anew")) listed.measure_options.made_anew = place.at("made_anew").truth();
   if (place.has("instruction_set"))
     listed.instruction_set = read_instruction_set(place.at("instruction_set"));
   const std::size_t dimension = place.has("dimension") ? count_from(place.at("dimension"), 2, 3) : 2;
@@ -270,7 +270,7 @@ Comparison measure_cases(const Catalogue& catalogue, const std::vector<ListedCas
     options.seeds = listed.seeds;
     options.find = [&listed](std::string_view) { return listed.scene; };
     options.effort = listed.effort;
-    options.taking = listed.taking;
+    options.measure_options = listed.measure_options;
     options.watch = {watch.stop, [&](std::string_view what) {
                        if (watch.progress) watch.progress(fmt::format("{}: {}", listed.name, what));
                      }};

@@ -24,7 +24,7 @@ struct ListedCase {
   CaseRequest request;
   std::uint64_t seed = 1;
   std::size_t seeds = 0;  ///< in rotation; 0: by the number of boxes, as in a comparison
-  Taking taking{};
+  MeasureOptions measure_options{};
   Effort effort{};
   std::string instruction_set{};  ///< one of instruction_sets(); empty: the best
 };

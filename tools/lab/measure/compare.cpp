@@ -30,9 +30,9 @@ std::size_t seeds_for(std::size_t boxes, Mode mode) {
 
 template <int D>
 std::size_t max_boxes(const History<D>& history) {
-  std::size_t most = history.boxes.size();
-  for (const Step<D>& step : history.steps) most = std::max(most, step.size);
-  return most;
+  std::size_t max_size = history.boxes.size();
+  for (const Step<D>& step : history.steps) max_size = std::max(max_size, step.size);
+  return max_size;
 }
 
 template <int D>
@@ -47,16 +47,16 @@ double moving_fraction(const History<D>& history) {
 /// Refuses motion whose steps, and the events that are to be expected of them, would fill the machine.
 template <int D>
 void check_steps(const CaseRequest& request) {
-  constexpr double most = 4e9;  // bytes
+  constexpr double max_bytes = 4e9;  // bytes
   const double moved =
       request.moving * static_cast<double>(request.boxes) * static_cast<double>(request.frames);
   // In a frame about as many pairs begin or end as boxes move, where these have some neighbours.
   const double taken = moved * static_cast<double>(sizeof(Box<D>) + sizeof(BoxId) + 2 * sizeof(Pair));
-  if (taken > most) {
+  if (taken > max_bytes) {
     throw std::runtime_error(fmt::format(
         "{} frames of {:.0f} boxes that move are about {:.1f} GB; expected at most {:.0f} GB, since "
         "they are kept to be followed again",
-        request.frames, request.moving * static_cast<double>(request.boxes), taken / 1e9, most / 1e9));
+        request.frames, request.moving * static_cast<double>(request.boxes), taken / 1e9, max_bytes / 1e9));
   }
 }
 
@@ -124,8 +124,8 @@ class Runner {
       return;
     }
     Effort effort = options_.effort;
-    if (!options_.taking.times) effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
-    const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.taking};
+    if (!options_.measure_options.times) effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
+    const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.measure_options};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
                                     : CaseResult{of, measure_track<D>(of, inputs, benchmark)});

@@ -24,7 +24,7 @@ struct CompareOptions {
   std::size_t seeds = 0;   ///< in rotation, where the scene has several; 0: by the number of boxes
   FindScene find = [](std::string_view text) { return find_scene(text); };
   Effort effort{};
-  Taking taking{};
+  MeasureOptions measure_options{};
   Watch watch{};
   std::function<void(const CaseResult&)> finished{};  ///< called after each case; empty: nothing is called
 };

@@ -117,7 +117,7 @@ class FindCase {
 
   std::unique_ptr<SeenAlgorithm> seen(const Entry& entry) const {
     return std::make_unique<SeenAlgorithm>(*entry.algorithm, SeenAlgorithm::Sees::searchers,
-                                           benchmark_.taking.phases);
+                                           benchmark_.measure_options.phases);
   }
 
   void make_finder(FindParticipant<D, Real>& participant) const {
@@ -188,7 +188,7 @@ class FindCase {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(fmt::format("{}, round {}", measurement.algorithm, round + 1));
     attempt(measurement, [&] {
-      if (benchmark_.taking.made_anew) make_finder(participant);
+      if (benchmark_.measure_options.made_anew) make_finder(participant);
       measurement.samples_ms.push_back(call(participant, input));
       if (const paper::Phases* const phases = participant.seen->phases())
         measurement.phases.push_back(*phases);

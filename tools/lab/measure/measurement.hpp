@@ -34,7 +34,7 @@ struct Case {
 };
 
 /// What is taken of a case. Counts and memory always are.
-struct Taking {
+struct MeasureOptions {
   bool times = true;       ///< otherwise each algorithm runs once on each seed
   bool phases = false;     ///< where the time of each call or frame of a listing goes
   bool made_anew = false;  ///< each timed search is by a new searcher, which is made before the clock starts

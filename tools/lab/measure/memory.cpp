@@ -27,8 +27,8 @@ void count_taken(void* block) noexcept {
   if (!counting.load(std::memory_order_relaxed)) return;
   const auto size = static_cast<std::int64_t>(malloc_usable_size(block));
   const std::int64_t now = held.fetch_add(size, std::memory_order_relaxed) + size;
-  std::int64_t most = max_held.load(std::memory_order_relaxed);
-  while (now > most && !max_held.compare_exchange_weak(most, now, std::memory_order_relaxed)) {
+  std::int64_t max_so_far = max_held.load(std::memory_order_relaxed);
+  while (now > max_so_far && !max_held.compare_exchange_weak(max_so_far, now, std::memory_order_relaxed)) {
   }
 }
 

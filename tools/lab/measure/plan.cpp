@@ -12,9 +12,9 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::size_t standard_boxes = 10'000;
+constexpr std::size_t default_boxes = 10'000;
 constexpr std::size_t standard_frames = 20;
-constexpr double standard_moving = 0.1;
+constexpr double default_moving = 0.1;
 
 /// A part of a plan: every combination, in both dimensions where the scene has them.
 struct PlanPart {
@@ -84,8 +84,8 @@ std::vector<CaseRequest> plan_from(const std::vector<PlanPart>& parts) {
 }
 
 template <typename Value>
-std::vector<Value> or_standard(std::vector<Value> values, std::initializer_list<Value> standard) {
-  return values.empty() ? std::vector<Value>(standard) : std::move(values);
+std::vector<Value> or_default(std::vector<Value> values, std::initializer_list<Value> default_values) {
+  return values.empty() ? std::vector<Value>(default_values) : std::move(values);
 }
 
 }  // namespace
@@ -117,9 +117,9 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& options) {
       if (scene.kind == SceneKind::generated && !scene.hard) scenes.push_back(scene.name);
     }
   }
-  const auto counts = or_standard(options.boxes, {standard_boxes});
-  const auto dimensions = or_standard(options.dimensions, {2, 3});
-  const auto fractions = or_standard(options.moving, {options.frames > 0 ? standard_moving : 0.0});
+  const auto counts = or_default(options.boxes, {default_boxes});
+  const auto dimensions = or_default(options.dimensions, {2, 3});
+  const auto fractions = or_default(options.moving, {options.frames > 0 ? default_moving : 0.0});
 
   std::vector<CaseRequest> plan;
   for (const std::string& name : scenes) {

@@ -97,16 +97,16 @@ template std::optional<PairDivergence> check_sample<3, double>(BoxSpan<3, double
 
 template <int D, typename Real>
 void check_pair_count(BoxSpan<D, Real> boxes) {
-  constexpr double most = 250e6;  // 2 GB
+  constexpr double max_pairs = 250e6;  // 2 GB
   std::vector<Box<D, Real>> some;
   for (const std::size_t i : sample_of(boxes.size(), 1'000)) some.push_back(boxes[i]);
   const double scale =
       static_cast<double>(boxes.size()) / static_cast<double>(std::max<std::size_t>(some.size(), 1));
   const double pairs = static_cast<double>(reference_pairs<D, Real>(some).size()) * scale * scale;
-  if (pairs > most) {
+  if (pairs > max_pairs) {
     throw std::runtime_error(fmt::format(
         "{} boxes with about {:.1e} pairs; expected at most {:.1e}, since pairs are kept to be checked",
-        grouped(boxes.size()), pairs, most));
+        grouped(boxes.size()), pairs, max_pairs));
   }
 }
 

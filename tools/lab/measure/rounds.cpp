@@ -21,12 +21,12 @@ double sum_of(const std::vector<double>& samples) {
 /// The least time of a first round among the algorithms of a kind, in milliseconds; infinite where there is
 /// none.
 double min_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_time = std::numeric_limits<double>::infinity();
   for (const Measurement& measurement : all) {
     if (measurement.kind == kind && !measurement.samples_ms.empty())
-      least = std::min(least, round_times(measurement).front());
+      min_time = std::min(min_time, round_times(measurement).front());
   }
-  return least;
+  return min_time;
 }
 
 double scaled(double seconds, std::size_t from, std::size_t to, double exponent) {

@@ -24,8 +24,8 @@ double ProcessorShare::value() const {
 }
 
 bool is_busy(double share) {
-  constexpr double least_of_a_quiet_machine = 0.9;
-  return share < least_of_a_quiet_machine;
+  constexpr double min_quiet_share = 0.9;
+  return share < min_quiet_share;
 }
 
 std::string busy_hint(double share) {
@@ -44,8 +44,8 @@ std::optional<double> spread(std::span<const double> samples, std::size_t period
   for (std::size_t first = 0; first < period && first + period < samples.size(); ++first) {
     same.clear();
     for (std::size_t i = first; i < samples.size(); i += period) same.push_back(samples[i]);
-    const double least = std::ranges::min(same);
-    spreads.push_back(least > 0 ? median(same) / least : 1);
+    const double min_time = std::ranges::min(same);
+    spreads.push_back(min_time > 0 ? median(same) / min_time : 1);
   }
   return median(spreads);
 }

@@ -75,7 +75,7 @@ class TrackCase {
         participants_.push_back(
             {&benchmark_.entries[i], &measurements_[i],
              std::make_unique<SeenAlgorithm>(*benchmark_.entries[i].algorithm, SeenAlgorithm::Sees::followers,
-                                             benchmark_.taking.phases)});
+                                             benchmark_.measure_options.phases)});
     }
     warm_up();
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
@@ -111,9 +111,9 @@ class TrackCase {
   /// two tries the shorter one where they are short, since those are easily disturbed.
   double seconds_of(const Entry& entry, const History<D, Real>& history) {
     constexpr double is_short = 0.02;  // for all frames
-    double least = INFINITY;
+    double min_time = INFINITY;
     for (int attempt = 0; attempt < 3; ++attempt) {
-      if (attempt > 0 && least > is_short) break;
+      if (attempt > 0 && min_time > is_short) break;
       Tracker<D, Real> tracker(*entry.algorithm, entry.spec);
       benchmark_.watch.ask_within(tracker);
       std::vector<Box<D, Real>> boxes = history.boxes;
@@ -125,9 +125,9 @@ class TrackCase {
       }
       const double frames = static_cast<double>(case_.frames) /
                             static_cast<double>(std::max<std::size_t>(history.steps.size(), 1));
-      least = std::min(least, (first + others * frames) / 1e3);
+      min_time = std::min(min_time, (first + others * frames) / 1e3);
     }
-    return least;
+    return min_time;
   }
 
   /// Times one frame, in milliseconds. Sets events_ and statistics_.

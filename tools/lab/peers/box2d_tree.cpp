@@ -31,8 +31,8 @@ float scale_of(std::span<const Box2> boxes) {
   }
   constexpr int greatest_exponent = 100;  // products of two lengths overflow, and only make a worse tree
   const int wanted = -1 - std::ilogb(typical_extent(boxes));
-  const int most = greatest > 0 ? greatest_exponent - std::ilogb(greatest) : greatest_exponent;
-  return std::ldexp(1.0f, std::clamp(std::min(wanted, most), -greatest_exponent, greatest_exponent));
+  const int max_scale_exponent = greatest > 0 ? greatest_exponent - std::ilogb(greatest) : greatest_exponent;
+  return std::ldexp(1.0f, std::clamp(std::min(wanted, max_scale_exponent), -greatest_exponent, greatest_exponent));
 }
 
 b2AABB scaled(const Box2& box, float scale) {

@@ -8,7 +8,7 @@ namespace broadside::lab::peers {
 namespace {
 
 template <int D>
-std::unique_ptr<btBroadphaseInterface> make_sweep(std::span<const Box<D>> boxes, unsigned most) {
+std::unique_ptr<btBroadphaseInterface> make_sweep(std::span<const Box<D>> boxes, unsigned max_boxes) {
   btVector3 min(0, 0, 0);
   btVector3 max(0, 0, 0);
   bool any = false;
@@ -25,7 +25,7 @@ std::unique_ptr<btBroadphaseInterface> make_sweep(std::span<const Box<D>> boxes,
   // Room to move in; what leaves it is still found, though at a higher cost. No axis may be without extent.
   const btVector3 room = (max - min) * btScalar(0.25) + btVector3(1, 1, 1);
   constexpr bool no_rays = true;
-  return std::make_unique<bt32BitAxisSweep3>(min - room, max + room, most, nullptr, no_rays);
+  return std::make_unique<bt32BitAxisSweep3>(min - room, max + room, max_boxes, nullptr, no_rays);
 }
 
 template <int D>

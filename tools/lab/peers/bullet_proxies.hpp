@@ -41,7 +41,7 @@ std::string bullet_version();
 /// Makes an empty broad phase, which frees its proxies, for `boxes` and at most `most` boxes.
 template <int D>
 using MakeBroadphase =
-    std::function<std::unique_ptr<btBroadphaseInterface>(std::span<const Box<D>> boxes, unsigned most)>;
+    std::function<std::unique_ptr<btBroadphaseInterface>(std::span<const Box<D>> boxes, unsigned max_boxes)>;
 
 template <int D>
 class BulletProxies final : public Proxies<D> {
@@ -50,13 +50,13 @@ class BulletProxies final : public Proxies<D> {
   BulletProxies(MakeBroadphase<D> make, bool bounded) : make_(std::move(make)), bounded_(bounded) {}
 
   void clear(std::span<const Box<D>> boxes) override {
-    most_ = static_cast<unsigned>(boxes.size()) * 2 + 16;
+    max_boxes_ = static_cast<unsigned>(boxes.size()) * 2 + 16;
     broadphase_.reset();
-    broadphase_ = make_(boxes, most_);
+    broadphase_ = make_(boxes, max_boxes_);
     proxies_.assign(boxes.size(), nullptr);
   }
 
-  bool fits(std::span<const Box<D>> boxes) const override { return !bounded_ || boxes.size() <= most_; }
+  bool fits(std::span<const Box<D>> boxes) const override { return !bounded_ || boxes.size() <= max_boxes_; }
 
   void add(BoxId id, const Box<D>& box) override {
     if (proxies_.size() <= index(id)) proxies_.resize(index(id) + std::size_t{1});
@@ -88,7 +88,7 @@ class BulletProxies final : public Proxies<D> {
  private:
   MakeBroadphase<D> make_;
   bool bounded_;
-  unsigned most_ = 0;
+  unsigned max_boxes_ = 0;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
   std::vector<btBroadphaseProxy*> proxies_;  // by place; null where there is no box
 };

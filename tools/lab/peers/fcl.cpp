@@ -258,9 +258,9 @@ FclManager make_hash(std::span<const Box<D>> boxes) {
   fcl::Vector3d min = fcl::Vector3d::Zero();
   fcl::Vector3d max = fcl::Vector3d::Zero();
   for (int axis = 0; axis < D; ++axis) {
-    const auto [least, greatest] = range_on(axis, boxes);
-    min[axis] = (std::floor(least / cell) - 1 + offset) * cell;
-    max[axis] = (std::ceil(greatest / cell) + 1 + offset) * cell;
+    const auto [low, high] = range_on(axis, boxes);
+    min[axis] = (std::floor(low / cell) - 1 + offset) * cell;
+    max[axis] = (std::ceil(high / cell) + 1 + offset) * cell;
   }
   if constexpr (D == 2) {
     // One layer of cells around what is flat.

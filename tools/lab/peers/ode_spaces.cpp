@@ -33,8 +33,8 @@ namespace {
 constexpr std::size_t max_boxes = 1 << 17;
 
 struct Levels {
-  int least;  ///< of cells of 2^least
-  int most;
+  int min;  ///< of cells of 2^least
+  int max;
 };
 
 Levels levels_of(std::span<const Box3> boxes) {
@@ -50,8 +50,8 @@ Levels levels_of(std::span<const Box3> boxes) {
   // A cell's place is an int: what is farther off aborts the program.
   constexpr int max_bits = 29;
   const int finest = greatest > 0 ? std::ilogb(greatest) + 1 - max_bits : -max_bits;
-  const int least = std::max(std::ilogb(typical_extent(boxes)) + 1, finest);
-  return {least, longest > 0 ? std::max(std::ilogb(longest) + 1, least) : least};
+  const int min = std::max(std::ilogb(typical_extent(boxes)) + 1, finest);
+  return {min, longest > 0 ? std::max(std::ilogb(longest) + 1, min) : min};
 }
 
 // The space hashes places as unsigned numbers, so that a cell may be another one to a box that begins before
@@ -59,7 +59,7 @@ Levels levels_of(std::span<const Box3> boxes) {
 // rounds keeps its order.
 double shift_of(std::span<const Box3> boxes) {
   constexpr int bits = 30;
-  return std::ldexp(1.0, levels_of(boxes).least + bits);
+  return std::ldexp(1.0, levels_of(boxes).min + bits);
 }
 
 OdeSpace make_hash_space(std::span<const Box3> boxes) {
@@ -67,7 +67,7 @@ OdeSpace make_hash_space(std::span<const Box3> boxes) {
   // itself, and the smaller half of all where the typical one goes.
   OdeSpace space(dHashSpaceCreate(nullptr));
   const Levels levels = levels_of(boxes);
-  dHashSpaceSetLevels(space.get(), levels.least, levels.most);
+  dHashSpaceSetLevels(space.get(), levels.min, levels.max);
   return space;
 }
 
@@ -93,10 +93,10 @@ OdeSpace make_quadtree_space(std::span<const Box3> boxes) {
   dVector3 half{};
   double longest = 0;
   for (int axis = 0; axis < 2; ++axis) {
-    const auto [least, greatest] = range_on(axis, boxes);
-    centre[axis] = least / 2 + greatest / 2;
-    half[axis] = (greatest - least) / 2;
-    longest = std::max(longest, greatest - least);
+    const auto [low, high] = range_on(axis, boxes);
+    centre[axis] = low / 2 + high / 2;
+    half[axis] = (high - low) / 2;
+    longest = std::max(longest, high - low);
   }
   const double by_count = std::log2(static_cast<double>(boxes.size()) + 1) / 2;
   const double by_extent = longest > 0 ? std::log2(longest / typical_extent(boxes)) : 0;

@@ -49,25 +49,25 @@ double cells_touched(std::span<const Box<D>> boxes, double cell) {
 
 template <int D>
 std::array<double, 2> range_on(int axis, std::span<const Box<D>> boxes) {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = -least;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
   for (const Box<D>& box : boxes) {
     if (!is_present(box)) continue;
     for (const double at : {box.min[axis], box.max[axis]}) {
       if (std::isinf(at)) continue;
-      least = std::min(least, at);
-      greatest = std::max(greatest, at);
+      low = std::min(low, at);
+      high = std::max(high, at);
     }
   }
-  return least <= greatest ? std::array{least, greatest} : std::array{0.0, 0.0};
+  return low <= high ? std::array{low, high} : std::array{0.0, 0.0};
 }
 
 template <int D>
 std::array<int, D> axes_by_extent(std::span<const Box<D>> boxes) {
   std::array<double, D> extents{};
   for (int axis = 0; axis < D; ++axis) {
-    const auto [least, greatest] = range_on(axis, boxes);
-    extents[axis] = greatest - least;
+    const auto [low, high] = range_on(axis, boxes);
+    extents[axis] = high - low;
   }
   std::array<int, D> axes{};
   std::iota(axes.begin(), axes.end(), 0);

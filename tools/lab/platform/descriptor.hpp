@@ -24,7 +24,7 @@ int duplicate(int descriptor);
 void close(int descriptor) noexcept;
 
 /// As many bytes as there are now, up to `most`; 0 at the end, -1 where it fails. A signal does not end it.
-std::int64_t read(int descriptor, char* to, std::size_t most);
+std::int64_t read(int descriptor, char* to, std::size_t max_bytes);
 
 /// How many of the bytes were taken, or -1. May be called by a signal's handler.
 std::int64_t write(int descriptor, const char* from, std::size_t count) noexcept;

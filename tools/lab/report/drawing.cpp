@@ -113,15 +113,15 @@ std::vector<Box<D>> boxes_at(std::size_t frame, const NamedScene& named, SceneRe
 }  // namespace
 
 template <int D>
-std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most) {
+std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes) {
   std::vector<Box<D>> present;
   std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
-  if (present.size() <= most) return present;
-  const double ratio = static_cast<double>(present.size()) / static_cast<double>(most);
+  if (present.size() <= max_boxes) return present;
+  const double ratio = static_cast<double>(present.size()) / static_cast<double>(max_boxes);
   const double factor = D == 2 ? std::sqrt(ratio) : std::cbrt(ratio);
   std::vector<Box<D>> chosen;
-  for (std::size_t i = 0; i < most; ++i) {
-    Box<D> box = present[(2 * i + 1) * present.size() / (2 * most)];
+  for (std::size_t i = 0; i < max_boxes; ++i) {
+    Box<D> box = present[(2 * i + 1) * present.size() / (2 * max_boxes)];
     for (int axis = 0; axis < D; ++axis) {
       const double more = (double{box.max[axis]} - box.min[axis]) * (factor - 1) / 2;
       if (!std::isfinite(more)) continue;
@@ -172,17 +172,17 @@ bool has_outline(const Entry& entry, int dimension) {
 }
 
 Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of, std::span<const Entry> entries,
-                   std::size_t most, std::uint64_t seed, std::size_t frame) {
+                   std::size_t max_boxes, std::uint64_t seed, std::size_t frame) {
   std::vector<Entry> able;
   for (const Entry& entry : entries) {
     if (entry.algorithm->has_dimension(dimension)) able.push_back(entry);
   }
   const auto in_dimension = [&]<int D>() {
     SceneRequest request;
-    request.boxes = most;
+    request.boxes = max_boxes;
     request.seed = seed;
     const std::vector<Box<D>> all = boxes_at<D>(frame, named, request);
-    const std::vector<Box<D>> boxes = thinned<D>(all, most);
+    const std::vector<Box<D>> boxes = thinned<D>(all, max_boxes);
     const auto present = static_cast<std::size_t>(std::ranges::count_if(all, is_present<D, float>));
     const bool is_own = named.scene.fixed_count || boxes.size() < present;
     const std::string title = named.spec.text() + (frame > 0 ? fmt::format(", frame {}", frame) : "");

@@ -51,7 +51,7 @@ inline constexpr std::size_t max_drawn = 600;
 /// `most` of the boxes, evenly from the whole array, each made larger about its centre so that they are as
 /// dense as all of them: such a picture looks like the scene. All of them if there are no more than that.
 template <int D>
-std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t most = max_drawn);
+std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes = max_drawn);
 
 /// Draws these boxes and over them the layer of each entry with an outline in D dimensions. A view holds all
 /// boxes but for far outliers; what reaches beyond it is clipped. Absent boxes are not there. `of` is what
@@ -69,7 +69,7 @@ bool has_outline(const Entry& entry, int dimension);
 /// dimension are left out. Throws InvalidSpec if there are fewer frames; boxes that do not move by
 /// themselves have one.
 Drawing draw_scene(const NamedScene& scene, int dimension, std::size_t of, std::span<const Entry> entries,
-                   std::size_t most = max_drawn, std::uint64_t seed = 1, std::size_t frame = 0);
+                   std::size_t max_boxes = max_drawn, std::uint64_t seed = 1, std::size_t frame = 0);
 
 /// {"scene", "dimension", "boxes", "of", "views": [{"axes", "width", "height", "boxes", "layers":
 /// [{"algorithm", "caption", "levels": [...]}]}]}: all boxes in one path, a sweep's line a level of its own.

@@ -63,9 +63,9 @@ struct Panel {
 };
 
 /// The part of a text that fits into `most` characters, as SVG; the whole is shown where a mouse rests on it.
-std::string shortened(const std::string& text, std::size_t most = caption_length) {
-  if (text.size() <= most) return escaped(text);
-  return escaped(text.substr(0, most - 3)) + "...<title>" + escaped(text) + "</title>";
+std::string shortened(const std::string& text, std::size_t max_length = caption_length) {
+  if (text.size() <= max_length) return escaped(text);
+  return escaped(text.substr(0, max_length - 3)) + "...<title>" + escaped(text) + "</title>";
 }
 
 std::string caption_of(const DrawingLayer& layer) {

@@ -65,11 +65,11 @@ std::string lead_text(const Comparison& comparison, AlgorithmKind kind, std::str
   for (const CaseResult& result : comparison.cases)
     ratios.add(result, fastest_of_kind(result, kind), entry_of(result));
   if (ratios.pairs.empty()) return "";
-  const std::size_t least = ratios.extreme(std::greater<>());
+  const std::size_t smallest = ratios.extreme(std::greater<>());
   return fmt::format(
       "{} is {} times as fast as the fastest {}, geometric mean of {}; at least {} times ({})\n", name,
       mean_text(geometric_mean(ratios.pairs)), rival, counted(ratios.pairs.size(), "case", "cases"),
-      fmt::format("{:.3g}", ratios.pairs[least].median()), ratios.names[least]);
+      fmt::format("{:.3g}", ratios.pairs[smallest].median()), ratios.names[smallest]);
 }
 
 struct Standing {

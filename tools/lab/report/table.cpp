@@ -101,7 +101,7 @@ std::string verdict(const Measurement& measurement) {
 }
 
 /// The fastest one's time; 0 where nothing was timed.
-double least_time_of(const CaseResult& result) {
+double min_time(const CaseResult& result) {
   const Measurement* const fastest = fastest_of(result);
   return fastest == nullptr ? 0 : time_of(*fastest);
 }
@@ -109,7 +109,7 @@ double least_time_of(const CaseResult& result) {
 /// What the rows of a case's table share.
 struct Scale {
   explicit Scale(const CaseResult& result)
-      : fastest(least_time_of(result)),
+      : fastest(min_time(result)),
         unit(unit_for(fastest)),
         boxes(static_cast<double>(std::max<std::size_t>(result.of.boxes, 1))) {
     const auto is_estimate = [](const Measurement& m) { return m.estimated_ms.has_value(); };

@@ -12,11 +12,11 @@ namespace {
 template <int D>
 std::vector<Box<D>> uniform_boxes(const SceneRequest& request, std::uint64_t seed) {
   static const Scene scene = uniform();
-  const Settings standard(Spec{scene.name, {}}, scene.tunables);
+  const Settings defaults(Spec{scene.name, {}}, scene.tunables);
   if constexpr (D == 2)
-    return scene.boxes_2d(standard, request.boxes, seed);
+    return scene.boxes_2d(defaults, request.boxes, seed);
   else
-    return scene.boxes_3d(standard, request.boxes, seed);
+    return scene.boxes_3d(defaults, request.boxes, seed);
 }
 
 template <int D>

@@ -18,19 +18,19 @@ namespace broadside::lab {
 struct AxisMotion {
   double offset = 0;
   double speed = 0;  // a frame
-  double least;      // <= 0
-  double most;       // >= 0
+  double min;      // <= 0
+  double max;       // >= 0
 
   void advance() {
-    if (least == most) return;
+    if (min == max) return;
     offset += speed;
-    if (offset >= least && offset <= most) return;
+    if (offset >= min && offset <= max) return;
     speed = -speed;
-    offset = std::clamp(2 * (offset < least ? least : most) - offset, least, most);
+    offset = std::clamp(2 * (offset < min ? min : max) - offset, min, max);
   }
 
   void jump(Random& random, bool whole) {
-    offset = whole ? least + std::floor((most - least + 1) * random.fraction()) : random.between(least, most);
+    offset = whole ? min + std::floor((max - min + 1) * random.fraction()) : random.between(min, max);
   }
 };
 
@@ -53,9 +53,9 @@ struct MovingBox {
 
 namespace {
 
-void check_range(const char* name, double value, double most) {
-  if (value >= 0 && value <= most) return;
-  const std::string expected = most == 1 ? "a number from 0 to 1" : "a number of at least 0";
+void check_range(const char* name, double value, double max) {
+  if (value >= 0 && value <= max) return;
+  const std::string expected = max == 1 ? "a number from 0 to 1" : "a number of at least 0";
   throw InvalidSpec(std::string(name) + " is " + std::to_string(value) + "; expected " + expected);
 }
 
@@ -114,8 +114,8 @@ std::vector<MovingBox<D, Real>> draw_movers(std::span<const Box<D, Real>> boxes,
     MovingBox<D, Real> mover{id, box, {}};
     for (int axis = 0; axis < D; ++axis) {
       mover.ways[axis] = {.speed = velocity[axis],
-                          .least = static_cast<double>(bounds.min[axis]) - box.min[axis],
-                          .most = static_cast<double>(bounds.max[axis]) - box.max[axis]};
+                          .min = static_cast<double>(bounds.min[axis]) - box.min[axis],
+                          .max = static_cast<double>(bounds.max[axis]) - box.max[axis]};
     }
     movers.push_back(mover);
   }

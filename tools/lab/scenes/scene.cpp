@@ -53,10 +53,10 @@ template <int D>
 History<D> make(const MakeBoxes<D>& boxes, const MakeHistory<D>& history, const Scene& scene,
                 const Spec& spec, const SceneRequest& request) {
   const Settings settings(spec, scene.tunables);
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (request.boxes > most)
+  constexpr std::size_t max_boxes = std::numeric_limits<std::uint32_t>::max();
+  if (request.boxes > max_boxes)
     throw InvalidSpec(scene.name + ": " + std::to_string(request.boxes) + " boxes; expected at most " +
-                      std::to_string(most));
+                      std::to_string(max_boxes));
   if (history) return history(settings, request);
   if (!boxes) {
     throw InvalidSpec("scene '" + scene.name + "' does not exist in " + std::to_string(D) +

@@ -252,8 +252,8 @@ class HistoryCheck {
 }  // namespace
 
 std::size_t max_by_definition(std::size_t frames) noexcept {
-  const double most = std::sqrt(2 * max_tests_by_definition / static_cast<double>(frames));
-  return std::min(static_cast<std::size_t>(most), Effort{}.definition_boxes);
+  const double max_boxes = std::sqrt(2 * max_tests_by_definition / static_cast<double>(frames));
+  return std::min(static_cast<std::size_t>(max_boxes), Effort{}.definition_boxes);
 }
 
 template <int D, typename Real>

@@ -74,26 +74,26 @@ InputFamily family_of(std::string name, std::string summary, std::vector<DrawnTu
   return family;
 }
 
-inline DrawnTunable number(std::string name, std::string summary, std::string standard, double least,
-                           double most) {
+inline DrawnTunable number(std::string name, std::string summary, std::string default_value, double min,
+                           double max) {
   return {{.name = std::move(name),
            .summary = std::move(summary),
-           .default_value = std::move(standard),
-           .min = least,
-           .max = most}};
+           .default_value = std::move(default_value),
+           .min = min,
+           .max = max}};
 }
 
 /// A number of any order of magnitude from `least` to `most`.
-inline DrawnTunable magnitude(std::string name, std::string summary, std::string standard, double least,
-                              double most) {
-  DrawnTunable drawn = number(std::move(name), std::move(summary), std::move(standard), least, most);
+inline DrawnTunable magnitude(std::string name, std::string summary, std::string default_value, double min,
+                              double max) {
+  DrawnTunable drawn = number(std::move(name), std::move(summary), std::move(default_value), min, max);
   drawn.logarithmic = true;
   return drawn;
 }
 
-inline DrawnTunable count(std::string name, std::string summary, std::string standard, double least,
-                          double most) {
-  DrawnTunable drawn = magnitude(std::move(name), std::move(summary), std::move(standard), least, most);
+inline DrawnTunable count(std::string name, std::string summary, std::string default_value, double min,
+                          double max) {
+  DrawnTunable drawn = magnitude(std::move(name), std::move(summary), std::move(default_value), min, max);
   drawn.tunable.type = Tunable::Type::integer;
   return drawn;
 }

@@ -20,19 +20,19 @@ constexpr double max_exponent = 60;
 /// The tunables that every input has.
 const std::vector<Tunable>& common_tunables() {
   const auto choice = [](std::string name, std::vector<std::string> choices) {
-    const std::string standard = choices.front();
+    const std::string default_value = choices.front();
     return Tunable{.name = std::move(name),
                    .summary = {},
-                   .default_value = standard,
+                   .default_value = default_value,
                    .type = Tunable::Type::choice,
                    .choices = std::move(choices)};
   };
-  const auto number = [](std::string name, std::string standard, double least, double most) {
+  const auto number = [](std::string name, std::string default_value, double min, double max) {
     return Tunable{.name = std::move(name),
                    .summary = {},
-                   .default_value = std::move(standard),
-                   .min = least,
-                   .max = most};
+                   .default_value = std::move(default_value),
+                   .min = min,
+                   .max = max};
   };
   static const std::vector<Tunable> list = {
       choice("dimension", {"2", "3"}),
@@ -60,8 +60,8 @@ HardCall call_of(std::string_view name) {
 
 template <typename Real>
 Real rounded(double value) {
-  constexpr double most = std::numeric_limits<Real>::max();
-  return static_cast<Real>(std::clamp(value, -most, most));
+  constexpr double largest = std::numeric_limits<Real>::max();
+  return static_cast<Real>(std::clamp(value, -largest, largest));
 }
 
 template <typename T>
@@ -80,8 +80,8 @@ auto one_of(const Values& values, Random& random) {
 std::string HardInput::text() const {
   Spec all = family;
   const auto add = [&](const char* name, const std::string& value) { all.values.emplace_back(name, value); };
-  const auto add_number = [&](const char* name, double value, double standard) {
-    if (value != standard) add(name, fmt::format("{}", value));
+  const auto add_number = [&](const char* name, double value, double default_value) {
+    if (value != default_value) add(name, fmt::format("{}", value));
   };
   constexpr std::array<const char*, 3> calls = {"find", "between", "track"};
   add("dimension", std::to_string(dimension));
@@ -144,8 +144,8 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
   const std::array<double, 4> jumps = {0, 0, 0.02, 0.5};
   input.teleport = one_of(jumps, random);
   // Within floats, large boxes squared and small ones both fit.
-  const double most = input.in_double ? max_exponent : 30;
-  if (random.chance(0.25)) input.exponent = std::round(random.between(-most, most));
+  const double exponent_limit = input.in_double ? max_exponent : 30;
+  if (random.chance(0.25)) input.exponent = std::round(random.between(-exponent_limit, exponent_limit));
   if (random.chance(0.15)) input.offset = power(10, std::round(random.between(0, input.in_double ? 9 : 2)));
   const std::array<std::string, 4> orders = {"made", "shuffled", "shuffled", "reversed"};
   input.order = one_of(orders, random);

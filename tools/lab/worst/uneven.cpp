@@ -88,8 +88,8 @@ struct Heaps {
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
     const auto heaps = static_cast<double>(settings.integer("heaps"));
     // All pairs in the heaps together: at most 5 a box.
-    const double most = std::sqrt(10 * static_cast<double>(count) / heaps);
-    const auto in_heap = static_cast<std::size_t>(settings.number("part") * most);
+    const double max_in_heap = std::sqrt(10 * static_cast<double>(count) / heaps);
+    const auto in_heap = static_cast<std::size_t>(settings.number("part") * max_in_heap);
     const auto in_heaps = std::min(count, in_heap * static_cast<std::size_t>(heaps));
     const double side = settings.text("boxes") == "points" ? 0 : side_for<D>(1, count);
     DoubleBoxes<D> boxes = even_boxes<D>(count - in_heaps, 1, random);

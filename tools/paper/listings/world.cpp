@@ -13,30 +13,30 @@ namespace {
 std::pair<double, double> extent(std::span<const Box2> boxes, int axis, std::optional<double> begin,
                                  std::optional<double> length) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  double least = infinity;
-  double most = -infinity;
+  double min_x = infinity;
+  double max_x = -infinity;
   for (const Box2& box : boxes) {
     for (const float x : {box.min[axis], box.max[axis]}) {
       if (!std::isfinite(x)) continue;
-      least = std::min<double>(least, x);
-      most = std::max<double>(most, x);
+      min_x = std::min<double>(min_x, x);
+      max_x = std::max<double>(max_x, x);
     }
   }
-  if (least > most) least = most = begin.value_or(0);
-  const double from = begin.value_or(least);
-  const double wide = length.value_or(most - from);
+  if (min_x > max_x) min_x = max_x = begin.value_or(0);
+  const double from = begin.value_or(min_x);
+  const double wide = length.value_or(max_x - from);
   return {from, wide > 0 ? wide : 1};
 }
 
 }  // namespace
 
 std::vector<Tunable> world_tunables() {
-  constexpr double most = std::numeric_limits<float>::max();
+  constexpr double max_float = std::numeric_limits<float>::max();
   return {
-      {.name = "left", .summary = "least x of the world", .default_value = "auto", .min = -most, .max = most},
-      {.name = "top", .summary = "least y of the world", .default_value = "auto", .min = -most, .max = most},
-      {.name = "width", .summary = "extent of the world in x", .default_value = "auto", .max = most},
-      {.name = "height", .summary = "extent of the world in y", .default_value = "auto", .max = most},
+      {.name = "left", .summary = "least x of the world", .default_value = "auto", .min = -max_float, .max = max_float},
+      {.name = "top", .summary = "least y of the world", .default_value = "auto", .min = -max_float, .max = max_float},
+      {.name = "width", .summary = "extent of the world in x", .default_value = "auto", .max = max_float},
+      {.name = "height", .summary = "extent of the world in y", .default_value = "auto", .max = max_float},
   };
 }
 

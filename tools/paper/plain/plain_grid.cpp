@@ -27,11 +27,11 @@ struct Cells {
 
   Cells() : borders{std::numeric_limits<float>::quiet_NaN()} {}
 
-  Cells(int cut_axis, float begin, float end, float min_width, double most) : axis(cut_axis), low(begin) {
+  Cells(int cut_axis, float begin, float end, float min_width, double max_cells) : axis(cut_axis), low(begin) {
     const float length = end - begin;
     if (length > 0 && length <= std::numeric_limits<float>::max()) {
-      const double fitting = min_width > 0 ? static_cast<double>(length) / min_width : most;
-      count = static_cast<std::size_t>(std::clamp(fitting, 1.0, std::max(1.0, most)));
+      const double fitting = min_width > 0 ? static_cast<double>(length) / min_width : max_cells;
+      count = static_cast<std::size_t>(std::clamp(fitting, 1.0, std::max(1.0, max_cells)));
       per_unit = static_cast<float>(count) / length;
     }
     for (std::size_t cell = 1; cell < count; ++cell) {
@@ -133,9 +133,9 @@ class PlainGrid final : public Searcher<D> {
     shape_ = shape_of(boxes, samples_);
     // Without a sample the draft's choice: the first axis.
     swept_ = samples_ ? shape_.best_axis() : 0;
-    const double most = std::pow(static_cast<double>(boxes.size()), 1.0 / (D - 1));
+    const double max_cells = std::pow(static_cast<double>(boxes.size()), 1.0 / (D - 1));
     const auto cut = [&](int axis) {
-      return Cells(axis, shape_.low[axis], shape_.high[axis], 2 * shape_.extent[axis], most);
+      return Cells(axis, shape_.low[axis], shape_.high[axis], 2 * shape_.extent[axis], max_cells);
     };
     rows_ = cut((swept_ + 1) % D);
     columns_ = D == 3 ? cut((swept_ + 2) % D) : Cells();

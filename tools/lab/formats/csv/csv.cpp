@@ -268,8 +268,8 @@ class CsvOpener {
     auto labels = std::make_shared<BoxLabels>();
     const std::vector<std::string>& names = columns_.names;
     const std::size_t track = column_of(BoxColumns::track);
-    const std::string standard = track < names.size() ? names[track] : "id";
-    const std::string wanted = options_.ids.empty() && options_.finds_ids ? standard : options_.ids;
+    const std::string default_name = track < names.size() ? names[track] : "id";
+    const std::string wanted = options_.ids.empty() && options_.finds_ids ? default_name : options_.ids;
     auto column = std::ranges::find(names, wanted);
     if (column == names.end()) column = std::ranges::find(names, plain(wanted), plain);
     if (column == names.end() && !options_.ids.empty())

@@ -128,8 +128,8 @@ double CsvRows::number(int place) const {
 
 std::size_t CsvRows::whole_number(int place) const {
   const double value = number(place);
-  constexpr double most = 4294967295;
-  if (!(value >= 0 && value <= most) || value != std::floor(value)) refuse_number(place);
+  constexpr double max_id = 4294967295;
+  if (!(value >= 0 && value <= max_id) || value != std::floor(value)) refuse_number(place);
   return static_cast<std::size_t>(value);
 }
 

@@ -41,7 +41,7 @@ struct Cursor {
 /// Builds the values that are wanted.
 class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  JsonBuilder(std::string_view text, const std::string& name, const JsonWanted& wanted)
+  JsonBuilder(std::string_view text, const std::string& name, const JsonSelection& wanted)
       : begin_(text.data()), at_(text.data()), end_(begin_ + text.size()), name_(name), wanted_(wanted) {}
 
   JsonValue read() {
@@ -150,7 +150,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   const char* at_;
   const char* end_;
   const std::string& name_;
-  const JsonWanted& wanted_;
+  const JsonSelection& wanted_;
   JsonValue root_;
   std::vector<JsonValue*> open_;  // containers, each the last item of the one before
   std::size_t skipped_ = 0;       // containers open that are not wanted
@@ -179,7 +179,7 @@ std::string JsonValue::shown() const {
   }
 }
 
-JsonValue read_json(std::string_view text, const std::string& name, const JsonWanted& wanted) {
+JsonValue read_json(std::string_view text, const std::string& name, const JsonSelection& wanted) {
   return JsonBuilder(text, name, wanted).read();
 }
 

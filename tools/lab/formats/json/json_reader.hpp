@@ -28,7 +28,7 @@ struct JsonValue {
 };
 
 /// What of a JSON text is kept.
-struct JsonWanted {
+struct JsonSelection {
   std::vector<std::string> members;  ///< the names of the members that are kept, at any depth
   std::vector<std::string> lists;    ///< the root's members whose elements are handed over one by one
 
@@ -42,7 +42,7 @@ struct JsonWanted {
 /// Reads a JSON text (RFC 8259) whole, and returns its root with the wanted members; the lists among them are
 /// empty. Throws FileError, with the line and column, where it is no JSON; `name` is what errors call the
 /// file.
-JsonValue read_json(std::string_view text, const std::string& name, const JsonWanted& wanted);
+JsonValue read_json(std::string_view text, const std::string& name, const JsonSelection& wanted);
 
 /// What nlohmann::json says is wrong with a text, as the message of a FileError.
 std::string json_fault(const std::string& name, std::string_view what);

@@ -369,7 +369,7 @@ class MapReader {
   Input& input_;
   const ReadOptions& options_;
   Quarantine quarantine_;
-  JsonWanted wanted_;
+  JsonSelection wanted_;
   bool is_property_ = false;  // whether ids are properties
   std::string id_name_;
 

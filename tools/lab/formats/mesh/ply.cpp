@@ -146,17 +146,17 @@ class PlyReader {
   void check_claims() const {
     std::size_t left = bytes_.size() - at_;
     for (const Element& element : elements_) {
-      std::size_t least =
+      std::size_t min_bytes =
           0;  // bytes of an element; as text, a number is a digit and what parts it from the next
       for (const Property& property : element.properties)
-        least += is_text_ ? 2 : (property.is_list ? property.count_type : property.type).bytes;
+        min_bytes += is_text_ ? 2 : (property.is_list ? property.count_type : property.type).bytes;
       // The last number of a text needs nothing behind it.
-      const std::size_t most = least == 0 ? 0 : (left + 1) / least;
-      if (least != 0 && element.count > most)
+      const std::size_t max_count = min_bytes == 0 ? 0 : (left + 1) / min_bytes;
+      if (min_bytes != 0 && element.count > max_count)
         throw FileError(fmt::format(
             "{}:{}: claims {} of the element '{}'; expected at most {}, for which {} bytes are left",
-            input_.name(), element.line, element.count, element.name, most, left));
-      left -= std::min(left, static_cast<std::size_t>(element.count) * least);
+            input_.name(), element.line, element.count, element.name, max_count, left));
+      left -= std::min(left, static_cast<std::size_t>(element.count) * min_bytes);
     }
   }
 
@@ -242,8 +242,8 @@ class PlyReader {
 
   std::int64_t whole(const NumberType& type) {
     const double value = is_text_ ? parsed<double>("a whole number") : number(type);
-    constexpr double most = 9007199254740992;
-    if (!(value >= -most && value <= most) || value != std::floor(value))
+    constexpr double max_exact = 9007199254740992;
+    if (!(value >= -max_exact && value <= max_exact) || value != std::floor(value))
       refuse(fmt::format("the number {}", value), "a whole number");
     return static_cast<std::int64_t>(value);
   }

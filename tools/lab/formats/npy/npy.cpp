@@ -52,8 +52,8 @@ std::string header_text(std::string_view bytes, const std::string& name, std::si
   const std::string_view magic = bytes.substr(0, npy_magic.size());
   if (!npy_magic.starts_with(magic))
     refuse(name, fmt::format("begins with {}", shown(magic)), "byte 93 and NUMPY");
-  constexpr std::size_t least = 12;
-  check_length(least);
+  constexpr std::size_t min_bytes = 12;
+  check_length(min_bytes);
   if (byte(6) < 1 || byte(6) > 3 || byte(7) != 0)
     refuse(name, fmt::format("byte 6: version {}.{}", byte(6), byte(7)), "1.0, 2.0 or 3.0");
   const std::size_t begin = byte(6) == 1 ? 10 : 12;
@@ -79,10 +79,10 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
   static const std::regex pattern(
       R"(\{(?=.*'descr':'([<>=|])([fiu])([1248])')(?=.*'fortran_order':(True|False)))"
       R"((?=.*'shape':\((\d{1,20}),(?:([46])|2,([23])),?\)).*\})");
-  constexpr std::size_t most = 1000;  // more would take the matcher much of the stack
+  constexpr std::size_t max_length = 1000;  // more would take the matcher much of the stack
   std::smatch match;
   // NumPy gives no order to a single byte, and only to that.
-  if (text.size() > most || !std::regex_match(text, match, pattern) || (match[1] == "|" && match[3] != "1") ||
+  if (text.size() > max_length || !std::regex_match(text, match, pattern) || (match[1] == "|" && match[3] != "1") ||
       (match[2] == "f" && match[3] == "1"))
     refuse(name, fmt::format("has the header {}", shown(text, 200)),
            "'descr' of f2, f4, f8, i1 to i8 or u1 to u8, with '<' or '>' before it, 'fortran_order', and "
@@ -171,10 +171,10 @@ class NpyFrame final : public FrameReader<D, Real> {
                                                        : (corner * D + axis) * header_.rows + row;
     const NumberType& type = header_.type;
     const std::uint64_t bits = bits_at(input_->bytes().data() + header_.bytes + place * type.bytes, type);
-    constexpr std::uint64_t most = std::uint64_t{1} << 53;
+    constexpr std::uint64_t max_exact = std::uint64_t{1} << 53;
     const std::int64_t integer = integer_of(bits, type);
     const bool is_negative = type.kind == 'i' && integer < 0;
-    if (type.kind == 'f' || (is_negative ? 0 - static_cast<std::uint64_t>(integer) : bits) <= most)
+    if (type.kind == 'f' || (is_negative ? 0 - static_cast<std::uint64_t>(integer) : bits) <= max_exact)
       return value_of(bits, type);
     throw FileError(fmt::format("{}: row {} holds {}; expected at most 2^53, up to which a double is exact",
                                 input_->name(), row,

@@ -44,14 +44,14 @@ void TraceReader::take_pairs(const FrameHeader& header, std::size_t at) {
 
 void TraceReader::take_filters(const FrameHeader& header, std::size_t at) {
   recorded_.filters.clear();
-  std::uint64_t least = 0;  // that the next slot may be
+  std::uint64_t min_slot = 0;  // that the next slot may be
   for (std::uint32_t i = 0; i < header.pairs[0]; ++i, at += trace::filter_bytes) {
     const std::uint32_t slot = word(at);
-    if (slot < least || slot >= header.slots || !has_box_[slot])
+    if (slot < min_slot || slot >= header.slots || !has_box_[slot])
       refuse(
           begin_ + at, fmt::format("a filter of slot {}", slot),
           fmt::format("slots below {} that hold boxes, each named once, in ascending order", header.slots));
-    least = std::uint64_t{slot} + 1;
+    min_slot = std::uint64_t{slot} + 1;
     const std::uint32_t is_static = word(at + 24);
     if (is_static > 1) refuse(begin_ + at + 24, fmt::format("static {}", is_static), "0 or 1");
     recorded_.filters.emplace_back(BoxId(slot), Filter{.category = long_word(at + 4),

@@ -114,7 +114,7 @@ void TraceReader::take(const FrameHeader& header) {
   const auto axes = static_cast<std::size_t>(dimension_);
   changed_.clear();
   bounds_.clear();
-  std::uint64_t least = 0;  // that the next slot may be
+  std::uint64_t min_slot = 0;  // that the next slot may be
   std::uint64_t added = 0;
   std::size_t removed = 0;
   std::size_t set = set_begin;
@@ -122,11 +122,11 @@ void TraceReader::take(const FrameHeader& header) {
     const bool removes = set == end || (removed < set_begin && word(removed) <= word(set));
     const std::size_t at = removes ? removed : set;
     const std::uint32_t slot = word(at);
-    if (slot < least)
+    if (slot < min_slot)
       refuse(begin_ + at, fmt::format("slot {}", slot), "each slot named once, in ascending order");
     if (slot >= header.slots)
       refuse(begin_ + at, fmt::format("slot {}", slot), fmt::format("one below {}", header.slots));
-    least = std::uint64_t{slot} + 1;
+    min_slot = std::uint64_t{slot} + 1;
     added += slot >= slots_ ? 1 : 0;
     changed_.push_back(BoxId(slot));
     if (removes) {
@@ -170,9 +170,9 @@ bool TraceReader::read_on(std::uint64_t count) {
   const std::uint64_t all = bytes_.size() + count;
   while (bytes_.size() < all) {
     // In pieces, which grow as they turn out to be there.
-    constexpr std::uint64_t least = std::uint64_t{1} << 16;
+    constexpr std::uint64_t min_piece = std::uint64_t{1} << 16;
     const std::size_t before = bytes_.size();
-    const std::uint64_t more = std::min(all - before, std::max<std::uint64_t>(before, least));
+    const std::uint64_t more = std::min(all - before, std::max<std::uint64_t>(before, min_piece));
     bytes_.resize(before + static_cast<std::size_t>(more));
     errno = 0;
     stream_.read(reinterpret_cast<char*>(bytes_.data() + before), static_cast<std::streamsize>(more));

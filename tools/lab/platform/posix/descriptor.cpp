@@ -20,10 +20,10 @@ int duplicate(int descriptor) { return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0); 
 
 void close(int descriptor) noexcept { ::close(descriptor); }
 
-std::int64_t read(int descriptor, char* to, std::size_t most) {
+std::int64_t read(int descriptor, char* to, std::size_t max_bytes) {
   ssize_t got = 0;
   do {
-    got = ::read(descriptor, to, most);
+    got = ::read(descriptor, to, max_bytes);
   } while (got < 0 && errno == EINTR);
   return got;
 }

@@ -31,8 +31,8 @@ int duplicate(int descriptor) { return _dup(descriptor); }
 
 void close(int descriptor) noexcept { _close(descriptor); }
 
-std::int64_t read(int descriptor, char* to, std::size_t most) {
-  return _read(descriptor, to, static_cast<unsigned>(std::min(most, max_bytes_per_call)));
+std::int64_t read(int descriptor, char* to, std::size_t max_bytes) {
+  return _read(descriptor, to, static_cast<unsigned>(std::min(max_bytes, max_bytes_per_call)));
 }
 
 std::int64_t write(int descriptor, const char* from, std::size_t count) noexcept {
