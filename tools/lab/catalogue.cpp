@@ -118,7 +118,7 @@ std::vector<Entry> Catalogue::select(std::string_view list) const {
                                     core::did_you_mean(spec.name, known), fmt::join(known, ", ")));
     }
     const Settings checked(spec, algorithm->tunables);
-    spec.name = algorithm->name;  // the current one, where a former one was given
+    spec.name = algorithm->name;  // the current name, if a former one was given
     select_once(*algorithm, std::move(spec));
   }
   return selected;

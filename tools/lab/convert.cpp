@@ -1,4 +1,4 @@
-// Files of boxes turned into another format.
+// Converts files of boxes to another format.
 #include "lab/convert.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Passes frames on, and counts what goes by.
+/// Passes frames on and counts their boxes.
 template <int D, typename Real>
 class CountingFrames final : public FrameReader<D, Real> {
  public:
@@ -89,7 +89,7 @@ std::string text_of(const Converted& converted, const std::filesystem::path& pat
 std::string text_of_left_out(const Converted& converted, const Format& format) {
   constexpr std::size_t max_names = 20;
   const std::vector<std::string>& names = converted.left_out;
-  if (!converted.left_out_pairs.empty())  // of a trace, which is no table
+  if (!converted.left_out_pairs.empty())  // from a trace, which is not a table
     return "left out the recorded pairs: " + converted.left_out_pairs;
   if (names.empty()) return {};
   std::string list;

@@ -1,4 +1,4 @@
-// What a file of boxes holds, in numbers.
+// Statistics of a file of boxes.
 #include "lab/file_info.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace broadside::lab {
 namespace {
 
-/// The value at each told percentile (of the nearest rank); sorts in part.
+/// The value at each of told_percentiles (nearest rank). Partially sorts the values.
 std::array<double, told_percentiles.size()> percentiles_of(std::vector<double>& values) {
   std::array<double, told_percentiles.size()> told{};
   if (values.empty()) return told;
@@ -63,7 +63,7 @@ class InfoCollector {
     for (std::size_t place = step.size; place < boxes_.size(); ++place)
       removed += static_cast<std::uint64_t>(!is_absent(boxes_[place]));
     const std::uint64_t now = before + added - removed;
-    // Kept only where the next frame has fewer and none before had more.
+    // Kept only if the next frame has fewer boxes and no earlier frame had more.
     if (now <= before) keep_if_fullest();
     lab::apply(step, boxes_);
     present_ = now;
@@ -88,7 +88,7 @@ class InfoCollector {
       if (!is_absent(box)) sort_by_size(box);
     }
     for (const auto& [exponent, count] : sizes_) {
-      // A bin without boxes is one to see.
+      // Empty bins are shown as well.
       while (!info_.sizes.empty() && info_.sizes.back().exponent + 1 < exponent)
         info_.sizes.push_back({info_.sizes.back().exponent + 1, 0});
       info_.sizes.push_back({exponent, count});
@@ -151,7 +151,7 @@ class InfoCollector {
   std::map<int, std::uint64_t> sizes_;
 };
 
-/// Counts the pairs that were recorded, frame by frame.
+/// Counts the recorded pairs, frame by frame.
 class PairCounts {
  public:
   void add(const RecordedPairs& frame) {
@@ -178,10 +178,10 @@ class PairCounts {
   RecordedPairsInfo info_;
   std::uint64_t reported_ = 0;
   std::uint64_t ignored_ = 0;
-  std::vector<std::uint64_t> counts_;  // of reported pairs, frame by frame
+  std::vector<std::uint64_t> counts_;  // reported pairs of each frame
 };
 
-/// Milliseconds that `run` takes.
+/// The milliseconds that `run` takes.
 template <typename Run>
 double timed(const Run& run) {
   const Stopwatch watch;
@@ -230,7 +230,7 @@ FileInfo file_info(BoxFile file) {
 
 FileInfo file_info(const std::filesystem::path& path, const ReadOptions& options) {
   const Stopwatch watch;
-  // Rounded here and not by the reader, so that what was rounded is counted.
+  // Rounded here, not by the reader, so that the number of rounded coordinates is known.
   ReadOptions unrounded = options;
   const bool is_rounded = options.precision == Precision::float32;
   if (is_rounded) unrounded.precision.reset();

@@ -1,4 +1,4 @@
-// What a file of boxes holds, as text.
+// Statistics of a file of boxes, as text.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,15 +15,15 @@
 namespace broadside::lab {
 namespace {
 
-/// The shortest digits that are just this coordinate, in the precision of the file.
+/// The shortest decimal that reads back as exactly this coordinate, in the file's precision.
 std::string exact(double coordinate, Precision precision) {
-  // Not "-0".
+  // Turns -0 into 0.
   coordinate += 0.0;
   return precision == Precision::float32 ? fmt::format("{}", static_cast<float>(coordinate))
                                          : fmt::format("{}", coordinate);
 }
 
-/// Four digits, or all before the point.
+/// Four significant digits, or all digits before the point.
 std::string shortened(double extent) {
   return extent >= 1e4 && extent < 1e15 ? fmt::format("{:.0f}", extent) : fmt::format("{:.4g}", extent);
 }
@@ -44,7 +44,7 @@ std::string axes_text(const FileInfo& info) {
   return table.text("  ");
 }
 
-/// A line for each power of two; beyond max_lines, the smallest sizes share the first line.
+/// One line for each power of two; beyond max_lines, the first line has all smaller sizes.
 std::string sizes_text(const FileInfo& info) {
   if (info.sizes.empty()) return {};
   constexpr std::size_t max_lines = 16;
@@ -110,7 +110,7 @@ std::string coordinates_text(const FileInfo& info) {
   return text + '\n';
 }
 
-/// Which boxes have no size, or no finite one; empty where all have.
+/// Counts the boxes without a size or with an infinite size; empty if there are none.
 std::string kinds_text(const FileInfo& info) {
   std::string text;
   const auto add = [&text](std::uint64_t count, const std::string& what) {
@@ -125,7 +125,7 @@ std::string kinds_text(const FileInfo& info) {
 std::string reading_text(const FileInfo& info) {
   if (info.format.empty()) return "";
   const auto size = static_cast<double>(info.bytes);
-  // What takes no time has no speed: what is measured is the opening.
+  // Below this size, the measured time is that of opening the file, not of reading it.
   constexpr std::uint64_t min_bytes = 1'000'000;
   constexpr std::uint64_t min_boxes = 50'000;
   if (info.bytes > 0 ? info.bytes < min_bytes : info.boxes < min_boxes)

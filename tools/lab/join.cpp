@@ -1,4 +1,4 @@
-// Files of boxes joined: the boxes of one frame, and the pairs within them or between two sets of them.
+// Joins files of boxes: the boxes of one frame, and the overlapping pairs within one set or between two.
 #include "lab/join.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Files of boxes joined: the pairs that overlap or lie within a distance, in one set or between two.
+// Joins files of boxes: the pairs that overlap or lie within a distance, within one set or between two.
 #pragma once
 
 #include <cstddef>
@@ -26,40 +26,43 @@ Precision precision(const AnyBoxes& boxes) noexcept;
 
 /// The boxes of one frame of a file.
 struct FrameOfFile {
-  std::string name;  ///< the file's
+  std::string name;  ///< of the file
   AnyBoxes boxes;
-  bool is_moving = false;                     ///< whether the file has other frames
-  std::shared_ptr<const BoxLabels> labels{};  ///< null where the file has none
-  std::string warning{};                      ///< what had to be left out of a damaged file; empty otherwise
-  std::string importer{};    ///< the library that may have rounded its numbers to float; empty if none did
+  bool is_moving = false;                     ///< whether the file has more than one frame
+  std::shared_ptr<const BoxLabels> labels{};  ///< null if the file has none
+  std::string warning{};                      ///< what was left out of a damaged file; empty if nothing was
+  std::string importer{};    ///< the library that may have rounded the file's numbers to float; otherwise
+                             ///< empty
   bool is_computed = false;  ///< whether bounds were computed from a centre and a size
 };
 
-/// Reads one frame, counted from 0. Throws FileError, also if there are fewer. Memory: that of a frame,
-/// where the format is read frame by frame.
+/// Reads one frame; the first is frame 0. Throws FileError, also if the file has fewer frames. Memory: one
+/// frame, if the format is read frame by frame.
 FrameOfFile read_frame(BoxFile file, std::size_t frame);
 
-/// Rounds doubles to the nearest floats, and counts what that changes.
+/// Rounds doubles to the nearest floats, and counts the coordinates that change.
 Rounding round_to_float(AnyBoxes& boxes);
 
-/// Brings two sets to the same precision: double, which is exact, if either is double. Throws FileError,
+/// Converts two sets to the same precision: double if either is double, which is exact. Throws FileError,
 /// naming both, if one is in 2D and the other in 3D.
 void match(FrameOfFile& left, FrameOfFile& right);
 
-/// Writes every pair of overlapping boxes once, in the order in which the entry finds them. Throws as
-/// Finder::find() does, and InvalidSpec if the entry cannot search boxes of this dimension.
+/// Writes each pair of overlapping boxes once, in the order in which the entry finds it. Throws what
+/// Finder::find() throws, and InvalidSpec if the entry cannot search boxes of this dimension.
 void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs);
 
-/// Writes every pair of a box of `left` and one of `right`, which match, likewise.
+/// Likewise, each overlapping pair of a box of `left` and a box of `right`. match() must have been called for
+/// the two.
 void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs);
 
-/// Writes every pair of boxes whose gap on each axis (0 where they overlap on it) is at most `distance`,
-/// which is finite and 0 or more. So it finds all pairs whose Euclidean distance is at most that, and a few
-/// more, past corners. Exact: the gap of two coordinates is compared with the distance as the real numbers
-/// that they are, unrounded. Otherwise as join.
+/// Writes each pair of boxes whose gap on each axis (0 if they overlap on it) is at most `distance`, which is
+/// finite and at least 0. This finds all pairs within that Euclidean distance, and a few more past corners.
+/// Exact: the gap between two coordinates is compared with the distance as real numbers, without rounding.
+/// Otherwise as join().
 void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs);
 
-/// Writes every such pair of a box of `left` and one of `right`, which match, likewise.
+/// Likewise, each such pair of a box of `left` and a box of `right`. match() must have been called for the
+/// two.
 void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
                  PairSink& pairs);
 

@@ -1,5 +1,5 @@
-// Pairs of boxes within a distance: pairs that overlap once each box is enlarged by half of it, rounded
-// outward, and that then pass a test without rounding.
+// Pairs of boxes within a distance: enlarges each box by half the distance, rounded outward, finds the
+// overlapping pairs, and then tests each pair exactly.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,15 +13,15 @@
 namespace broadside::lab {
 namespace {
 
-/// Whether b - a <= distance for real numbers. After Knuth's TwoSum, a + distance is sum + error exactly; sum
-/// is the nearest double, so that no other double lies between the two.
+/// Whether b - a <= distance as real numbers. After Knuth's TwoSum, a + distance is exactly sum + error. As
+/// sum is the nearest double, no other double lies between it and the exact sum.
 bool is_within(double a, double b, double distance) {
   if (b <= a) return true;
   const double sum = a + distance;
   if (b != sum) return b < sum;
   const double part = sum - a;
   const double error = (a - (sum - part)) + (distance - part);
-  // A NaN where the sum is infinite: then b is as well, and a is not.
+  // NaN if the sum is infinite: then b is infinite as well, and a is not.
   return error >= 0;
 }
 
@@ -36,7 +36,7 @@ bool are_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) {
   return within;
 }
 
-/// The boxes, each larger by at least half the distance on every side.
+/// The boxes, each enlarged by at least half the distance on every side.
 template <int D, typename Real>
 std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, double distance) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -45,7 +45,8 @@ std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, doubl
   for (Box<D, Real>& box : result) {
     if (is_absent(box)) continue;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      // The next number makes up for rounding, also where half of the least number rounds to 0.
+      // The next representable number makes up for rounding, also where half of the smallest number rounds to
+      // 0.
       box.min[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.min[axis]) - half), -infinity);
       box.max[axis] = std::nextafter(static_cast<Real>(static_cast<double>(box.max[axis]) + half), infinity);
     }
@@ -53,7 +54,7 @@ std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, doubl
   return result;
 }
 
-/// Passes on the pairs of boxes that are within the distance.
+/// Passes on the pairs of boxes within the distance.
 template <int D, typename Real>
 class PairsWithin final : public PairSink {
  public:

@@ -1,5 +1,5 @@
-// What stands in for the files whose library was missing at configure time. CMakeLists.txt defines
-// BROADSIDE_HAS_... as 1 or 0 for each library.
+// Stand-ins for files whose library was missing at configure time. CMakeLists.txt defines BROADSIDE_HAS_...
+// as 1 or 0 for each library.
 #include <algorithm>
 #include <array>
 #include <initializer_list>

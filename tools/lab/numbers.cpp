@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Formats numbers for people to read.
 #include "lab/numbers.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string whole(double number) {
-  // Figures may come from a file, and no integer holds all that follows from what a file may say.
+  // Values computed from a file can exceed any integer type.
   if (std::isnan(number)) return "nan";
   if (number >= 1e18) return fmt::format("{:.2e}", number);
   return grouped(static_cast<std::uint64_t>(std::llround(std::max(number, 0.0))));
@@ -29,7 +29,7 @@ std::string rounded(double number) {
   if (std::isnan(number) || number >= 99.95) return whole(number);
   if (number <= 0) return "0";
   if (number < 0.9995e-4) return fmt::format("{:.2e}", number);
-  // One digit fewer for each power of ten; from 9.995 on, "10.0" and not "10.00".
+  // One decimal fewer for each power of ten; from 9.995 on "10.0", not "10.00".
   const int power = static_cast<int>(std::floor(std::log10(number * (1 + 0.0005))));
   return fmt::format("{:.{}f}", number, std::max(2 - power, 0));
 }

@@ -1,4 +1,4 @@
-// Pairs as files: CSV, or a NumPy array of n x 2 numbers.
+// Pair files: CSV, or a NumPy array of n x 2 numbers.
 #include "lab/pair_file.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// Pairs as files: CSV, or a NumPy array of n x 2 numbers.
+// Pair files: CSV, or a NumPy array of n x 2 numbers.
 #pragma once
 
 #include <array>
@@ -19,33 +19,34 @@ namespace broadside::lab {
 
 enum class PairFormat : std::uint8_t { csv, npy };
 
-/// The format of this name, csv or npy, or, where `name` is empty, the one that a path's extension names; CSV
-/// for what is_written_directly() and has none. Throws FileError.
+/// The format called `name`, csv or npy. If `name` is empty, the format of the path's extension; CSV if the
+/// path has none and is_written_directly(). Throws FileError.
 PairFormat pair_format_of(const std::filesystem::path& path, std::string_view name = {});
 
-/// The users' ids of the boxes of a pair's left and right side, by the boxes' numbers; null: the numbers
-/// themselves are written.
+/// The users' ids of the boxes on a pair's left and right side, by box number; null: writes the numbers
+/// themselves.
 struct PairIds {
   const std::vector<std::string>* left = nullptr;
   const std::vector<std::string>* right = nullptr;
 };
 
-/// Writes pairs to a stream, as they come, and keeps none; but for NumPy's format where the stream cannot be
-/// moved back to the array's header, as in a pipe.
+/// Writes pairs to a stream as they come and keeps none in memory. Exception: the NumPy format on a stream
+/// that cannot seek back to the array's header, such as a pipe.
 class PairFile {
  public:
-  /// Begins the file. The stream outlives this object; the caller checks it. `is_between`
-  /// says that pairs are of a left and a right set, which the columns are then called. Ids, which outlive
-  /// this object, are for CSV alone.
+  /// Begins the file. The stream must outlive this object; the caller checks it for errors. With
+  /// `is_between`, pairs are of a left and a right set, and the columns are named so. Ids, which must outlive
+  /// this object, are for CSV only.
   PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {},
            bool has_large_numbers = false);
 
   void write(std::span<const Pair> pairs);
 
-  /// Pairs of numbers beyond 32 bits: all that a file with `has_large_numbers` takes, and no other.
+  /// Writes pairs of numbers beyond 32 bits. Files with `has_large_numbers` accept only these; other files do
+  /// not accept them.
   void write(std::span<const std::array<std::uint64_t, 2>> pairs);
 
-  /// After the last pair.
+  /// Call after the last pair.
   void finish();
 
  private:
@@ -53,7 +54,7 @@ class PairFile {
 
   std::ostream& stream_;
   PairIds ids_;
-  std::string text_;  // CSV that is not yet written
+  std::string text_;  // CSV not yet written
   std::optional<NpyArrayWriter> array_;
 };
 

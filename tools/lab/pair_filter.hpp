@@ -9,8 +9,8 @@
 
 namespace broadside::lab {
 
-/// Writes those of `found` that `keeps` accepts to `pairs`. Not by add(), which orders the two boxes of a
-/// pair: they may be of two sets.
+/// Writes the pairs of `found` that `keeps` accepts to `pairs`. Does not use add(), which orders the two
+/// boxes of a pair: they may belong to two sets.
 template <typename Keeps>
 void write_if(std::span<const Pair> found, PairSink& pairs, Keeps keeps) {
   while (!found.empty()) {

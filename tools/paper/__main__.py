@@ -136,7 +136,7 @@ def measured_ones(archive: Archive, names: Sequence[str]) -> list[Experiment]:
 
 
 def judge(options: argparse.Namespace) -> int:
-    """Prints verdicts. What cannot be used is said in a line, and the other experiments are judged."""
+    """Prints verdicts. Reports an unusable experiment in one line, and judges the others."""
     archive, statements, status = Archive(options.results), draft.statements(), 0
     for one in measured_ones(archive, options.names):
         try:
@@ -169,8 +169,8 @@ def print_paper(options: argparse.Namespace) -> int:
 
 
 def gathered(results: Path, compared: Path | None, names: Sequence[str], is_whole: bool) -> printing.Content:
-    """What there is to print. What cannot be used is said in a line and printed as not measured, or raised where all
-    has to be there."""
+    """The results to print. Reports an unusable experiment in one line and prints it as not measured; raises if all
+    are required."""
     archive, book, statements = Archive(results), RuleBook(), draft.statements()
     found, unmeasured, missing = [], [], []
     named = experiments_named(names)
@@ -198,7 +198,7 @@ def gathered(results: Path, compared: Path | None, names: Sequence[str], is_whol
 
 
 def publish(options: argparse.Namespace) -> int:
-    """The experiments, the comparison, or both: what was measured."""
+    """Publishes the measured experiments, the comparison, or both."""
     sets = [(experiments_named([]), Archive(options.results), PUBLISHED),
             ([COMPARISON], Archive(options.comparison), PUBLISHED / COMPARISON.name)]
     sets = [one for one in sets if any(one[1].folder.glob("run-*"))]
@@ -212,7 +212,7 @@ def publish(options: argparse.Namespace) -> int:
 
 
 def check_set(experiments: Sequence[Experiment], archive: Archive) -> None:
-    """Refuses a set unless every experiment has all of its runs, by rules that were committed before them."""
+    """Refuses a set unless every experiment has all of its runs, with rules that were committed before them."""
     book = RuleBook()
     for experiment in experiments:
         _, runs = archive.results(experiment, book)

@@ -1,4 +1,4 @@
-"""Runs as files: one for each run and experiment, which says by what it was measured."""
+"""Runs as files: one for each run and experiment, with the versions it was measured by."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Archive:
 
     def write(self, run: int, experiment: Experiment, book: RuleBook, program: str, is_quick: bool,
               seconds: float, results: dict) -> None:
-        """Whole or not at all: a run that is cut off leaves no file."""
+        """Writes a complete file or none: an interrupted run leaves no file."""
         content = {
             "schema": SCHEMA,
             "experiment": experiment.name,
@@ -56,7 +56,7 @@ class Archive:
         os.replace(part, path)
 
     def read(self, run: int, experiment: Experiment, book: RuleBook) -> dict:
-        """Throws Unusable, in one line, where the file is of another version of anything."""
+        """Raises Unusable, in one line, if anything in the file has another version."""
         path = self.path(run, experiment.name)
         try:
             content = json.loads(lzma.decompress(path.read_bytes()))
@@ -77,8 +77,8 @@ class Archive:
         return content
 
     def results(self, experiment: Experiment, book: RuleBook) -> tuple[Results, list[dict]]:
-        """All runs of an experiment, and what each says of itself. Throws Unusable where there is none, or where
-        they do not go together."""
+        """All runs of an experiment, and the metadata of each. Raises Unusable if there are none, or if they do not
+        match."""
         contents = [self.read(run, experiment, book) for run in self.run_numbers(experiment.name)]
         if not contents:
             verb = "run" if experiment.claims else "compare"
@@ -113,12 +113,12 @@ def kind_of_run(is_quick: bool) -> str:
 
 
 def text_of(machine_or_build: dict) -> str:
-    """Without the clock, which changes by itself on some machines."""
+    """Without the clock rate, which changes by itself on some machines."""
     return ", ".join(f"{name} {value}" for name, value in machine_or_build.items() if name != "clock_mhz")
 
 
 def about(content: dict) -> dict:
-    """What a run says of itself."""
+    """The metadata of a run."""
     results = content["results"]
     measurements = results["measurements"]
     return {

@@ -1,6 +1,6 @@
-"""The comparison with other libraries: what its processes come to, as facts, tables and figures.
+"""The comparison with other libraries: the results of its processes, as facts, tables and figures.
 
-A lead is the time of a rival over that of ours, in the same rounds; its interval is between the processes.
+A lead is a rival's time over ours, in the same rounds; its interval is between the processes.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ WITH_ASSERTIONS = ("box2d", "embree", "fcl")
 KINDS = {"own": "ours", "paper": "the draft's", "literature": "the literature's", "peer": "a library's"}
 LIBRARIES = {"cgal": "CGAL", "boost": "Boost", "geos": "GEOS", "embree": "Embree", "bullet": "Bullet", "ode": "ODE",
              "fcl": "FCL", "box2d": "Box2D", "chipmunk": "Chipmunk"}
-# Whom a lead is over, by kind and algorithm.
+# The rivals of a lead, by kind and algorithm.
 RIVALS: dict[str, Callable[[str, str], bool]] = {
     "peer": lambda kind, algorithm: kind == "peer",
     "literature": lambda kind, algorithm: kind == "literature",
@@ -43,7 +43,7 @@ def library_of(algorithm: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Lead:
-    """The time of a rival over that of ours in a case."""
+    """The ratio of a rival's time to ours in a case."""
 
     case: Compared
     ours: str
@@ -54,7 +54,7 @@ class Lead:
 
 
 class Leads:
-    """Leads of several cases, by what their intervals say against the level of the rules."""
+    """Leads of several cases, classified by comparing their intervals with the rules' level."""
 
     def __init__(self, leads: Sequence[Lead], level: float, confidence: float):
         self.all = list(leads)
@@ -67,7 +67,7 @@ class Leads:
 
     @cached_property
     def mean(self) -> Estimate | None:
-        """The geometric mean, taken in each process first: what slows a process slows it in many cases."""
+        """The geometric mean, taken within each process first, because a disturbance slows a process in many cases."""
         if not self.all:
             return None
         of_runs = numpy.exp(numpy.mean(numpy.log([lead.ratio.runs for lead in self.all]), axis=0))
@@ -83,7 +83,7 @@ class Leads:
 
 
 class Times:
-    """What all processes measured: times and ratios, and who is fastest where."""
+    """The results of all processes: times and ratios, and the fastest in each case."""
 
     def __init__(self, results: Results, level: float):
         self.confidence = results.confidence
@@ -96,7 +96,7 @@ class Times:
         self.kinds = dict(zip(self.measured["algorithm"], self.measured["kind"]))
         self._columns = {name: {key: values.to_numpy(dtype=float) for key, values in by_case[name]}
                          for name in ("ratio", "median_ms", "p99_ms", "floor_ms")}
-        # Of what has a time in every process: what was too slow in one is fastest nowhere.
+        # Only algorithms with a time in every process: one that was too slow in some process is fastest nowhere.
         self._ratio = {key: values for key, values in self._columns["ratio"].items()
                        if len(values) == self.processes and numpy.isfinite(values).all()}
         self._ranked: dict[str, list[str]] = {}
@@ -104,7 +104,7 @@ class Times:
             self._ranked.setdefault(case, []).append(algorithm)
 
     def timed(self, case: str, is_one: Callable[[str, str], bool] = lambda kind, algorithm: True) -> list[str]:
-        """Those with a time that are such ones, the fastest first: one order for all processes."""
+        """The algorithms with a time that match, the fastest first: one order for all processes."""
         return [one for one in self._ranked.get(case, []) if is_one(self.kinds[one], one)]
 
     def fastest(self, case: str, is_one: Callable[[str, str], bool]) -> str | None:
@@ -116,11 +116,11 @@ class Times:
 
     @cache
     def over(self, case: str, algorithm: str, other: str) -> Estimate:
-        """The time of one over that of the other."""
+        """The ratio of one time to the other."""
         return between_runs(self._ratio[case, algorithm] / self._ratio[case, other], self.confidence)
 
     def ours(self, case: str, which: str) -> str | None:
-        """`auto`, or the best of our others; which are not in a case that lacks them."""
+        """`auto`, or the best of our others; empty in a case that lacks them."""
         return self.fastest(case, lambda kind, algorithm: kind == "own" and (algorithm == "auto") == (which == "auto"))
 
     def lead(self, case: Compared, which: str, rival: str) -> Lead | None:
@@ -139,8 +139,8 @@ class Times:
         return Leads([lead for lead in leads if lead is not None], self.level, self.confidence)
 
     def standings(self, cases: Sequence[Compared]) -> list[tuple[str, Estimate, int, int]]:
-        """Each algorithm with its time over that of each case's fastest, as a geometric mean, in how many cases it
-        has a time and in how many it is the fastest; the best first."""
+        """For each algorithm, the geometric mean of its time over that of each case's fastest, the number of cases in
+        which it has a time, and in how many it is the fastest; the best first."""
         ratios: dict[str, list[numpy.ndarray]] = {}
         wins: dict[str, int] = {}
         for case in cases:
@@ -157,7 +157,7 @@ class Times:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What templates may name: facts, ready to print with their intervals; tables; figures."""
+    """The names for templates: facts, formatted with their intervals; tables; figures."""
 
     facts: Mapping[str, str | bool]
     tables: Mapping[str, Table]
@@ -165,15 +165,15 @@ class Comparison:
 
 
 def read(folder: Path) -> tuple[Times, list[dict]]:
-    """The times, and what each process says of itself."""
+    """The times, and the metadata of each process."""
     book = RuleBook()
     results, runs = Archive(folder).results(COMPARISON, book)
     return Times(results, book.of(COMPARISON.name).level), runs
 
 
 def load(folder: Path) -> Comparison:
-    """Of the processes in a folder. Throws Unusable, in one line, where there is none, where they are of several
-    revisions or machines, of other cases or rules than today's, or where a result was wrong."""
+    """The processes in a folder. Raises Unusable, in one line, if there are none, if they differ in revision or
+    machine, if their cases or rules are not today's, or if a result was wrong."""
     times, runs = read(folder)
     cases = [case for case in COMPARISON.cases() if times.timed(case.name)]
     if not times.leads(cases, "auto", "peer").all:
@@ -279,7 +279,7 @@ def leads_over_peers(times: Times, cases: Sequence[Compared], kind: str) -> dict
 
 
 def groups_table(leads: Mapping[tuple, Leads], rival: str) -> Table:
-    """The leads of auto and of the best of ours, a line for each group of cases."""
+    """The leads of auto and of our best, a line for each group of cases."""
     def cells(those: Leads) -> list[str]:
         return [those.mean.text(), those.least.ratio.text(),
                 f"{len(those.lost)} / {len(those.level)} / {len(those.open)}"] if those.all else ["-"] * 3
@@ -342,7 +342,7 @@ def leads_table(leads: Sequence[Lead]) -> Table:
 
 
 def standings_table(times: Times, cases: Sequence[Compared]) -> Table:
-    """Every algorithm over all cases, and in how many of them it is faster than auto, and so on."""
+    """Every algorithm over all cases, with the number of cases in which it is faster than auto."""
     rows = []
     for name, ratio, count, wins in times.standings(cases):
         of_auto = times.those(times.lead_over(case, "auto", name) for case in cases
@@ -368,7 +368,7 @@ def scenes_table(times: Times, cases: Sequence[Compared]) -> Table:
 
 
 def processes_table(runs: Sequence[Mapping]) -> Table:
-    """Every process, busy ones too, with what it says of itself."""
+    """Every process, including those on a busy machine, with its metadata."""
     def load(value: float | None) -> str:
         return "unknown" if value is None else f"{value:.1f}"
     return Table(["process:", "date", "minutes:", "share of a processor:", "load before:", "after:", "unsteady:"],
@@ -379,7 +379,7 @@ def processes_table(runs: Sequence[Mapping]) -> Table:
 
 def lines_figure(name: str, caption: str, series: Mapping[str, Mapping[str, Estimate]], rows: Sequence[str],
                  x: str) -> Figure:
-    """A line for each row, with a dot for each of the series that has one there."""
+    """A line for each row, with a dot for each series that has a value there."""
     drawing, (axes,) = figures.new(height=0.9 + 0.19 * len(rows) * max(1, len(series) / 3))
     for number, (label, estimates) in enumerate(series.items()):
         shown = [row for row in rows if row in estimates]

@@ -1,4 +1,4 @@
-"""What is compared with other libraries, how it is measured, and what is kept of it."""
+"""The cases of the comparison with other libraries, how they are measured, and which results are kept."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from .experiment import Case, Experiment
 from .run import Measuring
 
-# Of how many boxes and how dense uniform ones are; what is not varied is 10,000 boxes that touch 4 others each.
+# The numbers and densities of uniform boxes. When the other is varied, there are 10,000 boxes that touch 4 others
+# each.
 NUMBERS = (100, 1_000, 10_000, 100_000, 1_000_000)
 DENSITIES = (0.25, 1, 4, 16, 64)
-# A million boxes are for what does them within seconds.
+# A million boxes are only for algorithms that take seconds at most.
 FAST = ("auto", "grid", "bvh", "sweep_and_prune", "literature", "embree_collide", "boost_rtree",
         "fcl_dynamic_aabb_tree_array", "bullet_dbvt", "cgal_box_intersection")
 
@@ -32,7 +33,7 @@ EFFORT_OF_A_MILLION = {"budget_seconds": 4, "slow_rounds": 2}
 
 @dataclass(frozen=True)
 class Compared(Case):
-    """A case of the comparison: the group that it is of, and where it is on the curves of uniform boxes."""
+    """A case of the comparison: its group, and its place on the curves of uniform boxes."""
 
     group: str = ""
     number: int | None = None
@@ -93,15 +94,15 @@ COMPARISON = Experiment(title="The comparison with other libraries", measured="T
                         cases=cases, judge=lambda results, rules: (), figures=lambda results, rules: (),
                         name="comparison")
 
-# What is kept of a measurement. Samples are not: there are some hundred thousand in each process.
+# The fields kept of a measurement. Samples are not kept: each process has several hundred thousand.
 KEPT = ("case", "scene_parameters", "seeds", "dimension", "boxes", "frames", "moving", "drift", "algorithm", "version",
         "kind", "target", "pairs", "verified", "verified_by", "skipped", "rounds", "median_ms", "p99_ms", "unsteady",
         "floor_ms")
 
 
 def kept(results: dict) -> dict:
-    """Results without samples. A measurement's `ratio` is its time over that of the case's fastest in this process,
-    in the rounds of both; so the quotient of two of these is the ratio of the two algorithms."""
+    """Results without samples. A measurement's `ratio` is its time over that of the case's fastest in this process, in
+    their common rounds; the quotient of two ratios is the ratio of the two algorithms' times."""
     measurements = []
     for measured in results["measurements"]:
         one = {name: measured.get(name) for name in KEPT}

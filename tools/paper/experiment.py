@@ -1,4 +1,4 @@
-"""What an experiment declares: its statements, what would decide them, what to run, judge and draw."""
+"""An experiment's declaration: its statements, the rules that decide them, and what to run, judge and draw."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from .rules import Rules
 
 
-NAME_FROM_THE_CODE = re.compile("[a-z]_[a-z]|[a-z]:[a-z]")  # what no reader sees
+NAME_FROM_THE_CODE = re.compile("[a-z]_[a-z]|[a-z]:[a-z]")  # names that readers should not see
 
 
 class Unusable(Exception):
-    """Something that cannot be used. Its text, one line, says what was found and what was expected."""
+    """Something unusable. Its text, one line, says what was found and what was expected."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the draft, by its number in docs/draft.md, and what decides it.
+    """A statement of the draft, by its number in docs/draft.md, and the rules that decide it.
 
-    Both rules are sentences, written before anything is measured; `{clearly}` and the like stand for the
-    values in rules.toml.
+    Both rules are sentences, written before anything is measured; `{clearly}` and the like stand for the values in
+    rules.toml.
     """
 
     number: str
@@ -40,7 +40,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Boxes:
-    """Boxes of an experiment's own: `make(random)` gives an array with a row `[minima, maxima]` a box."""
+    """Boxes made by an experiment: `make(random)` gives an array with a row `[minima, maxima]` per box."""
 
     name: str
     make: Callable[[numpy.random.Generator], numpy.ndarray]
@@ -49,9 +49,9 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Case:
-    """Boxes, and the algorithms that are measured on them in the same rounds.
+    """Boxes, and the algorithms measured on them in the same rounds.
 
-    The fields are those of docs/schemas/cases-1.schema.json; None leaves one out.
+    The fields are those of docs/schemas/cases-1.schema.json; None leaves a field out.
     """
 
     name: str
@@ -69,7 +69,7 @@ class Case:
     effort: Mapping[str, float] = field(default_factory=dict)
 
     def listed(self, seed: int, files: Sequence[str] = ()) -> dict:
-        """The case as `broadside measure` takes it; `files` are the inputs of a scene of Boxes."""
+        """The case as input of `broadside measure`; `files` are the inputs of a scene of Boxes."""
         own = isinstance(self.scene, Boxes)
         fields = {
             "name": self.name,
@@ -92,7 +92,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Experiment:
-    """An experiment. A module of tools/paper/experiments/ has one, as EXPERIMENT, and gives it its name."""
+    """An experiment. Each module of tools/paper/experiments/ has one, called EXPERIMENT, and gives it its name."""
 
     title: str
     measured: str
@@ -103,7 +103,7 @@ class Experiment:
     name: str = ""
 
     def listed(self) -> list[dict]:
-        """Its cases, checked, with what does not depend on the run: what results are told apart by."""
+        """Its cases, checked, without what depends on the run: these identify results."""
         cases = list(self.cases())
         names = [case.name for case in cases]
         for name in names:
@@ -131,7 +131,7 @@ def order_of(number: str) -> tuple[int, str]:
 
 
 def experiments_named(names: Sequence[str]) -> list[Experiment]:
-    """Those of these names, or all where there are none."""
+    """The experiments of these names, or all if there are none."""
     known = all_experiments()
     for name in names:
         if name not in known:

@@ -1,4 +1,4 @@
-"""The figures: Matplotlib's, drawn at the size at which they are printed, readable there."""
+"""Figures, drawn by Matplotlib at the size at which they are printed, so that they are readable there."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .experiment import NAME_FROM_THE_CODE, Unusable
 from .statistics import Estimate
 
 WIDTH = 5.6          # inches: the width of the printed text
-LEAST_POINTS = 8     # of any label, as printed
+LEAST_POINTS = 8     # minimum size of any label, as printed
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"]  # Okabe and Ito
 MARKERS = "os^Dv<>"
 
@@ -33,7 +33,7 @@ matplotlib.rcParams.update({
     "figure.constrained_layout.use": True, "figure.max_open_warning": 0, "pdf.fonttype": 42,
 })
 
-# What algorithms are called in figures and tables.
+# The names of algorithms in figures and tables.
 NAMES = {
     "paper_brute_force": "the draft's brute force", "paper_grid": "the draft's grid",
     "paper_sweep_and_prune": "the draft's sweep", "paper_quadtree": "the draft's quadtree",
@@ -44,7 +44,7 @@ NAMES = {
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of an experiment: what it is called, what it shows, and the drawing."""
+    """A figure of an experiment: its name, its caption, and the drawing."""
 
     name: str
     caption: str
@@ -58,7 +58,7 @@ def new(columns: int = 1, height: float = 2.6) -> tuple[pyplot.Figure, list[Axes
 
 
 def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
-    """What the axes show, with units in words; `log` names those that are logarithmic. After the lines."""
+    """Labels the axes, with units in words; `log` names the logarithmic axes. Call after drawing the lines."""
     axes.set(xlabel=x, ylabel=y, title=title)
     for set_scale, axis, is_log in ((axes.set_xscale, axes.xaxis, "x" in log),
                                     (axes.set_yscale, axes.yaxis, "y" in log)):
@@ -74,8 +74,8 @@ def label(axes: Axes, x: str, y: str, title: str = "", log: str = "xy") -> None:
 
 
 def line(axes: Axes, x: Sequence, y: Sequence, name: str = "", joined: bool = True) -> None:
-    """A line through figures, with their intervals as bars; numbers along one axis, estimates along the other.
-    Points alone where nothing lies between them."""
+    """A line through figures, with their intervals as bars: numbers along one axis, estimates along the other. Only
+    points if there is nothing to interpolate."""
     number = len(axes.containers)
     (x, x_bars), (y, y_bars) = _values_and_bars(x), _values_and_bars(y)
     axes.errorbar(x, y, y_bars, x_bars, label=name or None, marker=MARKERS[number % len(MARKERS)], capsize=2,
@@ -83,8 +83,8 @@ def line(axes: Axes, x: Sequence, y: Sequence, name: str = "", joined: bool = Tr
 
 
 def legend(axes: Axes, title: str = "", is_shared: bool = False) -> None:
-    """What the lines are, at the bottom, where no data are: below the axes, or below all if they share it. The drawing
-    grows by its height."""
+    """The legend of the lines, at the bottom, clear of the data: below the axes, or below all if they share it. The
+    drawing grows by its height."""
     drawing = axes.figure
     width = drawing.bbox.width if is_shared else drawing.bbox.width / len(drawing.axes)
     place = drawing.transFigure if is_shared else blended_transform_factory(axes.transAxes, drawing.transFigure)
@@ -112,7 +112,7 @@ def _values_and_bars(numbers: Sequence) -> tuple[Sequence[float], numpy.ndarray 
 
 
 def check(figure: Figure) -> None:
-    """Throws Unusable if a label would be too small to read or cut off, or is a name from the code."""
+    """Raises Unusable if a label is too small to read or cut off, or is a name from the code."""
     if figure.drawing.get_figwidth() > WIDTH + 1e-6:
         raise Unusable(f"figure {figure.name} is {figure.drawing.get_figwidth():g} inches wide; expected at "
                        f"most {WIDTH:g}, as wide as it is printed")
@@ -134,7 +134,7 @@ def check(figure: Figure) -> None:
 
 
 def save(figure: Figure, folder: Path) -> None:
-    """As SVG for pages and as PDF for print; the same drawing gives the same bytes."""
+    """Writes SVG for pages and PDF for print; the same drawing gives the same bytes."""
     check(figure)
     folder.mkdir(parents=True, exist_ok=True)
     figure.drawing.savefig(folder / f"{figure.name}.svg", metadata={"Date": None})

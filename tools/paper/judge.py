@@ -1,4 +1,4 @@
-"""Verdicts by intervals: what became of each statement."""
+"""Verdicts by intervals: the outcome of each statement."""
 
 from __future__ import annotations
 
@@ -16,27 +16,26 @@ class Verdict(str, Enum):
     CONFIRMED = "confirmed"
     WITHIN_BOUNDS = "holds within bounds"
     REFUTED = "refuted"
-    OPEN = "open"  # intervals hold the threshold
+    OPEN = "open"  # intervals contain the threshold
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What the figures say of one statement."""
+    """The outcome of one statement."""
 
     number: str
     verdict: Verdict
     evidence: Mapping[str, Estimate]
-    condition: str = ""  # where it holds; of one that is open: why
-    share: str = ""      # of the places, at which it holds
-    beside: Mapping[str, Estimate] = field(default_factory=dict)  # figures that decide nothing
+    condition: str = ""  # where it holds; if open, why
+    share: str = ""      # of the places at which it holds
+    beside: Mapping[str, Estimate] = field(default_factory=dict)  # figures that do not decide anything
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a statement asks of a figure: that its whole interval is above, or below, a threshold, or between two.
+    """What a statement requires of a figure: that its whole interval is above or below a threshold, or between two.
 
-    It fails where the whole interval is on the other side; of `fails_at`, where that is given, instead of the
-    first threshold.
+    It fails if the whole interval is on the other side of the first threshold or, if given, of `fails_at`.
     """
 
     at: Estimate
@@ -55,14 +54,15 @@ class Asked:
         return (least is not None and self.at.is_below(least)) or (most is not None and self.at.is_above(most))
 
     def misses(self) -> bool:
-        """The whole interval is on the other side of the first threshold: it does not hold, if it fails or not."""
+        """The whole interval is on the other side of the first threshold: the statement does not hold, whether or not
+        it fails."""
         return replace(self, fails_at=None).fails()
 
 
 def judged(number: str, places: Mapping[str, Estimate], *, above: float | None = None,
            below: float | None = None, fails_at: float | None = None, where: str = "{}",
            beside: Mapping[str, Estimate] | None = None) -> Finding:
-    """The verdict on a statement that asks one thing, and is to hold at each of these places."""
+    """The verdict on a statement that requires one thing, and must hold at each of these places."""
     if above is None and below is None:
         raise ValueError("expected `above` or `below`")
     return judged_all(number, {name: {name: Asked(at, above, below, fails_at)} for name, at in places.items()},
@@ -71,11 +71,11 @@ def judged(number: str, places: Mapping[str, Estimate], *, above: float | None =
 
 def judged_all(number: str, places: Mapping[str, Mapping[str, Asked]], *, where: str = "{}",
                beside: Mapping[str, Estimate] | None = None) -> Finding:
-    """The verdict on a statement that asks several things, by names, of each place.
+    """The verdict on a statement that requires several things, by name, of each place.
 
-    It holds where all hold, and fails where one fails. Confirmed where it holds at all places, refuted where it
-    fails at all; within bounds where it holds at some and is missed at others: `where` then makes a condition of
-    the names of the former. Where intervals cannot tell whether there are others, it is open.
+    At a place, it holds if all hold, and fails if one fails. It is confirmed if it holds at all places, refuted if it
+    fails at all of them, and within bounds if it holds at some and is missed at others: `where` then makes a condition
+    of the names of the former. If the intervals cannot tell whether there are others, it is open.
     """
     if not places:
         return Finding(number, Verdict.OPEN, {}, "nothing that was measured is what it is about",
@@ -105,7 +105,7 @@ def listing(names: Sequence[str]) -> str:
 def judge(experiment: Experiment, results: Results, book: RuleBook) -> list[Finding]:
     """The findings of an experiment, one for each of its claims, in their order.
 
-    With fewer runs than the rules ask for, every verdict that rests on an interval is open.
+    With fewer runs than the rules require, every verdict that rests on an interval is open.
     """
     rules = book.of(experiment.name)
     found = {finding.number: finding for finding in experiment.judge(results, rules)}

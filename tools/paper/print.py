@@ -1,4 +1,4 @@
-"""Prints: templates become Markdown by Jinja2, and the paper a page, HTML and PDF by pandoc and LaTeX."""
+"""Prints: Jinja2 fills templates with Markdown, and pandoc and LaTeX turn the paper into a page, HTML and PDF."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 TEMPLATES = Path(__file__).parent / "templates"
 DIAGRAMS = Path(__file__).parents[2] / "docs" / "paper" / "diagrams"
 NOTICE = "<!-- Made by `make paper` from tools/paper/; edit the templates there. -->\n\n"
-PAPER = "paper.md"  # printed by pandoc; the other pages are Markdown as it is filled
-MOST_OF_A_CONDITION = 100  # characters that a verdict in a short table may have
+PAPER = "paper.md"  # printed by pandoc; the other pages are the filled Markdown
+MOST_OF_A_CONDITION = 100  # maximum length of a verdict in a short table
 QUOTING = ("README.md", "docs/results.md")  # pages of the repository that quote results
 
 
 @dataclass(frozen=True)
 class JudgedClaim:
-    """A statement of the draft with what became of it, as templates have it."""
+    """A statement of the draft with its outcome, for templates."""
 
     statement: draft.DraftStatement
     confirmed_if: str
@@ -58,7 +58,7 @@ class JudgedClaim:
 
 @dataclass(frozen=True)
 class JudgedExperiment:
-    """An experiment with its findings and figures, as templates have it."""
+    """An experiment with its findings and figures, for templates."""
 
     experiment: Experiment
     claims: Sequence[JudgedClaim]
@@ -72,7 +72,7 @@ class JudgedExperiment:
 
 @dataclass(frozen=True)
 class Content:
-    """All that pages are made of. `unmeasured` are the experiments that have no run."""
+    """The content of all pages. `unmeasured` lists the experiments without a run."""
 
     experiments: Sequence[JudgedExperiment]
     unmeasured: Sequence[Experiment]
@@ -82,7 +82,7 @@ class Content:
 
     @property
     def runs(self) -> list[Mapping]:
-        """What each run says of itself, all experiments together."""
+        """The metadata of each run, for all experiments together."""
         return [run for experiment in self.experiments for run in experiment.runs]
 
 
@@ -106,8 +106,9 @@ def judged_claim(claim: Claim, finding: Finding, rules: Rules,
 
 
 def write_pages(content: Content, folder: Path, home: Path | None = None) -> list[Path]:
-    """Every template as a page of that name, and the figures beside them in figures/. The paper's page is of pandoc's
-    Markdown yet: print_paper makes of it what is read. Links lead from `home`, by default the folder."""
+    """Writes every template as a page of that name, with the figures beside them in figures/. The paper's page is
+    still pandoc's Markdown: print_paper makes the readable page from it. Links start from `home`, by default the
+    folder."""
     drawings = [figure for experiment in content.experiments for figure in experiment.figures]
     if content.comparison is not None:
         drawings += content.comparison.figures
@@ -116,14 +117,14 @@ def write_pages(content: Content, folder: Path, home: Path | None = None) -> lis
     pages = {}
     for name in environment(content, None).list_templates(filter_func=lambda name: re.fullmatch(r"\w+\.md", name)):
         words = Words(claims, unmeasured, content.statements, drawings, content.comparison)
-        for _ in range(2):  # figures that are named before they come have their numbers in the second
+        for _ in range(2):  # the second pass knows the numbers of figures that are referenced before they occur
             pages[name] = filled(environment(content, words), name)
-    shutil.rmtree(folder / "figures", ignore_errors=True)  # those of other results
+    shutil.rmtree(folder / "figures", ignore_errors=True)  # figures of other results
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / "diagrams").exists():
         shutil.copytree(DIAGRAMS, folder / "diagrams")
     for name, text in pages.items():
-        text = re.sub(r"(?<=\]\()\.\./[^)#]*",  # links are written as they are in docs/paper
+        text = re.sub(r"(?<=\]\()\.\./[^)#]*",  # templates write links relative to docs/paper
                       lambda link: os.path.relpath(DIAGRAMS.parent / link[0], home or folder), text)
         (folder / name).write_text(NOTICE + text, encoding="utf-8")
     for drawing in drawings:
@@ -143,7 +144,7 @@ def environment(content: Content, words: Words | None) -> jinja2.Environment:
 
 
 def filled(templates: jinja2.Environment, name: str) -> str:
-    """A template's text. Throws Unusable, which names the template and the line, where it names what is not there."""
+    """A template's text. If it uses an unknown name, raises Unusable with the template and the line."""
     try:
         return templates.get_template(name).render().strip() + "\n"
     except jinja2.TemplateSyntaxError as error:
@@ -179,7 +180,7 @@ def machine_words(content: Content) -> dict[str, str]:
 
 
 def statements_table(content: Content, is_ours: bool = False, is_whole: bool = True) -> str:
-    """All statements of the draft, or our own claims, with what became of each; or only those that can be decided."""
+    """All statements of the draft, or our own claims, with the outcome of each; or only those that can be decided."""
     claims = {claim.number: claim for experiment in content.experiments for claim in experiment.claims}
     unmeasured = {claim.number for experiment in content.unmeasured for claim in experiment.claims}
     section = {claim.number: re.sub(r"[^\w -]", "", experiment.experiment.title.lower()).replace(" ", "-")
@@ -225,7 +226,7 @@ def load_text(load: float | None) -> str:
 
 
 def totals(content: Content) -> dict[str, int | float]:
-    """Counts of the draft's statements by verdict, and of what was measured."""
+    """The number of the draft's statements by verdict, and of measurements."""
     verdicts = [claim.finding.verdict for experiment in content.experiments for claim in experiment.claims
                 if claim.statement.kind != "our claim"]
     numbers = {run["run"] for run in content.runs}
@@ -243,8 +244,8 @@ def totals(content: Content) -> dict[str, int | float]:
 
 
 def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True) -> None:
-    """The paper as a page and as PDF in its folder, and as HTML in `work`. Where a program is missing, a line says
-    which, and what is printed without it."""
+    """The paper as a page and as PDF in its folder, and as HTML in `work`. If a program is missing, a line says which
+    one, and what is printed without it."""
     if shutil.which("pandoc") is None:
         say(f"pandoc is missing (tools/setup/setup --paper): the other pages are written; {folder / PAPER} is in "
             f"pandoc's Markdown, without sources, and there is no HTML or PDF of it")
@@ -265,7 +266,7 @@ def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True
         say(f"{listing(missing)} missing (tools/setup/setup --paper): pages and HTML are written, "
             f"{folder}/paper.pdf is not")
         return
-    # The page's checksum is in the PDF, so that a test can tell one of another text.
+    # The PDF contains the page's checksum, so that a test can detect a PDF of another text.
     sum_of_page = work / "sum.tex"
     sum_of_page.write_text(f"\\pdfinfo{{/TextSum ({hashlib.sha256(NOTICE.encode() + page).hexdigest()})}}\n")
     pandoc(source, folder, *printed, "--pdf-engine", "pdflatex", "--default-image-extension", "pdf",
@@ -277,7 +278,7 @@ def print_paper(folder: Path, content: Content, work: Path, has_pdf: bool = True
 
 
 def pandoc(source: Path, folder: Path, *arguments: str, day: str = "") -> bytes:
-    """What pandoc writes of the paper. The day of the results stands for that of printing, for the same bytes."""
+    """pandoc's output for the paper. Uses the results' date as printing date, so that the bytes are the same."""
     variables = dict(os.environ)
     if re.fullmatch(r"\d{4}-\d\d-\d\d", day):
         seconds = datetime.fromisoformat(day).replace(tzinfo=timezone.utc).timestamp()
@@ -297,7 +298,8 @@ def pandoc(source: Path, folder: Path, *arguments: str, day: str = "") -> bytes:
 
 
 def fill_quotes(content: Content, root: Path) -> None:
-    """Passages of other pages, between `<!-- quote: NAME -->` and `<!-- end of quote -->`, from templates/quotes/."""
+    """Fills passages of other pages, between `<!-- quote: NAME -->` and `<!-- end of quote -->`, from
+    templates/quotes/."""
     if content.comparison is None:
         say(f"{listing(QUOTING)} quote the comparison, which has no results: they are left as they were")
         return

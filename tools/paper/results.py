@@ -1,4 +1,4 @@
-"""What an experiment measured: one object for each run, and figures between runs."""
+"""The results of an experiment: one object for each run, and figures between runs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Run:
 
     @property
     def table(self) -> pandas.DataFrame:
-        """All measurements, by case and algorithm; looking up one at a time is slower in it."""
+        """All measurements, by case and algorithm, for fast look-up."""
         return pandas.DataFrame(self._measurements.values()).set_index(["case", "algorithm"], drop=False)
 
     def measurement(self, case: str, spec: str) -> dict:
@@ -39,7 +39,7 @@ class Run:
         return self._measurements[case, spec]
 
     def samples(self, case: str, spec: str, part: Sequence[str] = WHOLE) -> numpy.ndarray:
-        """Milliseconds: a row a round, a column a frame (one where boxes rest). No row: it was too slow."""
+        """Milliseconds: a row per round, a column per frame (one if boxes rest). No rows if it was too slow."""
         measured = self.measurement(case, spec)
         if measured["samples_ms"] is None:
             return numpy.empty((0, 1))
@@ -54,7 +54,7 @@ class Run:
         return self.samples(case, spec).size > 0
 
     def lacks(self, case: str, spec: str, what: str) -> Unusable:
-        """That a measurement has no such thing: most often since it was too slow here."""
+        """The error for a measurement that lacks this: usually because it was too slow."""
         why = self.measurement(case, spec).get("skipped") or "it was not taken"
         return Unusable(f"case '{case}': {spec} has no {what} ({why}); expected some, as on a faster machine")
 
@@ -69,11 +69,11 @@ class Run:
 
     def ratio(self, case: str, spec: str, other: str, part: Sequence[str] = WHOLE,
               other_part: Sequence[str] | None = None) -> float:
-        """The time of one over that of another, in the rounds of both."""
+        """The ratio of one time to another, in their common rounds."""
         return median_ratio(self.needed(case, spec, part), self.needed(case, other, other_part or part))
 
     def count(self, case: str, spec: str, what: str) -> float:
-        """Tests or references a box: the mean over the seeds."""
+        """Tests or references per box: the mean over the seeds."""
         measured = self.measurement(case, spec)
         by_seed = [number for number in measured[f"{what}_by_seed"] if number is not None]
         if not by_seed:
@@ -81,14 +81,14 @@ class Run:
         return float(numpy.mean(by_seed)) / self.boxes(case)
 
     def per_mover(self, case: str, spec: str, what: str) -> float:
-        """Entries `visited` or `moved` for each box that changed."""
+        """Entries `visited` or `moved` per box that changed."""
         phases = self.measurement(case, spec)["phases"]
         if phases is None:
             raise self.lacks(case, spec, "phases")
         return float(numpy.sum(phases[what]) / max(numpy.sum(phases["movers"]), 1))
 
     def memory(self, case: str, spec: str, what: str = "own") -> float:
-        """Bytes held between calls (own), or the most at one moment (peak)."""
+        """Bytes held between calls (own), or their maximum at one moment (peak)."""
         held = self.measurement(case, spec)[f"{what}_bytes"]
         if held is None:
             raise self.lacks(case, spec, "memory")
@@ -114,8 +114,8 @@ class Results:
         return between_runs([figure(run) for run in self.runs], self.confidence, unit)
 
     def growth(self, sizes: Sequence[float], amount: Callable[[Run, float], float]) -> Estimate:
-        """The exponent e of amount(run, size) ~ size^e; its interval holds that between runs and that which the
-        fit to the runs' means leaves."""
+        """The exponent e of amount(run, size) ~ size^e; its interval contains both that between runs and that of the
+        fit to the runs' means."""
         amounts = numpy.array([[amount(run, size) for size in sizes] for run in self.runs])
         between = between_runs([growth(sizes, row) for row in amounts], self.confidence)
         low, high = growth_interval(sizes, numpy.exp(numpy.log(amounts).mean(axis=0)), self.confidence)
@@ -127,7 +127,7 @@ class Results:
 
     def ratio(self, case: str, spec: str, other: str, part: Sequence[str] = WHOLE,
               other_part: Sequence[str] | None = None) -> Estimate:
-        """Of a single run the interval is the bootstrap's within it, for a first impression."""
+        """With a single run, the interval is the bootstrap's within the run, for a first impression."""
         estimate = self.between(lambda run: run.ratio(case, spec, other, part, other_part))
         if len(self.runs) > 1 or spec == other:
             return estimate
@@ -137,7 +137,7 @@ class Results:
         return Estimate(estimate.value, low, high, estimate.runs)
 
     def largest(self, figure: Callable[[Run], float]) -> Estimate:
-        """The largest of the runs' figures, which is a bound and has no interval."""
+        """The maximum of the runs' figures, which is a bound and has no interval."""
         figures = tuple(float(figure(run)) for run in self.runs)
         return Estimate(max(figures), max(figures), max(figures), figures)
 
@@ -151,11 +151,11 @@ class Results:
         return self.runs[0].boxes(case)
 
     def timed(self, case: str, specs: Sequence[str]) -> list[str]:
-        """Those of the specs that have a time in every run."""
+        """The specs that have a time in every run."""
         return [spec for spec in specs if all(run.was_timed(case, spec) for run in self.runs)]
 
     def fastest(self, case: str, specs: Sequence[str], part: Sequence[str] = WHOLE) -> str:
-        """The spec with the least time, as the mean over the runs; one is chosen for all of them."""
+        """The spec with the minimum mean time over the runs; the same for all runs."""
         timed = self.timed(case, specs)
         if not timed:
             raise Unusable(f"case '{case}': none of {', '.join(specs)} has a time; expected one at least")

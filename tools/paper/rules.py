@@ -14,7 +14,7 @@ PATH = Path(__file__).parent / "rules.toml"
 
 
 class Rules:
-    """The values that one experiment is judged by, as attributes: its own and those of [all]."""
+    """The values by which one experiment is judged, as attributes: its own and those of [all]."""
 
     def __init__(self, values: Mapping[str, float]):
         self.values = dict(values)
@@ -23,7 +23,7 @@ class Rules:
         try:
             return self.values[name]
         except KeyError:
-            if name.startswith("__"):  # what Python looks for by itself
+            if name.startswith("__"):  # Python's own look-ups
                 raise AttributeError(name) from None
             raise self._lacks(name) from None
 
@@ -53,19 +53,19 @@ class RuleBook:
         self._path = path
 
     def digest(self, experiment: str) -> str:
-        """Of the rules that an experiment is judged by, so that those of another may change."""
+        """Covers only the rules that judge this experiment, so that those of another may change."""
         return hashlib.sha256(repr(sorted(self.of(experiment).values.items())).encode()).hexdigest()[:16]
 
     def of(self, experiment: str) -> Rules:
         return Rules({**self._tables["all"], **self._tables.get(experiment, {})})
 
     def experiments(self) -> list[str]:
-        """Those that have rules of their own."""
+        """The experiments with rules of their own."""
         return [name for name in self._tables if name != "all"]
 
     def commit(self) -> str:
-        """The commit that the rules are from, thresholds and the sentences of experiments/; empty where they, or the
-        repository, are not committed."""
+        """The commit of the rules: thresholds and the sentences of experiments/. Empty if they are not committed, or
+        if there is no repository."""
         def git(*arguments: str) -> subprocess.CompletedProcess:
             return subprocess.run(("git", *arguments, "--", self._path.name, "experiments"), cwd=self._path.parent,
                                   capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Measures experiments: run after run, each a process of its own, kept as soon as it has ended."""
+"""Measures experiments run by run, each in its own process, and stores each result as soon as it is complete."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .archive import Archive, check, kind_of_run
 from .experiment import Boxes, Experiment, Unusable
 from .rules import RuleBook
 
-# Of every case that says nothing else. A slow algorithm has as many rounds as the others, up to its share.
+# For cases that do not say otherwise. A slow algorithm has as many rounds as the others, up to its share.
 EFFORT = {"budget_seconds": 4, "history_seconds": 8, "share_seconds": 0.1, "min_rounds": 8, "max_rounds": 40,
           "slow_seconds": 2, "slow_history_seconds": 4, "slow_rounds": 3}
 QUICK_EFFORT = {**EFFORT, "share_seconds": 0.01, "min_rounds": 3, "max_rounds": 20, "slow_seconds": 0.2,
@@ -27,7 +27,7 @@ QUICK_EFFORT = {**EFFORT, "share_seconds": 0.01, "min_rounds": 3, "max_rounds": 
 
 
 def seed_of(run: int) -> int:
-    """The first seed of a run's cases: runs are on other boxes, and run 1 always on the same."""
+    """The first seed of a run's cases: each run has other boxes, and run 1 always has the same."""
     return 1000 * run + 1
 
 
@@ -40,7 +40,7 @@ class Measuring:
     work: Path
     book: RuleBook
     is_quick: bool = False
-    seconds: dict[str, float] = field(default_factory=dict)  # that an experiment's last run took
+    seconds: dict[str, float] = field(default_factory=dict)  # duration of each experiment's last run
     effort = EFFORT
     quick_effort = QUICK_EFFORT
 
@@ -51,8 +51,8 @@ class Measuring:
         self.digest = hashlib.sha256(self.program.read_bytes()).hexdigest()[:16]
 
     def measure(self, experiments: Sequence[Experiment], runs: Sequence[int]) -> None:
-        """What is there already is kept, so that a run that was cut off goes on; what is there of another
-        version is refused before anything is measured."""
+        """Keeps existing runs, so that an interrupted measurement continues. Refuses existing runs of another version
+        before measuring anything."""
         left = [(run, experiment) for run in runs for experiment in experiments
                 if not self.is_measured(run, experiment)]
         if left and not self.is_quick and not self.book.commit():
@@ -70,7 +70,7 @@ class Measuring:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Two that measure at once would take each other's files, and each other's time."""
+        """Two measurements at once would overwrite each other's files and disturb each other's times."""
         self.work.mkdir(parents=True, exist_ok=True)
         with open(self.work / "lock", "w", encoding="utf-8") as lock:
             try:
@@ -93,10 +93,9 @@ class Measuring:
         return True
 
     def results_of(self, run: int, experiment: Experiment) -> dict:
-        """What the program says of one run. Throws Unusable where it refuses, KeyboardInterrupt where it was
-        interrupted."""
+        """The program's results of one run. Raises Unusable if it refuses, KeyboardInterrupt if it was interrupted."""
         cases = list(experiment.cases())
-        numpy.random.default_rng(run).shuffle(cases)  # no case always comes after the same other one
+        numpy.random.default_rng(run).shuffle(cases)  # no case always follows the same other one
         listed = []
         for case in cases:
             files = self.write_inputs(case.scene, run) if isinstance(case.scene, Boxes) else ()
@@ -104,7 +103,7 @@ class Measuring:
         cases_file = self.work / f"{experiment.name}.cases.json"
         results_file = self.work / f"{experiment.name}.results.json"
         effort = self.quick_effort if self.is_quick else self.effort
-        if self.is_quick:  # what a case asks for beyond the usual is for the paper
+        if self.is_quick:  # optional parts of a case are for the paper
             listed = [{name: value for name, value in case.items() if name != "effort"} for case in listed]
         cases_file.write_text(json.dumps({"schema": "broadside.cases/1", "effort": effort, "cases": listed}),
                               encoding="utf-8")
@@ -112,7 +111,7 @@ class Measuring:
                                cwd=self.work, stdout=subprocess.PIPE, text=True, check=False)
         if ended.returncode == 130:
             raise KeyboardInterrupt
-        if experiment.claims:  # in the comparison many are too slow for their budget
+        if experiment.claims:  # in the comparison, many algorithms are too slow for their budget
             for line in ended.stdout.splitlines()[:-1]:
                 self.say("    " + line)
         if ended.returncode not in (0, 1):
@@ -121,7 +120,7 @@ class Measuring:
         return json.loads(results_file.read_text(encoding="utf-8"))
 
     def write_inputs(self, boxes: Boxes, run: int) -> list[str]:
-        """The inputs of a run as NumPy files; their paths from the folder of work."""
+        """Writes the inputs of a run as NumPy files; returns their paths relative to the work folder."""
         (self.work / "inputs").mkdir(exist_ok=True)
         names = []
         for i in range(boxes.inputs):
@@ -131,7 +130,7 @@ class Measuring:
         return names
 
     def time_left(self, left: Sequence[tuple[int, Experiment]]) -> str:
-        """Where each of the experiments that are left was measured before."""
+        """Available if each of the remaining experiments was measured before."""
         if not all(experiment.name in self.seconds for _, experiment in left):
             return ""
         seconds = sum(self.seconds[experiment.name] for _, experiment in left)

@@ -1,8 +1,8 @@
 """Figures with intervals: between runs by Student's t, within one run by the bootstrap.
 
-A run is a process of its own on boxes of its own seeds, and the unit of every interval: rounds within a
-process share its memory layout and its moment, so that they are not independent (Georges, Buytaert and
-Eeckhout, OOPSLA 2007; Kalibera and Jones, ISMM 2013).
+A run is a separate process on boxes of its own seeds, and the unit of every interval: rounds within a process share
+its memory layout and the time at which it ran, so they are not independent (Georges, Buytaert and Eeckhout, OOPSLA
+2007; Kalibera and Jones, ISMM 2013).
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ def digits(number: float) -> str:
 def between_runs(values: Sequence[float], confidence: float, unit: str = "") -> Estimate:
     """The mean of the runs' figures and its Student's interval.
 
-    Of figures above 0 both are of their logarithms, so that a ratio's reciprocal has the reciprocal
-    interval. One run has no interval between runs: it decides nothing.
+    For positive figures, both are computed from logarithms, so that a ratio's reciprocal has the reciprocal interval.
+    A single run has no interval between runs and decides nothing.
     """
     runs = numpy.asarray(values, dtype=float)
     if runs.size == 0:
@@ -85,7 +85,7 @@ def median_ratio(times: numpy.ndarray, others: numpy.ndarray) -> float:
 
 
 def bootstrap_interval(times: numpy.ndarray, others: numpy.ndarray, confidence: float) -> tuple[float, float]:
-    """Where the median ratio of one run lies, by resampling its pairs: what varies within the run."""
+    """The bootstrap interval of one run's median ratio, from resampling its pairs: the variation within the run."""
     logarithms = _logarithms(times, others)
     if logarithms.size < 5 or numpy.ptp(logarithms) == 0:
         return math.nan, math.nan
@@ -95,7 +95,7 @@ def bootstrap_interval(times: numpy.ndarray, others: numpy.ndarray, confidence: 
 
 
 def _logarithms(times: numpy.ndarray, others: numpy.ndarray) -> numpy.ndarray:
-    """Of the pairs in which both took part. What the clock did not see took less than a nanosecond."""
+    """For the pairs in which both took part. A time of 0 on the clock was less than a nanosecond."""
     rounds = min(len(times), len(others))
     if rounds == 0:
         raise ValueError("no round in which both took part; expected one at least")
@@ -113,15 +113,15 @@ def growth(sizes: Sequence[float], amounts: Sequence[float]) -> float:
 
 
 def growth_interval(sizes: Sequence[float], amounts: Sequence[float], confidence: float) -> tuple[float, float]:
-    """Where the fit leaves the exponent: wide where the amounts do not follow a power."""
+    """The fit's interval of the exponent: wide if the amounts do not follow a power law."""
     fit = stats.linregress(numpy.log(sizes), numpy.log(amounts))
     return stats.t.interval(confidence, len(sizes) - 2, loc=fit.slope, scale=max(fit.stderr, 1e-12))
 
 
 def crossing(places: Sequence[float], ratios: Sequence[float], level: float = 1) -> float:
-    """The place from which on a ratio stays above a level, between places by logarithms.
+    """The place from which a ratio stays above a level, interpolated between places by logarithms.
 
-    The first place where it always is; infinite where it is not at the last.
+    The first place if it is always above; infinite if it is not above at the last.
     """
     order = numpy.argsort(places)
     x = numpy.log(numpy.asarray(places, dtype=float)[order])

@@ -1,4 +1,4 @@
-"""Tables as Markdown whose columns are as wide in print as what stands in them needs."""
+"""Markdown tables with columns as wide in print as their contents need."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-LINE = 110   # characters of a printed line of a table
-SHORT = 22   # a column up to so wide keeps its width, the others share what is left
+LINE = 110   # width of a printed table line, in characters
+SHORT = 22   # columns up to this width keep it; the others share the rest
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,8 @@ class Table:
         return "\n".join(f"| {text} |" for text in [texts[0], " | ".join(dashes), *texts[1:]])
 
     def widths(self) -> list[int]:
-        """Characters of each column: pandoc divides the line by them where a row is longer than it."""
+        """The width of each column in characters: pandoc divides the line by these widths if a row is longer than the
+        line."""
         columns = [[printed(row[i]) for row in self.rows] for i in range(len(self.headings))]
         longest = [max([len(cell) for cell in column] + [longest_word([heading.removesuffix(":")])])
                    for heading, column in zip(self.headings, columns)]
@@ -45,7 +46,7 @@ class Table:
 
 
 def printed(cell: str) -> str:
-    """Without the address of links and the marks of code and emphasis."""
+    """Without link addresses and the markup of code and emphasis."""
     return re.sub(r"[`*]", "", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", cell))
 
 

@@ -1,4 +1,4 @@
-"""What templates may name: figures, verdicts and drawings of experiments; facts and tables of the comparison."""
+"""The names for templates: figures, verdicts and drawings of experiments; facts and tables of the comparison."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ DIAGRAMS = ("swept_grid", "packed_tree")  # docs/paper/diagrams/
 
 
 class Words:
-    """The functions that templates call. An unknown name is Unusable, in a line that has those there are; what was not
-    measured is said to be so."""
+    """The functions that templates call. An unknown name raises Unusable, in a line that lists the known ones; results
+    that were not measured are marked as such."""
 
     def __init__(self, claims: Iterable[JudgedClaim], unmeasured: Iterable[str],
                  statements: Mapping[str, draft.DraftStatement], drawings: Iterable[figures.Figure],
@@ -34,14 +34,14 @@ class Words:
         self._statements = statements
         self._drawings = {drawing.name: drawing for drawing in drawings}
         self._comparison = comparison
-        self._pictures: list[str] = []  # in the order of the text, which gives them their numbers
+        self._pictures: list[str] = []  # in the order of the text, which numbers them
 
     def names(self) -> dict[str, Callable]:
         names = ("figure", "span", "verdict", "by", "picture", "see", "fact", "table")
         return {name: getattr(self, name) for name in names}
 
     def claim(self, number: str) -> JudgedClaim | None:
-        """None where no run is about it."""
+        """None if no run covers it."""
         if number in self._claims:
             return self._claims[number]
         if number in self._unmeasured:
@@ -50,7 +50,7 @@ class Words:
         raise Unusable(f"no claim '{number}'; expected one of: {', '.join(known)}")
 
     def estimates(self, number: str, part: str = "") -> dict[str, Estimate]:
-        """A claim's figures that have a text in their name."""
+        """A claim's figures whose names contain a text."""
         claim = self.claim(number)
         if claim is None:
             return {}
@@ -69,8 +69,8 @@ class Words:
         return at.text() if math.isfinite(at.value) else NONE
 
     def span(self, number: str, part: str = "") -> str:
-        """ "between 1.42 (1.38 to 1.46) and 3.20 (3.11 to 3.29)" of the figures that have a text in their name. A
-        crossing that was not reached is counted apart."""
+        """ "between 1.42 (1.38 to 1.46) and 3.20 (3.11 to 3.29)", for the figures whose names contain a text. Counts
+        crossings that were not reached separately."""
         every = self.estimates(number, part)
         if not every:
             return NOT_MEASURED
@@ -92,7 +92,7 @@ class Words:
         return value if value.startswith("holds") else f"is {value}"
 
     def by(self, number: str, *, confirmed: str, bounds: str, refuted: str, otherwise: str) -> str:
-        """The text of the outcome; of one that is open, `otherwise`."""
+        """The text for the outcome; `otherwise` if it is open."""
         claim = self.claim(number)
         texts = {Verdict.CONFIRMED: confirmed, Verdict.WITHIN_BOUNDS: bounds, Verdict.REFUTED: refuted}
         return texts.get(claim.finding.verdict, otherwise) if claim else otherwise
@@ -112,7 +112,7 @@ class Words:
         return f"![{self.see(name)}. {caption or drawing.caption}]({path})"
 
     def see(self, name: str) -> str:
-        """ "Figure 3". A page is filled twice, so that this may come before the picture."""
+        """ "Figure 3". Pages are filled twice, so that this may precede the picture."""
         if name not in self._drawings and name not in DIAGRAMS and not self._is_missing(name):
             named(self._drawings, name, "figure")
         return f"Figure {self._pictures.index(name) + 1 if name in self._pictures else 0}"
@@ -125,7 +125,7 @@ class Words:
         return named(self._comparison.facts, name, "fact of the comparison") if self._comparison else NOT_MEASURED
 
     def table(self, name: str, without: Sequence[str] = ()) -> str:
-        """A table of the comparison, but for some columns."""
+        """A table of the comparison, without some columns."""
         if self._comparison is None:
             return NOT_MEASURED
         table = named(self._comparison.tables, name, "table of the comparison")

@@ -137,7 +137,8 @@ TEST(Advise, MeasuresOneThreadWhateverThreadsAreAllowed) {
   const Advice advice = advise(Catalogue(), "row", row(50), options);
   EXPECT_TRUE(advice.all_verified());
   std::map<std::string, bool> is_variant;
-  for (const RankedAlgorithm& ranked : advice.ranking) is_variant[ranked.measurement.algorithm] = ranked.is_variant;
+  for (const RankedAlgorithm& ranked : advice.ranking)
+    is_variant[ranked.measurement.algorithm] = ranked.is_variant;
   ASSERT_THAT(is_variant,
               AllOf(Contains(Key("grid")), Contains(Key("auto")), Contains(Key("auto:threads=0"))));
   EXPECT_FALSE(is_variant["auto"]);

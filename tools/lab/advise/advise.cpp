@@ -1,4 +1,4 @@
-// Measures what boxes are like, and which algorithm suits them.
+// Measures statistics of the boxes, and which algorithm suits them.
 #include "lab/advise/advise.hpp"
 
 #include <algorithm>
@@ -17,15 +17,15 @@
 namespace broadside::lab {
 namespace {
 
-/// An algorithm that takes more than this many times the best one's time is not measured again.
+/// An algorithm slower than the best by more than this factor is not measured again.
 constexpr double margin_of_finalists = 1.6;
 constexpr std::size_t max_finalists = 4;
 
-/// Of how many of the best other settings are tried.
+/// How many of the best algorithms are tried with other settings.
 constexpr std::size_t max_with_variants = 2;
 
-/// The first of `frames` frames in which about as many boxes change as in the mean of the history: those
-/// nearest its middle, where boxes have come to do what they usually do.
+/// The first of `frames` consecutive frames in which the number of changed boxes is close to the history's
+/// mean. Of such ranges, takes the one nearest the middle, where motion is typical.
 template <int D, typename Real>
 std::size_t typical_frames(const History<D, Real>& history, std::size_t frames) {
   const auto changes = [&](std::size_t step) {
@@ -35,7 +35,7 @@ std::size_t typical_frames(const History<D, Real>& history, std::size_t frames) 
   double all = 0;
   for (std::size_t i = 0; i < history.steps.size(); ++i) all += changes(i);
   const double expected = all * static_cast<double>(frames) / static_cast<double>(history.steps.size());
-  std::vector<double> excess(places, 0.0);  // of each place for the first frame, in changed boxes
+  std::vector<double> excess(places, 0.0);  // for each candidate first frame, the deviation in changed boxes
   double some = 0;
   for (std::size_t i = 0; i < history.steps.size(); ++i) {
     some += changes(i);
@@ -51,12 +51,12 @@ std::size_t typical_frames(const History<D, Real>& history, std::size_t frames) 
   return best;
 }
 
-/// The frames of a history that are measured: as many as the budget allows.
+/// The frames of a history to measure: as many as the budget allows.
 template <int D, typename Real>
 History<D, Real> window(const History<D, Real>& history, double budget_seconds, Advice& advice) {
   const auto places = static_cast<double>(std::max<std::size_t>(places_of(history), 1));
   double max_frames = std::clamp(budget_seconds * 5e5 / places, 8.0, 240.0);
-  // The definition is asked about every frame.
+  // Brute force checks every frame.
   constexpr double max_places_by_definition = 5'000;
   if (places <= max_places_by_definition)
     max_frames = std::min(max_frames, std::max(budget_seconds * 2e8 / (places * places), 8.0));
@@ -69,7 +69,7 @@ History<D, Real> window(const History<D, Real>& history, double budget_seconds, 
   return part;
 }
 
-/// A box as a mirror shows it that stands across the axes whose bits are set. Exact.
+/// A box mirrored on the axes whose bits are set. Exact.
 template <int D, typename Real>
 Box<D, Real> mirrored(const Box<D, Real>& box, std::size_t axes) {
   Box<D, Real> image = box;
@@ -81,8 +81,8 @@ Box<D, Real> mirrored(const Box<D, Real>& box, std::size_t axes) {
   return image;
 }
 
-/// The boxes themselves, their mirror images, and the same with the array begun at another place: on the
-/// same boxes again and again, the branch predictor learns what it never would of a user's.
+/// The boxes themselves, their mirror images, and each with the array rotated. On the same boxes again and
+/// again, the branch predictor would learn what it never could from a user's boxes.
 template <int D, typename Real>
 std::vector<History<D, Real>> images_of(const History<D, Real>& history, std::size_t count) {
   std::vector<History<D, Real>> images;
@@ -92,7 +92,7 @@ std::vector<History<D, Real>> images_of(const History<D, Real>& history, std::si
     std::ranges::for_each(image.boxes, mirror);
     for (Step<D, Real>& step : image.steps) std::ranges::for_each(step.boxes, mirror);
     const std::size_t turn = image.boxes.size() * (i >> D) / ((count >> D) + 1);
-    // Changes name places, which then stay.
+    // Changes name places, so the array cannot be rotated.
     if (image.steps.empty())
       std::rotate(image.boxes.begin(), image.boxes.begin() + static_cast<std::ptrdiff_t>(turn),
                   image.boxes.end());
@@ -154,7 +154,7 @@ class Adviser {
   }
 
  private:
-  /// The time that counts of one that was measured.
+  /// The time by which a measurement is ranked.
   double time(const Measurement& measurement) const {
     if (!is_timed(measurement)) return time_of(measurement);
     if (advice_.mode == Mode::find) return undisturbed(measurement.samples_ms, images_.size());
@@ -202,7 +202,7 @@ class Adviser {
     return std::move(result.measurements);
   }
 
-  /// The best, auto, and variants of the best; for each, whether it is a variant.
+  /// The best algorithms, auto, and variants of the best; for each, whether it is a variant.
   std::vector<Entry> finalists_of(const std::vector<Entry>& plain, const std::vector<Measurement>& first,
                                   std::vector<bool>& variant) {
     std::vector<std::size_t> order;
@@ -242,7 +242,7 @@ class Adviser {
     for (Entry& other : variants_of(entry, advice_.signals)) tried.push_back(std::move(other));
   }
 
-  /// With more threads than one, where the user named none in its spec.
+  /// Adds the entry with more than one thread, unless the user set the number in its spec.
   void add_threads(const Entry& entry, std::vector<Entry>& tried) const {
     for (Entry& other : with_threads({entry}, options_.threads)) {
       if (other.spec.text() != entry.spec.text()) tried.push_back(std::move(other));
@@ -277,13 +277,15 @@ class Adviser {
   std::vector<History<D, Real>> images_;
   Case case_;
   Advice advice_;
-  Stopwatch watch_;  // of all that the budget is for
+  Stopwatch watch_;  // for the whole budget
 };
 
 }  // namespace
 
 bool Advice::all_verified() const {
-  const auto failed = [](const RankedAlgorithm& ranked) { return ranked.measurement.outcome == Outcome::failed; };
+  const auto failed = [](const RankedAlgorithm& ranked) {
+    return ranked.measurement.outcome == Outcome::failed;
+  };
   return choice.has_value() && std::ranges::none_of(ranking, failed);
 }
 

@@ -1,4 +1,4 @@
-// Which algorithm is advised, and which settings of it are worth a try.
+// Chooses the advised algorithm, and the settings worth trying.
 #include "lab/advise/algorithm_choice.hpp"
 
 #include <algorithm>
@@ -24,10 +24,10 @@ bool is_eligible(const Candidate& candidate) {
 
 bool is_peer(const Candidate& candidate) { return is_foreign(candidate.measurement->kind); }
 
-/// Of each input, in rotation, the least sample.
+/// The fastest sample of each input; inputs take turns in `samples`.
 std::vector<double> min_samples(std::span<const double> samples, std::size_t inputs) {
   std::vector<double> minima(samples.begin(),
-                            samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
+                             samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), inputs)));
   for (std::size_t i = minima.size(); i < samples.size(); ++i)
     minima[i % inputs] = std::min(minima[i % inputs], samples[i]);
   return minima;
@@ -44,7 +44,7 @@ std::optional<std::size_t> fastest(std::span<const Candidate> candidates, const 
   return best;
 }
 
-/// "auto", whatever threads it has.
+/// Whether it is "auto", with any number of threads.
 bool is_auto(const Candidate& candidate) {
   const std::string& spec = candidate.measurement->algorithm;
   return !candidate.is_variant && spec.substr(0, spec.find(':')) == default_algorithm;
@@ -78,10 +78,12 @@ double part_of_rounds(const Measurement& a, const Measurement& b) {
 }
 
 std::optional<AlgorithmChoice> choose(std::span<const Candidate> candidates, bool by_time) {
-  const auto plain = fastest(candidates, [](const Candidate& candidate) { return !candidate.is_variant && !is_peer(candidate); });
+  const auto plain = fastest(
+      candidates, [](const Candidate& candidate) { return !candidate.is_variant && !is_peer(candidate); });
   if (!plain) return std::nullopt;
   const double min_time = candidates[*plain].milliseconds;
-  AlgorithmChoice choice{*plain, is_auto(candidates[*plain]) ? ChoiceReason::automatic : ChoiceReason::fastest, *plain, {}};
+  AlgorithmChoice choice{
+      *plain, is_auto(candidates[*plain]) ? ChoiceReason::automatic : ChoiceReason::fastest, *plain, {}};
   const auto automatic = fastest(candidates, is_auto);
   if (automatic && !by_time) return AlgorithmChoice{*automatic, ChoiceReason::automatic, *plain, {}};
   if (automatic) {
@@ -111,19 +113,19 @@ struct Trial {
   std::vector<std::string> values;
 };
 
-/// Cell sizes to try: multiples of the upper quartile of the longest sides.
+/// Cell sizes to try: multiples of the upper quartile of the boxes' longest sides.
 std::vector<std::string> cells(const Signals& signals) {
   const double side = signals.sizes[3];
   std::vector<std::string> values;
   if (!(side > 0)) return values;
-  // A cell is given in float.
+  // Specs give cell sizes as floats.
   for (const double times : {1.0, 2.0, 4.0, 8.0, 16.0}) {
     if (side * times > 1e-30 && side * times < 1e30) values.push_back(fmt::format("{:.3g}", side * times));
   }
   return values;
 }
 
-/// What one may set of an algorithm when all is still, or when boxes move.
+/// The tunables of an algorithm worth trying for boxes at rest, or for moving boxes.
 std::vector<Trial> trials_of(std::string_view algorithm, const Signals& signals) {
   const bool moves = signals.motion.has_value();
   std::vector<Trial> trials;

@@ -1,4 +1,4 @@
-// Why an algorithm is advised and the others are not: sentences that come from the signals and the times.
+// Sentences that explain, from the signals and the times, why an algorithm is advised and the others are not.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,17 +15,17 @@
 namespace broadside::lab {
 namespace {
 
-/// Boxes stand in clusters if this many times as many are near each other as if they were spread evenly.
+/// Boxes count as clustered if this many times as many are near each other as if spread evenly.
 constexpr double clustered = 2;
 
-/// Sizes are much alike if 99 % of the boxes are at most this many times as long as the median.
+/// Sizes count as alike if 99 % of the boxes are at most this many times as long as the median.
 constexpr double alike = 4;
 
-/// Sentences call an algorithm no slower if it takes up to this many times the time.
+/// Sentences call an algorithm no slower if it takes at most this many times the time.
 constexpr double as_fast = 1.05;
 constexpr std::size_t max_others = 5;
 
-/// A count explains a time if it is this many times the other count.
+/// A count explains a time difference if it is at least this many times the other count.
 constexpr double clearly = 1.2;
 
 std::string base_of(std::string_view spec) { return std::string(spec.substr(0, spec.find(':'))); }
@@ -40,7 +40,7 @@ std::string tests_text(const Measurement& measurement, const Signals& signals) {
   return tests ? fmt::format("{} tests a box", rounded(*tests)) : "tests that it does not count";
 }
 
-/// What in the boxes suits the algorithm.
+/// Which property of the boxes suits the algorithm.
 std::string suits(const std::string& algorithm, const Measurement& measurement, const Signals& signals) {
   const std::string tests = tests_text(measurement, signals);
   if (algorithm == "brute_force")
@@ -71,7 +71,8 @@ std::string suits(const std::string& algorithm, const Measurement& measurement, 
   return fmt::format("it makes {}", tests);
 }
 
-/// What a sweep along the best axis leaves, and stripes of a second one where they leave less.
+/// The tests that remain for a sweep along the best axis, and for stripes of a second axis if these leave
+/// fewer.
 std::string sweep_text(double tests, const Signals& signals) {
   const std::size_t axis = signals.best_axis();
   const double along = signals.axis_tests[axis];
@@ -81,7 +82,7 @@ std::string sweep_text(double tests, const Signals& signals) {
                      axis_name(axis), rounded(along), rounded(tests));
 }
 
-/// Why it takes longer than the chosen one: only what the numbers of the two bear out, else nothing.
+/// Why an algorithm is slower than the chosen one, if their counts show it; otherwise empty.
 std::string hinders(const RankedAlgorithm& slow, const RankedAlgorithm& chosen, const Signals& signals) {
   const Measurement& of = slow.measurement;
   const Measurement& best = chosen.measurement;
@@ -105,7 +106,7 @@ std::string hinders(const RankedAlgorithm& slow, const RankedAlgorithm& chosen, 
   return "";
 }
 
-/// Why auto takes longer than what is advised, `name`.
+/// Why auto takes longer than the advised algorithm, `name`.
 std::string what_auto_takes(const Measurement& chooser, const std::string& name, Mode mode) {
   const std::string& what = chooser.explanation;
   if (what.empty()) return "";
@@ -115,8 +116,8 @@ std::string what_auto_takes(const Measurement& chooser, const std::string& name,
   return "it takes " + what;
 }
 
-/// The fastest of the settings made by hand that is faster than what is advised, by more than sentences
-/// count; null where there is none.
+/// The fastest manually set variant that is faster than the advised algorithm by more than as_fast; null if
+/// there is none.
 const RankedAlgorithm* faster_variant(const Advice& advice) {
   const RankedAlgorithm* fastest = nullptr;
   for (const RankedAlgorithm& ranked : advice.ranking) {
@@ -214,7 +215,7 @@ const RankedAlgorithm* find(const Advice& advice, std::string_view spec) {
   return nullptr;
 }
 
-/// From which moving fraction on finding anew is the cheaper way, by the times of both ways here.
+/// The moving fraction from which searching anew is faster, computed from the measured times of both ways.
 std::string break_even(const Advice& advice) {
   const RankedAlgorithm* const rebuild = find(advice, "auto:update=rebuild");
   const RankedAlgorithm* const follow = find(advice, "auto:update=follow");

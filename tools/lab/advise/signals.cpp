@@ -1,4 +1,4 @@
-// What boxes are like, in the numbers that decide which algorithm suits them.
+// Computes the statistics of boxes that decide which algorithm suits them.
 #include "lab/advise/signals.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::size_t present_count(std::span<const Box<D, Real>> boxes) {
       std::ranges::count_if(boxes, [](const Box<D, Real>& box) { return !is_absent(box); }));
 }
 
-/// The least value that at least `fraction` of the sorted values do not exceed.
+/// The smallest value that at least `fraction` of the sorted values do not exceed.
 double at(const std::vector<double>& sorted, double fraction) {
   const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
@@ -45,7 +45,7 @@ double at(const std::vector<double>& sorted, double fraction) {
 
 double pairs_of(double count) { return count * (count - 1) / 2; }
 
-/// Pairs of intervals that overlap.
+/// The number of pairs of intervals that overlap.
 double overlapping(std::vector<double>& minima, std::vector<double>& maxima) {
   std::ranges::sort(minima);
   std::ranges::sort(maxima);
@@ -58,8 +58,8 @@ double overlapping(std::vector<double>& minima, std::vector<double>& maxima) {
   return pairs_of(static_cast<double>(minima.size())) - apart;
 }
 
-/// The part of the world, along one axis, in which each of the centres is: the few at either end, which may
-/// be far off, do not make the parts larger.
+/// For each centre, its part of the world along one axis. A few centres at either end, which may be far away,
+/// do not enlarge the parts.
 std::vector<std::size_t> parts_along(const std::vector<double>& centres) {
   std::vector<double> sorted = centres;
   std::ranges::sort(sorted);
@@ -73,7 +73,7 @@ std::vector<std::size_t> parts_along(const std::vector<double>& centres) {
   return result;
 }
 
-/// Pairs of centres whose keys are the same.
+/// The number of pairs of centres with equal keys.
 double pairs_of_equal(const std::vector<std::size_t>& keys) {
   std::unordered_map<std::size_t, double> counts;
   for (const std::size_t key : keys) ++counts[key];
@@ -93,7 +93,7 @@ double clustering(const std::vector<std::vector<double>>& centres) {
     expected *= pairs_of_equal(here) / pairs;
     for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = cells[i] * parts + here[i];
   }
-  // Less than one pair says nothing.
+  // Less than one expected pair means nothing.
   return expected < 1 ? 1 : pairs_of_equal(cells) / expected;
 }
 
@@ -134,14 +134,14 @@ void look_at(std::span<const Box<D, Real>> boxes, Signals& signals) {
   signals.clustering = clustering(centres);
 }
 
-/// Collects what happens from frame to frame.
+/// Collects statistics from frame to frame.
 template <int D, typename Real>
 class MotionCollector {
  public:
   void take(const Step<D, Real>& step, const std::vector<Box<D, Real>>& before) {
     std::size_t there = present_count<D, Real>(before);
     std::size_t moved = 0;
-    // Places that an array loses at its end lose their boxes.
+    // When an array shrinks, the boxes at its end are removed.
     for (std::size_t i = step.size; i < before.size(); ++i)
       removed_ += static_cast<std::size_t>(!is_absent(before[i]));
     for (std::size_t i = 0; i < step.changed.size(); ++i) {

@@ -1,4 +1,4 @@
-// The lines of C++ that do as advised.
+// The lines of C++ that follow the advice.
 #include "lab/advise/snippet.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ std::string snippet(std::string_view spec, Mode mode, int dimension, Precision p
         "const bool has_listings = (broadside::paper::register_listings(), true);\n\n";
   if (!is_ours)
     text += fmt::format("broadside::Algorithm {}();  // yours, as run_program() was given it\n\n", name);
-  // What the library cannot look up by its name is made of its description.
+  // Algorithms that the library cannot find by name are made from their description.
   const auto made = [&](std::string_view facade) {
     return fmt::format("broadside::{}<{}{}>({}(), broadside::Spec(\"{}\"))", facade, dimension,
                        precision == Precision::float64 ? ", double" : "", name, spec);

@@ -1,4 +1,4 @@
-// Signals and advice as text for people.
+// Signals and advice as text.
 #include <algorithm>
 #include <string>
 
@@ -35,11 +35,11 @@ std::string verdict_with_reason(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
-/// The table; a line stands before the algorithms that were in the first round only.
+/// The table, with a line before the algorithms that were only in the first round.
 std::string with_first_round_apart(std::string table, const Advice& advice) {
   const auto first = std::ranges::find(advice.ranking, false, &RankedAlgorithm::is_finalist);
   if (first == advice.ranking.begin() || first == advice.ranking.end()) return table;
-  std::size_t place = table.find('\n') + 1;  // after the head
+  std::size_t place = table.find('\n') + 1;  // after the heading
   for (auto finalist = advice.ranking.begin(); finalist != first; ++finalist)
     place = table.find('\n', place) + 1;
   return table.insert(place, "  measured in the first, short round only:\n");
@@ -108,7 +108,7 @@ std::string text_of(const Signals& signals) {
     for (std::size_t axis = 0; axis < signals.axis_tests.size(); ++axis)
       text += fmt::format("{} {} along {}", axis > 0 ? "," : "", rounded(signals.axis_tests[axis]),
                           axis_name(axis));
-    // Below 1 boxes keep apart, which no algorithm makes use of.
+    // Below 1, boxes keep apart; no algorithm makes use of that.
     if (signals.clustering >= 1)
       text += fmt::format("; {} times as many are near each other as if they were spread evenly",
                           rounded(signals.clustering));

@@ -9,14 +9,15 @@
 
 namespace broadside::lab {
 
-/// How a number is written: 'f' for floats of 2, 4 or 8 bytes, 'i' and 'u' for integers of 1, 2, 4 or 8.
+/// The encoding of a number: 'f' for floats of 2, 4 or 8 bytes, 'i' and 'u' for integers of 1, 2, 4 or 8
+/// bytes.
 struct NumberType {
   char kind = 'f';
   std::size_t bytes = 4;
   bool is_big_endian = false;
 };
 
-/// The bits of the number at a place, the last ones of a word.
+/// The bits of the number at a place, in the low bits of a word.
 inline std::uint64_t bits_at(const char* place, const NumberType& type) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < type.bytes; ++i)
@@ -24,13 +25,13 @@ inline std::uint64_t bits_at(const char* place, const NumberType& type) noexcept
   return bits;
 }
 
-/// The integer that the bits of a signed one are.
+/// The value of the bits of a signed integer.
 inline std::int64_t integer_of(std::uint64_t bits, const NumberType& type) noexcept {
   const std::size_t unused = 64 - 8 * type.bytes;
   return static_cast<std::int64_t>(bits << unused) >> unused;
 }
 
-/// A float of half precision (IEEE 754's binary16).
+/// A half-precision float (IEEE 754's binary16).
 inline double half_of(std::uint64_t bits) noexcept {
   const auto exponent = static_cast<int>(bits >> 10 & 31);
   const auto digits = static_cast<int>(bits & 1023);
@@ -41,7 +42,7 @@ inline double half_of(std::uint64_t bits) noexcept {
   return sign * (exponent == 0 ? std::ldexp(digits, -24) : std::ldexp(1024 + digits, exponent - 25));
 }
 
-/// The number that bits are, as the nearest double, which for all but integers of 8 bytes is that number.
+/// The value of the bits as the nearest double; exact for all types but 8-byte integers.
 inline double value_of(std::uint64_t bits, const NumberType& type) noexcept {
   if (type.kind == 'u') return static_cast<double>(bits);
   if (type.kind == 'i') return static_cast<double>(integer_of(bits, type));

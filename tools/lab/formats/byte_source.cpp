@@ -1,4 +1,4 @@
-// Bytes of a descriptor or in memory, unchanged or decompressed.
+// Reads bytes from a descriptor or memory, and decompresses them if needed.
 #include "lab/formats/byte_source.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace broadside::lab {
 
 std::unique_ptr<Decompressor> make_decompressor(std::string_view beginning, const std::string& name) {
   if (beginning.starts_with("\x1F\x8B")) return gzip_decompressor(name);
-  // A frame of zstd, or one of the sixteen kinds of frames that are to be skipped (RFC 8878, section 3.1).
+  // A zstd frame, or one of the sixteen kinds of skippable frames (RFC 8878, section 3.1).
   const bool is_skippable = beginning.size() >= 4 && (beginning[0] & '\xF0') == '\x50' &&
                             beginning.substr(1).starts_with("\x2A\x4D\x18");
   if (is_skippable || beginning.starts_with("\x28\xB5\x2F\xFD")) return zstd_decompressor(name);
@@ -75,7 +75,7 @@ void ByteSource::begin() {
   decompressor_ = make_decompressor(rest_, name_);
 }
 
-/// Reads into the buffer, behind what is there.
+/// Appends to the buffer.
 void ByteSource::fill() {
   if (!rest_.empty()) std::memmove(buffer_.data(), rest_.data(), rest_.size());
   const std::size_t got = read_some(buffer_.data() + rest_.size(), buffer_.size() - rest_.size());

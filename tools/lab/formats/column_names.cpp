@@ -1,4 +1,4 @@
-// Names that people give to a table's columns.
+// Common names of table columns, and their meaning.
 
 #include <array>
 #include <cctype>
@@ -9,7 +9,7 @@
 namespace broadside::lab::readers {
 namespace {
 
-/// Names of axes; of two that begin alike, the longer first.
+/// Names of axes; if one begins with another, the longer one comes first.
 struct AxisNames {
   std::string_view text;
   int axis;
@@ -26,7 +26,7 @@ constexpr auto axis_names = std::to_array<AxisNames>({
     {"lat", 1},
 });
 
-/// Names that stand before an axis, or behind it.
+/// Words before or after an axis.
 struct Word {
   Role role;
   std::string_view text;
@@ -88,7 +88,7 @@ constexpr auto corners = std::to_array<Corner>({
     {"lowerright", Role::max, Role::bottom},
 });
 
-/// Names with the axis in them.
+/// Names that include the axis.
 struct Whole {
   std::string_view text;
   Meaning meaning;

@@ -1,4 +1,4 @@
-// What the columns of a table mean together.
+// Resolves the columns of a table to boxes.
 #include "lab/formats/columns.hpp"
 
 #include <algorithm>
@@ -25,11 +25,11 @@ bool is_box(std::string_view name) { return plain(name) == "box"; }
 
 bool is_radius(std::string_view name) { return plain(name) == "radius" || plain(name) == "r"; }
 
-/// Names for what tells the boxes of frames apart, the first one there is used.
+/// Names for columns that identify a box across frames. The first of them that the table has is used.
 constexpr auto track_names =
     std::to_array<std::string_view>({"trackid", "track", "objectid", "object", "id"});
 
-/// Names of bounds in one field before those of geometries, which have to be looked through.
+/// Names of bounds in one field come before names of geometries, whose rows have to be examined.
 constexpr auto geometry_names =
     std::to_array<std::string_view>({"bbox", "bounds", "envelope", "wkt", "geometry", "geom", "thegeom"});
 
@@ -47,7 +47,8 @@ struct BoundsColumns {
 
 int of(const Found& found, Role role) { return found[static_cast<std::size_t>(role)]; }
 
-/// The fault if there are numbers for three points or more, so that the first two are not bounds; else empty.
+/// The fault if there are coordinates for three or more points, so that the first two are not bounds;
+/// otherwise empty.
 std::string points_of(const Found& found, std::span<const std::string_view> names) {
   std::string list;
   int count = 0;
@@ -60,7 +61,7 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
   return count < 3 ? "" : fmt::format("columns {} may be those of {} points", list, count);
 }
 
-/// Whether an axis has only the begin and end of an interval. Next to other columns they may be times.
+/// Whether an axis has only the begin and end of an interval. Beside other columns, they may be times.
 bool is_interval(const Found& found) {
   return of(found, Role::begin) != none && of(found, Role::end) != none &&
          std::ranges::count(found, none) == std::ptrdiff_t{roles} - 2;
@@ -100,7 +101,7 @@ std::optional<BoundsColumns> choose(const Found& found, int radius, bool are_cho
   return std::nullopt;
 }
 
-/// The column of the only thing that is known on an axis, a position; `none` if more is known or less.
+/// The column of a position, if an axis has nothing else; otherwise `none`.
 int point_of(Found found) {
   for (const Role time : {Role::begin, Role::end}) found[static_cast<std::size_t>(time)] = none;
   const int column =
@@ -108,7 +109,7 @@ int point_of(Found found) {
   return std::ranges::count(found, none) == std::ptrdiff_t{roles} - 1 ? column : none;
 }
 
-/// The first column of one of these names, the names in order.
+/// The column with the first of these names that occurs.
 int first_of(std::span<const std::string_view> names, std::span<const std::string_view> wanted) {
   for (const std::string_view want : wanted) {
     const auto name = std::ranges::find(names, want, [](std::string_view text) { return plain(text); });
@@ -117,23 +118,23 @@ int first_of(std::span<const std::string_view> names, std::span<const std::strin
   return none;
 }
 
-/// The radius, if it is one: beside g and b, r is a colour.
+/// The column of a radius. Beside g and b, r is a colour.
 int radius_of(std::span<const std::string_view> names) {
   const auto find = [names](std::string_view wanted) { return first_of(names, {&wanted, 1}); };
   const bool is_colour = find("g") != none && find("b") != none;
   return is_colour || find("radius") != none ? find("radius") : find("r");
 }
 
-/// The fault of an axis without bounds; empty for a z axis that needs none.
+/// The fault of an axis without bounds; empty for a z axis that needs no bounds.
 std::string problem_of(const Found& found, std::size_t axis, std::span<const std::string_view> names,
                        bool is_computed) {
   const int position = of(found, Role::position);
   const int size = of(found, Role::size);
-  // Beside bounds on the other two, z and depth need not be those of a box.
+  // If the other two axes have bounds, z and depth may be unrelated to the box.
   if (position != none && size != none && (axis < 2 || is_computed))
     return fmt::format("column {} may be a minimum or a centre",
                        shown(names[static_cast<std::size_t>(position)]));
-  // Maps have depths, and points a z, that are no bounds; what is half a pair of bounds is likely a slip.
+  // Maps have depths, and points a z, that are not bounds. Half of a pair of bounds is probably a mistake.
   const auto known = std::ranges::find_if(found, [&](int column) {
     return column != none && column != position && column != of(found, Role::geographic) &&
            column != of(found, Role::third) && column != of(found, Role::begin) &&
@@ -145,7 +146,7 @@ std::string problem_of(const Found& found, std::size_t axis, std::span<const std
   return axis < 2 ? fmt::format("no columns that give bounds on the {} axis", axis_letters[axis]) : "";
 }
 
-/// The columns of boxes without extent, where there are no others; false if there are no such columns.
+/// Resolves the columns as points, if they have nothing but positions; false if they have more or less.
 bool resolve_points(const std::array<Found, 3>& found, BoxColumns& columns) {
   const int x = point_of(found[0]);
   const int y = point_of(found[1]);
@@ -203,7 +204,7 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
                      shown(names[static_cast<std::size_t>(of(found[0], Role::begin))]),
                      shown(names[static_cast<std::size_t>(of(found[0], Role::end))]))
                : problem;
-  // A z that is not alone says nothing certain of a point.
+  // A z beside other columns need not belong to a point.
   return point_of(found[2]) == none ? problem_of(found[2], 2, names, true) : "";
 }
 
@@ -311,7 +312,7 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
     return list;
   };
   std::vector<std::string> lists;
-  // A maximum before its minimum, such as top before bottom where y grows upwards, is no size.
+  // A maximum before its minimum, such as top before bottom if y grows upwards, is not a size.
   const auto column_at = [&](int place) { return std::ranges::find(columns.places, place); };
   bool has_order = true;
   for (int axis = 0; axis < columns.dimension; ++axis)
@@ -364,7 +365,7 @@ std::vector<std::string> unnamed_meanings(std::size_t count) {
     case 4:
       return {"min_x,max_x,min_y,max_y"};
     case 5:
-      // YOLO's labels; a box after or before its class, number or score.
+      // YOLO's labels: a box after or before its class, number or score.
       return {"-,cx,cy,w,h", "-,left,top,right,bottom", "left,top,right,bottom"};
     case 6:
       return {"-,cx,cy,w,h", "-,-,left,top,right,bottom", "-,left,top,right,bottom", "left,top,right,bottom"};

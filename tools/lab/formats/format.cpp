@@ -1,4 +1,4 @@
-// The one list of formats, and how a path finds its own.
+// The list of formats, and how a file's format is found.
 #include "lab/formats/format.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool has_extension(const Format& format, const std::string& extension) {
   return std::ranges::find(format.extensions, extension) != format.extensions.end();
 }
 
-/// Whether a user means this format: by its name, or by an extension, whose dot may be left out.
+/// Whether a user means this format: by its name, or by an extension with or without its dot.
 bool is_called(const Format& format, std::string_view name) {
   return format.name == name ||
          has_extension(format, extension_of(fmt::format("file{}{}", name.starts_with('.') ? "" : ".", name)));
@@ -35,7 +35,7 @@ bool can_be_read(const Format& format) { return bool(format.open) || !format.mis
 
 bool can_be_written(const Format& format) { return bool(format.create); }
 
-/// The formats that `wanted` picks, for an error's text.
+/// The formats that `wanted` accepts, for the text of an error.
 std::string listed(bool (*wanted)(const Format&)) {
   std::string list;
   for (const Format& format : formats()) {
@@ -46,7 +46,7 @@ std::string listed(bool (*wanted)(const Format&)) {
   return list;
 }
 
-/// The suggestion for an unknown format's name.
+/// The suggestion for an unknown format name.
 std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
   std::vector<std::string> known;
   for (const Format& format : formats()) {
@@ -55,7 +55,7 @@ std::string suggested(std::string_view name, bool (*wanted)(const Format&)) {
   return core::did_you_mean(name, known);
 }
 
-/// The format that a file's content and extension tell; null if they tell none.
+/// The format found from a file's first bytes and extension; null if none matches.
 const Format* format_of(std::string_view begin, const std::string& extension) {
   const auto find = [begin](std::string_view name) -> const Format* {
     const auto format = std::ranges::find_if(
@@ -73,8 +73,8 @@ bool is_text(std::string_view bytes) {
       bytes, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r' && c != '\n'; });
 }
 
-/// Throws FileError naming the converter if an input is in a format that is known and not read: by its
-/// extension, or, where that is empty, by its first bytes.
+/// Throws FileError, naming a converter, if the input's format is recognised but unsupported. Recognises it
+/// by extension, else by its first bytes.
 void refuse_unread(Input& input, std::string_view extension) {
   const std::string_view file = input.path().empty() ? "FILE" : std::string_view(input.name());
   const std::string found = unread_format(input.beginning(), extension, file);
@@ -105,7 +105,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
   }
   if (begin.empty()) throw FileError(fmt::format("{}: is empty; expected boxes", input.name()));
   if (!input.extension().empty()) refuse_unread(input, input.extension());
-  // A file is also a table where the user names its columns.
+  // If the user names columns, the file is a table.
   const auto table = std::ranges::find_if(formats(), &Format::has_columns);
   if (!options.columns.empty() && table != formats().end()) return *table;
   throw FileError(fmt::format("{}: is in no format known here; expected one of: {}{}", input.name(),
@@ -115,7 +115,7 @@ const Format& readable_format(Input& input, const ReadOptions& options) {
                                              : ""));
 }
 
-/// Throws FileError if an option means nothing to the format.
+/// Throws FileError if an option does not apply to the format.
 void check_options(const Format& format, const std::string& name, const ReadOptions& options) {
   if (!options.columns.empty() && !format.has_columns)
     throw FileError(fmt::format("{}: is in format {}, which has no columns to name; expected a table", name,
@@ -249,7 +249,7 @@ const Format& writable_format(const std::filesystem::path& path, std::string_vie
 void write_frames(AnyFrameReader frames, const std::filesystem::path& path, const Format& format) {
   const int dimension = dimension_of(frames);
   const Precision precision = precision_of_frames(frames);
-  // The reader's errors name their file already; what the format cannot hold is said of this one.
+  // The reader's errors name the input file; errors about the output format name the output file.
   const auto written = [&](const auto& write) {
     try {
       write();

@@ -1,4 +1,4 @@
-// Frames seen in another precision, or flat.
+// Converts frames to another precision, or to 2D.
 #include "lab/formats/frames.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 template <int D, typename Real, int OldD, typename OldReal>
 Box<D, Real> converted(const Box<OldD, OldReal>& box) {
-  // Without z, an absent box is still absent.
+  // An absent box stays absent without z.
   Box<D, Real> result;
   for (int axis = 0; axis < D; ++axis) {
     result.min[axis] = static_cast<Real>(box.min[axis]);
@@ -22,7 +22,7 @@ Box<D, Real> converted(const Box<OldD, OldReal>& box) {
   return result;
 }
 
-/// The frames of another reader, each box converted.
+/// The frames of another reader, with each box converted.
 template <int D, typename Real, int OldD, typename OldReal>
 class ConvertedFrames final : public FrameReader<D, Real> {
  public:
@@ -39,7 +39,7 @@ class ConvertedFrames final : public FrameReader<D, Real> {
 
   bool has_pieces() const override { return frames_->has_pieces(); }
 
-  /// What is rounded in one slice is not told with what is in the others.
+  /// Slices are converted apart, so no slice can report the total number of rounded coordinates.
   bool take_slice(std::size_t slice, std::size_t slices) override {
     return (keeps_numbers || slices == 1) && frames_->take_slice(slice, slices);
   }
@@ -73,7 +73,7 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   std::shared_ptr<const BoxLabels> labels() const override { return frames_->labels(); }
 
  private:
-  // Flat or rounded boxes overlap where these do not.
+  // Rounded boxes, or boxes without z, may overlap where the original ones do not.
   static constexpr bool keeps_numbers = sizeof(Real) >= sizeof(OldReal);
   static constexpr bool keeps_pairs = D == OldD && keeps_numbers;
 
@@ -87,7 +87,7 @@ class ConvertedFrames final : public FrameReader<D, Real> {
   }
 
   std::unique_ptr<FrameReader<OldD, OldReal>> frames_;
-  std::string name_;  // the file's
+  std::string name_;  // of the file
   Rounding rounding_;
   Step<OldD, OldReal> old_;
   std::vector<Box<OldD, OldReal>> old_piece_;

@@ -1,4 +1,4 @@
-// Boxes as files hold them: frame after frame, in 2D or 3D, as floats or as doubles.
+// Frames of boxes as files hold them: in 2D or 3D, as floats or doubles.
 #pragma once
 
 #include <cmath>
@@ -32,11 +32,11 @@ std::string precision_text(Precision precision, std::string_view importer);
 template <typename Real>
 constexpr Precision precision_of = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
 
-/// Counts coordinates that no float holds exactly.
+/// Counts coordinates that are not exactly representable as floats.
 struct Rounding {
   std::uint64_t coordinates = 0;
   std::uint64_t rounded = 0;
-  std::uint64_t lost = 0;  ///< rounded beyond a float's range, to infinity or zero
+  std::uint64_t lost = 0;  ///< beyond a float's range, rounded to infinity or zero
 
   template <int D, typename Real>
   void count(std::span<const Box<D, Real>> boxes) {
@@ -62,19 +62,19 @@ struct Rounding {
     return *this;
   }
 
-  /// "2 of 1,000 coordinates were rounded to float", and how many of them to infinity or zero.
+  /// "2 of 1,000 coordinates were rounded to float", followed by the number rounded to infinity or zero.
   std::string text() const;
 };
 
-/// What a file says of its boxes besides their bounds.
+/// Labels of boxes in a file.
 struct BoxLabels {
   bool has_ids = false;
-  std::vector<std::string> ids{};     ///< the user's, by place, as far as frames have been read; any text
-  std::vector<std::string> unread{};  ///< the names of a table's columns that nothing is read from
+  std::vector<std::string> ids{};     ///< the user's ids by place, for the frames read so far; any text
+  std::vector<std::string> unread{};  ///< the names of a table's columns that are not read
 };
 
-/// Gives the frames of a file, one after the other. Throws FileError (lab/formats/format.hpp) where the file
-/// is wrong, which may be in a later frame. One thread at a time.
+/// Reads the frames of a file in sequence. Throws FileError (lab/formats/format.hpp) if the file is invalid,
+/// possibly only at a later frame. Use from one thread at a time.
 template <int D, typename Real>
 class FrameReader {
  public:
@@ -83,44 +83,44 @@ class FrameReader {
   /// The boxes of the first frame. Called once, before next().
   virtual std::vector<Box<D, Real>> first() = 0;
 
-  /// In the stead of first(), for more boxes than memory holds: puts the next ones into `boxes`, however
-  /// many, instead of those of the last call; false where there are no more. All at once unless has_pieces().
+  /// Alternative to first(), for more boxes than fit in memory: replaces `boxes` by the next ones, however
+  /// many; false if there are no more. Gives all at once unless has_pieces().
   virtual bool first_piece(std::vector<Box<D, Real>>& boxes) {
     if (std::exchange(has_given_first_, true)) return false;
     boxes = first();
     return true;
   }
 
-  /// Whether first_piece() gives a few boxes at a time, and memory is needed for no others.
+  /// Whether first_piece() gives a few boxes at a time and needs memory for these only.
   virtual bool has_pieces() const { return false; }
 
-  /// Has first() and first_piece(), which have not been called, give one of `slices` slices of the first
-  /// frame's boxes alone: slices are about as long, and one behind the other they are all boxes. False where
-  /// nothing but reading from the beginning tells which boxes these are.
+  /// Restricts first() and first_piece(), neither of which has been called yet, to one of `slices` slices of
+  /// the first frame. Slices are about equally long and cover all boxes in order. False if the slice can only
+  /// be found by reading from the beginning.
   virtual bool take_slice(std::size_t slice, std::size_t slices) {
     static_cast<void>(slice);
     return slices == 1;
   }
 
-  /// About how many boxes the first frame has; 0 where that is not known before it is read.
+  /// The approximate number of boxes in the first frame; 0 if unknown before reading it.
   virtual std::uint64_t estimated_boxes() const { return 0; }
 
-  /// Whether there was another frame; `step` then leads to it from the one before.
+  /// Whether there was another frame. If so, `step` leads to it from the previous frame.
   virtual bool next(Step<D, Real>& step) = 0;
 
-  /// Valid after the last frame: what a damaged file lacks, and where, and how many coordinates were rounded;
-  /// empty if nothing.
+  /// Valid after the last frame: the missing parts of a damaged file with their place, and the number of
+  /// coordinates rounded; empty if there is nothing to report.
   virtual std::string warning() const { return {}; }
 
-  /// Filled as frames are read; null where the file has none.
+  /// Filled while frames are read; null for a file without labels.
   virtual std::shared_ptr<const BoxLabels> labels() const { return nullptr; }
 
-  /// The library that read the file, where it may have rounded the file's numbers to float: pairs of these
-  /// boxes are not exact. Empty otherwise.
+  /// The library that read the file, if it may have rounded the file's numbers to float: pairs of these boxes
+  /// are not exact. Otherwise empty.
   virtual std::string_view importer() const { return {}; }
 
-  /// What the frame read last changes of the pairs that an engine reported, where they were recorded; before
-  /// first(), their margin alone. Null otherwise. Valid as long as the reader, and changed by each frame.
+  /// The changes of the frame read last to the pairs that an engine reported; before first(), only their
+  /// margin. Null if no pairs were recorded. Valid as long as the reader; each frame changes it.
   virtual const RecordedPairs* recorded() const { return nullptr; }
 
   /// Whether bounds are computed, in double, from a centre and a size: pairs of these boxes are not exact
@@ -131,18 +131,18 @@ class FrameReader {
   bool has_given_first_ = false;
 };
 
-/// Takes the frames of a file that is being written. Throws FileError if the format cannot hold them.
+/// Writes the frames of a file. Throws FileError if the format cannot hold them.
 template <int D, typename Real>
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
 
-  /// Called before first() where the boxes have ids and the format keeps them (Format::keeps_ids): the ids by
+  /// Called before first() if the boxes have ids and the format stores them (Format::keeps_ids): the ids by
   /// place. The list outlives the writer, and grows before each call that brings new boxes.
   virtual void use_ids(const std::vector<std::string>& ids) { static_cast<void>(ids); }
 
-  /// Called before first() where pairs were recorded with the boxes and the format keeps them
-  /// (Format::keeps_pairs). They outlive the writer, and are those of each frame when it is written.
+  /// Called before first() if pairs were recorded and the format stores them (Format::keeps_pairs). The
+  /// object outlives the writer, and holds each frame's pairs while that frame is written.
   virtual void use_recorded(const RecordedPairs& recorded) { static_cast<void>(recorded); }
 
   /// The boxes of the first frame. Called once, before next().
@@ -161,7 +161,7 @@ using AnyOf = std::variant<std::unique_ptr<T<2, float>>, std::unique_ptr<T<3, fl
 using AnyFrameReader = AnyOf<FrameReader>;
 using AnyFrameWriter = AnyOf<FrameWriter>;
 
-/// Calls `make.template operator()<D, Real>()` for this dimension, 2 or 3, and this precision.
+/// Calls `make.template operator()<D, Real>()` for this dimension (2 or 3) and precision.
 template <typename Make>
 auto for_boxes_of(int dimension, Precision precision, const Make& make) {
   const bool is_float = precision == Precision::float32;
@@ -179,7 +179,7 @@ std::string_view importer_of(const AnyFrameReader& frames);
 /// Whether an engine's pairs were recorded with the boxes.
 bool has_recorded_pairs(const AnyFrameReader& frames);
 
-/// The frames of a file whose reader has all its boxes in memory.
+/// Frames whose boxes are all in memory.
 template <int D, typename Real>
 class HistoryReader final : public FrameReader<D, Real> {
  public:
@@ -212,7 +212,7 @@ class HistoryReader final : public FrameReader<D, Real> {
   std::size_t next_ = 0;
 };
 
-/// Frames whose boxes have nothing to do with those of the frame before, and are numbered anew.
+/// Frames whose boxes are unrelated to those of the previous frame, and are numbered anew.
 template <int D>
 class SeparateFrames final : public FrameReader<D, double> {
  public:
@@ -241,7 +241,7 @@ class SeparateFrames final : public FrameReader<D, double> {
 
   std::string warning() const override { return warning_; }
 
-  /// With the ids of the frame that was read last.
+  /// Holds the ids of the frame read last.
   std::shared_ptr<const BoxLabels> labels() const override { return labels_; }
 
   bool is_computed() const override { return is_computed_; }
@@ -268,12 +268,12 @@ History<D, Real> read_all(FrameReader<D, Real>& frames) {
   return history;
 }
 
-/// The same frames with coordinates of another type: rounded to the nearest, and the infinite beyond the
-/// largest. Their warning says how many of the file of this name were rounded. Recorded pairs are those of
-/// the exact boxes: where boxes are rounded, they are left out, and the warning says so.
+/// The same frames with coordinates of another type: rounded to nearest, or to infinity beyond the largest
+/// number. Their warning gives the number of rounded coordinates in the file called `name`. Recorded pairs
+/// belong to the exact boxes: if boxes are rounded, they are left out, and the warning says so.
 AnyFrameReader with_precision(AnyFrameReader frames, Precision precision, std::string name = {});
 
-/// The same frames in 2D: 3D boxes seen along the z axis. Recorded pairs are left out, with a warning.
+/// The same frames in 2D: 3D boxes projected along the z axis. Recorded pairs are left out, with a warning.
 AnyFrameReader flattened(AnyFrameReader frames, std::string name = {});
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// gzip (RFC 1952), by zlib.
+// Decompresses gzip (RFC 1952), by zlib.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -16,7 +16,7 @@ namespace {
 class Gzip final : public Decompressor {
  public:
   explicit Gzip(std::string name) : name_(std::move(name)) {
-    constexpr int gzip_alone = 16;  // and not zlib's own format
+    constexpr int gzip_alone = 16;  // rejects zlib's own format
     if (inflateInit2(&stream_, MAX_WBITS + gzip_alone) != Z_OK) throw std::bad_alloc();
   }
   ~Gzip() override { inflateEnd(&stream_); }
@@ -30,7 +30,7 @@ class Gzip final : public Decompressor {
       is_in_member_ = true;
     }
     constexpr std::size_t max_bytes = std::numeric_limits<uInt>::max();
-    // zlib only reads from there.
+    // zlib does not write to its input.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(from.data()));
     stream_.avail_in = static_cast<uInt>(std::min(from.size(), max_bytes));
     stream_.next_out = reinterpret_cast<Bytef*>(to.data());
@@ -40,7 +40,7 @@ class Gzip final : public Decompressor {
     const auto given = static_cast<std::size_t>(reinterpret_cast<char*>(stream_.next_out) - to.data());
     taken_ += taken;
     if (result == Z_MEM_ERROR) throw std::bad_alloc();
-    // Z_BUF_ERROR: it needs more input.
+    // Z_BUF_ERROR means that zlib needs more input.
     if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR)
       throw FileError(fmt::format("{}: byte {} of the compressed file: {}; expected gzip", name_, taken_,
                                   stream_.msg != nullptr ? stream_.msg : zError(result)));

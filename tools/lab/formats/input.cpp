@@ -1,4 +1,4 @@
-// The bytes that a reader reads: mapped, kept, or in pieces through a buffer.
+// A reader's input: mapped, copied to memory, or streamed through a buffer.
 #include "lab/formats/input.hpp"
 
 #include <algorithm>
@@ -21,11 +21,11 @@ namespace broadside::lab {
 namespace {
 
 constexpr std::uint64_t bytes_per_report = std::uint64_t{1} << 23;
-constexpr std::uint64_t bytes_per_release = std::uint64_t{1} << 24;  // of whole pages, whatever the machine's
+constexpr std::uint64_t bytes_per_release = std::uint64_t{1} << 24;  // a multiple of any machine's page size
 
-/// How much is copied of what cannot be mapped. Nothing useful comes from a device but a terminal, and what
-/// the others give, such as /dev/zero, has no end. A pipe may have none either; its readers need memory as
-/// well.
+/// The maximum number of bytes copied from an input that cannot be mapped. Among devices, only a terminal
+/// gives anything useful; others, such as /dev/zero, never end. A pipe may not end either, and its readers
+/// need memory as well.
 std::uint64_t max_copied_bytes(bool is_device) {
   constexpr std::uint64_t of_a_device = std::uint64_t{1} << 20;
   if (is_device) return of_a_device;
@@ -51,7 +51,7 @@ std::string extension_of(const std::filesystem::path& path) {
   return lower((is_compressed ? path.stem() : path).extension().string());
 }
 
-/// What stands between a source of bytes, or bytes in memory, and a stream.
+/// A stream buffer over a source of bytes, or over bytes in memory.
 class Input::Buffer final : public std::streambuf {
  public:
   explicit Buffer(ByteSource& source) : source_(&source), bytes_(std::size_t{1} << 16) {
@@ -59,13 +59,13 @@ class Input::Buffer final : public std::streambuf {
   }
 
   explicit Buffer(std::string_view bytes) {
-    // A stream only reads from there.
+    // The stream does not write to them.
     char* const begin = const_cast<char*>(bytes.data());
     setg(begin, begin, begin + bytes.size());
   }
 
-  /// The bytes that were read and not taken, at least `count` of them if there are as many. Only before the
-  /// first is taken.
+  /// The bytes that were read but not consumed, at least `count` of them if there are that many. Call only
+  /// before the first byte is consumed.
   std::string_view peek(std::size_t count) {
     while (source_ != nullptr && static_cast<std::size_t>(egptr() - gptr()) < count) {
       const std::size_t got =
@@ -104,7 +104,7 @@ Input::Input(const std::filesystem::path& path, Progress progress)
     refuse();
   }
   is_device_ = file.is_device && !platform::is_terminal(descriptor);
-  // Standard input may begin in the middle of a file.
+  // Standard input may start in the middle of a file.
   is_regular_ = file.is_regular && (path != "-" || platform::seek(descriptor, 0, SEEK_CUR) == 0);
   is_regular_ = is_regular_ && !source_->is_compressed();
   if (is_regular_) {
@@ -171,7 +171,7 @@ void Input::copy() {
   std::size_t used = kept_.size();
   try {
     while (used <= max_bytes) {
-      // Never beyond what may be read, since the old bytes are kept until they are copied.
+      // At most the limit, because the old bytes are kept until they are copied.
       kept_.resize(
           std::min<std::uint64_t>(std::max<std::uint64_t>(2 * used, std::uint64_t{1} << 16), max_bytes + 1));
       const std::size_t got = source_->read(kept_.data() + used, kept_.size() - used);
@@ -183,7 +183,7 @@ void Input::copy() {
       passed(used);
     }
   } catch (const std::bad_alloc&) {
-    // As too much for the machine's memory.
+    // Reported like an input that exceeds the machine's memory.
   }
   std::string().swap(kept_);
   throw FileError(fmt::format(
@@ -205,7 +205,7 @@ std::istream& Input::stream() {
       buffer_->on_read = [this, done = std::uint64_t{0}](std::size_t got) mutable { passed(done += got); };
     }
     stream_ = std::make_unique<std::istream>(buffer_.get());
-    // The stream then passes on what the source throws.
+    // The stream then rethrows exceptions of the source.
     stream_->exceptions(std::ios::badbit);
   }
   return *stream_;

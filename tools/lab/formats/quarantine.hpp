@@ -1,4 +1,4 @@
-// Leaves out invalid boxes where that is asked for, reports the first of them and counts all.
+// Leaves out invalid boxes on request; reports the first ones and counts all.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace broadside::lab {
 
-/// Refuses the first invalid box or, where ReadOptions::say_invalid is set, leaves out all invalid ones.
+/// Refuses the first invalid box or, if ReadOptions::say_invalid is set, leaves out all invalid boxes.
 class Quarantine {
  public:
-  /// The number of boxes that are reported one by one; the rest are only counted.
+  /// The number of boxes that are reported individually; the rest are only counted.
   static constexpr std::uint64_t max_told = 20;
 
   explicit Quarantine(const ReadOptions& options) : say_(options.say_invalid) {}
@@ -24,8 +24,8 @@ class Quarantine {
   /// Whether invalid boxes are left out rather than refused.
   bool leaves_out() const noexcept { return static_cast<bool>(say_); }
 
-  /// Whether `read()` returned. If it throws a FileError, the box is left out and the error reported; without
-  /// say_invalid, the error goes on to the caller.
+  /// Whether `read()` returned. If it throws a FileError, leaves the box out and reports the error; without
+  /// say_invalid, passes the error on to the caller.
   template <typename Read>
   bool holds(const Read& read) {
     if (!say_) {
@@ -41,7 +41,7 @@ class Quarantine {
     }
   }
 
-  /// How many boxes of a file were left out; empty for none.
+  /// Says how many boxes of a file were left out; empty for 0.
   std::string warning(std::string_view file) const {
     if (count_ == 0) return {};
     return fmt::format("{}: left out {}{}", file, counted(count_, "invalid box", "invalid boxes"),

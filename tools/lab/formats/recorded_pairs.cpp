@@ -7,7 +7,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Takes some pairs out of sorted ones, and puts others in.
+/// Removes some pairs from sorted ones and inserts others.
 void change(std::vector<Pair>& pairs, const std::vector<Pair>& ended, const std::vector<Pair>& begun) {
   if (ended.empty() && begun.empty()) return;
   std::vector<Pair> left;
@@ -32,7 +32,7 @@ void RecordedFrame::apply(const RecordedPairs& changes, std::size_t slots, std::
 }
 
 std::size_t RecordedFrame::times_reported(Pair pair) const {
-  // Not std::ranges' version: clang 14 cannot compile what it returns.
+  // Not the std::ranges version: clang 14 cannot compile its result type.
   const auto [from, to] = std::equal_range(reported_.begin(), reported_.end(), pair);
   return static_cast<std::size_t>(to - from);
 }

@@ -10,7 +10,7 @@
 
 namespace broadside::lab {
 
-/// The frames of a file, and what an engine reported in each; none where no pairs were recorded.
+/// The frames of a file, and the pairs that an engine reported in each; empty if no pairs were recorded.
 template <int D, typename Real>
 struct Recording {
   History<D, Real> history;
@@ -32,7 +32,7 @@ Recording<D, Real> read_recording(FrameReader<D, Real>& frames) {
   return recording;
 }
 
-/// The frames of a recording that holds pairs.
+/// The frames of a recording with pairs.
 template <int D, typename Real>
 class RecordingReader final : public FrameReader<D, Real> {
  public:

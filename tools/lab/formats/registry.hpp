@@ -1,4 +1,4 @@
-// The descriptions in which the files of this folder end, for the list of formats.
+// The format descriptions that the files of this folder define, for the list of formats.
 #pragma once
 
 #include "lab/formats/format.hpp"

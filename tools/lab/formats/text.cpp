@@ -1,4 +1,5 @@
-// Numbers in text, and why a text is none: the ways in which other programs and countries write one.
+// Parses numbers in text, and explains why a text is not a number: other programs and countries write numbers
+// differently.
 #include "lab/formats/text.hpp"
 
 #include <array>
@@ -14,14 +15,14 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// How many digits a text begins with.
+/// The number of digits at the beginning of a text.
 std::size_t digits_of(std::string_view text) {
   return std::min(text.find_first_not_of("0123456789"), text.size());
 }
 
-/// Whether digits stand in groups of three behind a first one: "1,234,567.8", "1 234", "1.234,5".
+/// Whether digits are in groups of three after the first group: "1,234,567.8", "1 234", "1.234,5".
 bool is_grouped(std::string_view text) {
-  // Some blanks are of several bytes in UTF-8: the fixed one, and two narrow ones; and a quote.
+  // Some blanks take several bytes in UTF-8: the no-break space and two narrow ones. So does a quote.
   constexpr std::array<std::string_view, 9> separators = {
       ",", ".", " ", "'", "_", "\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89", "\xE2\x80\x99"};
   const std::size_t first = digits_of(text);
@@ -41,7 +42,7 @@ bool is_grouped(std::string_view text) {
   return false;
 }
 
-/// Whether a comma in place of the point makes it no number.
+/// Whether the text would be a number if its comma were a point.
 bool has_decimal_comma(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos) return false;
@@ -55,17 +56,17 @@ bool has_decimal_comma(std::string_view text) {
 
 template <typename Number>
 bool parse_any_number(std::string_view text, Number& value) {
-  // Which std::from_chars does not know.
+  // std::from_chars does not accept a plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
 #if __cpp_lib_to_chars >= 201611L
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return false;
   if (error != std::errc::result_out_of_range) return error == std::errc();
 #else
-  // What std::strtod takes besides.
+  // Refuses what std::strtod accepts beyond decimal numbers.
   if (text.find_first_of("xX( \t\n\r\f\v") != std::string_view::npos) return false;
 #endif
-  // Too large, or so small that the nearest is zero or almost zero: that one is right.
+  // Too large, or so small that the nearest double is zero or denormal: std::strtod gives the right value.
   const std::string copy(text);
   char* last = nullptr;
   value = std::is_same_v<Number, float> ? static_cast<Number>(std::strtof(copy.c_str(), &last))
@@ -90,7 +91,7 @@ NumberFault number_fault(std::string_view text) {
   for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (word.starts_with("nan")) return {"NaN", {}};
   if (word == "na" || word == "n/a" || word == "null" || word == "none") return {"no value", {}};
-  // "1,234" may be either.
+  // "1,234" may have a decimal comma or groups of thousands.
   if (has_decimal_comma(digits))
     return {is_grouped(digits) ? "with a decimal comma or a thousands separator" : "with a decimal comma",
             "a number with a decimal point"};

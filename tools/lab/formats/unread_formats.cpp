@@ -1,4 +1,4 @@
-// The one table of formats that are not read here, and of their converters.
+// The only table of formats that are recognised but not supported, and of their converters.
 #include "lab/formats/unread_formats.hpp"
 
 #include <algorithm>
@@ -17,11 +17,12 @@ using std::string_view_literals::operator""sv;
 struct UnreadFormat {
   std::string_view name;
   std::string_view extensions;  ///< with a blank after each
-  std::string_view magic;    ///< the first bytes; of XML ("<..."), the root element; empty: told by the name
+  std::string_view magic;    ///< the first bytes, or the root element of XML ("<..."); empty: recognised by
+                             ///< the name
   std::string_view command;  ///< the first IN stands for the file
 };
 
-// With as many digits as a double has: by default ogr2ogr rounds coordinates.
+// With as many digits as a double has, because ogr2ogr rounds coordinates by default.
 constexpr std::string_view ogr = "ogr2ogr -f GeoJSON -lco SIGNIFICANT_FIGURES=17 out.geojson IN";
 constexpr std::string_view pdal = "pdal translate IN out.ply (then --boxes vertices)";
 constexpr std::string_view office = "libreoffice --headless --convert-to csv IN";

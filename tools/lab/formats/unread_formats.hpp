@@ -1,4 +1,4 @@
-// Formats that are not read here, and what turns them into one that is.
+// Formats that are recognised but not supported, and their converters.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace broadside::lab {
 
-/// What to say of a file in a format that is known and not read: "is a shapefile, which is not read here;
-/// convert it: ogr2ogr ...", with its name in the command. By its first bytes alone where `extension` is
-/// empty. Empty if the format is not known. Thread-safe.
+/// A message about a file in a format that is recognised but not supported: "is a shapefile, which is not
+/// read here; convert it: ogr2ogr ...", with the file's name in the command. If `extension` is empty,
+/// recognises it only by its first bytes. Empty if the format is unknown. Thread-safe.
 std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file);
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// Files written whole or not at all: beside their place, and then renamed.
+// Writes complete files or none: to a temporary file beside the target, which is then renamed.
 #include "lab/formats/write_file.hpp"
 
 #include <cerrno>
@@ -27,8 +27,8 @@ namespace {
 
 std::string reason() { return errno != 0 ? std::strerror(errno) : "the stream failed"; }
 
-/// Writes to a descriptor where it stands, which its owner closes. Only the stream of a file of our own can
-/// go back: what is appended to another would be written at its end all the same.
+/// Writes to a descriptor at its current position; its owner closes it. Only the stream of a file of our own
+/// can seek: other files may be in append mode, where every write goes to the end.
 class DescriptorBuffer final : public std::streambuf {
  public:
   DescriptorBuffer(int descriptor, bool can_go_back)
@@ -72,7 +72,7 @@ class DescriptorBuffer final : public std::streambuf {
   std::vector<char> bytes_;
 };
 
-/// The descriptor of this process that a path stands for. To open the path would be to begin its file anew.
+/// The descriptor of this process that a path stands for. Opening the path would truncate the file.
 std::optional<int> descriptor_of(const std::filesystem::path& path) {
   if (path == "-" || path == "/dev/stdout") return platform::standard_output;
   if (path == "/dev/stderr") return platform::standard_error;
@@ -87,7 +87,7 @@ std::optional<int> descriptor_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
-/// Where a path's links lead, whether or not there is something; but not on from a descriptor.
+/// The path after following its links, whether or not the target exists; does not follow descriptors.
 std::filesystem::path followed(std::filesystem::path path) {
   constexpr int max_links = 40;
   std::error_code error;
@@ -100,7 +100,7 @@ std::filesystem::path followed(std::filesystem::path path) {
   refuse(path, std::strerror(ELOOP));
 }
 
-/// Whether a path without links is there and no regular file, or one that the system only shows.
+/// Whether a path without links exists and is not a regular file, or is a file that only the system provides.
 bool is_special(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
@@ -138,7 +138,7 @@ void write_directly(const std::filesystem::path& path, const std::filesystem::pa
                     const std::function<void(std::ostream&)>& write) {
   const std::optional<int> open = descriptor_of(path);
   if (open == platform::standard_output) {
-    // What was printed before comes first.
+    // Text printed earlier comes first.
     std::cout.flush();
     std::fflush(stdout);
   }
@@ -162,7 +162,7 @@ bool is_read_only(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (!std::filesystem::is_regular_file(status)) return false;
-  // The superuser may write every file, but a file without any write permission is meant to stay.
+  // The superuser may write every file, but a file without any write permission must not be replaced.
   constexpr perms to_write = perms::owner_write | perms::group_write | perms::others_write;
   return (status.permissions() & to_write) == perms::none || !platform::may_write(path);
 }
@@ -173,7 +173,7 @@ bool is_written_directly(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
-  // A link is to stay one, and what it points to is to be replaced.
+  // A link stays a link; the file that it points to is replaced.
   const std::filesystem::path target = followed(path);
   const std::filesystem::path shown =
       descriptor_of(target) == platform::standard_output ? "standard output" : path;

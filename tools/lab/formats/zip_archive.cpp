@@ -1,4 +1,4 @@
-// Zip archives, by libzip.
+// Reads zip archives, by libzip.
 #include "lab/formats/zip_archive.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace broadside::lab {
 namespace {
 
-/// What libzip says went wrong.
+/// libzip's description of an error.
 class ZipError {
  public:
   ZipError() { zip_error_init(&error_); }
@@ -54,7 +54,7 @@ std::string ZipArchive::read(std::size_t member) const {
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(opened, zip_fclose);
   std::string content;
   while (true) {
-    // In pieces, which grow as they turn out to be there.
+    // Reads in growing chunks, so that a forged size allocates nothing.
     const std::size_t used = content.size();
     content.resize(std::max<std::size_t>(2 * used, std::size_t{1} << 16));
     const zip_int64_t got = zip_fread(opened, content.data() + used, content.size() - used);

@@ -1,4 +1,4 @@
-// Zip archives in memory; NumPy's .npz files are such.
+// Zip archives in memory, such as NumPy's .npz files.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@ struct zip;
 
 namespace broadside::lab {
 
-/// The members of a zip archive. One thread at a time.
+/// The members of a zip archive. Use from one thread at a time.
 class ZipArchive {
  public:
-  /// Opens an archive; its bytes must outlive it. `name` is what errors call it. Throws FileError.
+  /// Opens an archive; its bytes must outlive this object. Errors call it `name`. Throws FileError.
   ZipArchive(std::string_view bytes, std::string name);
 
   /// The names of all members, in the archive's order.
   const std::vector<std::string>& members() const noexcept { return members_; }
 
-  /// The content of a member, stored or deflated. Throws FileError, also if its checksum is wrong. Memory:
-  /// what the member holds, not what the archive claims of it.
+  /// The content of a member, stored or deflated. Throws FileError, also if its checksum is wrong. Memory: in
+  /// proportion to the actual content, not to the size that the archive claims.
   std::string read(std::size_t member) const;
 
  private:
@@ -32,7 +32,7 @@ class ZipArchive {
   std::vector<std::string> members_;
 };
 
-/// What is missing in this build for ZipArchive and how to get it; empty where it works.
+/// The library that ZipArchive lacks in this build, and how to get it; empty if it works.
 std::string zip_missing();
 
 }  // namespace broadside::lab

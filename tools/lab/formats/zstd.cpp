@@ -1,4 +1,4 @@
-// zstd (RFC 8878), by libzstd.
+// Decompresses zstd (RFC 8878), by libzstd.
 #include <cstdint>
 #include <new>
 #include <utility>
@@ -12,8 +12,7 @@
 namespace broadside::lab {
 namespace {
 
-/// A frame's header says how much memory it takes; libzstd refuses more than 128 MiB, as the command zstd
-/// does.
+/// A frame's header states the memory it needs; libzstd refuses more than 128 MiB, as the command zstd does.
 class Zstd final : public Decompressor {
  public:
   explicit Zstd(std::string name) : name_(std::move(name)), stream_(ZSTD_createDStream()) {
@@ -24,7 +23,7 @@ class Zstd final : public Decompressor {
   Zstd& operator=(const Zstd&) = delete;
 
   Progress decompress(std::string_view from, std::span<char> to) override {
-    // Asked for more behind a whole frame, it would begin another.
+    // Called again after a whole frame, libzstd would begin another one.
     if (from.empty() && is_whole_) return {0, 0};
     ZSTD_inBuffer input{from.data(), from.size(), 0};
     ZSTD_outBuffer output{to.data(), to.size(), 0};

@@ -1,4 +1,4 @@
-// Where boxes' centres are: mean and variance on each axis, by which sweeps and trees choose an axis.
+// The mean and variance of boxes' centres on each axis, by which sweeps and trees choose an axis.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace broadside::lab::literature {
 
-/// The mean and the variance of centres, added one by one. Infinite ones are left out.
+/// Accumulates the mean and variance of centres. Ignores infinite centres.
 template <int D>
 class Centres {
  public:
@@ -29,7 +29,7 @@ class Centres {
     return count_[axis] == 0 ? 0 : square_sum_[axis] / count_[axis] - mean(axis) * mean(axis);
   }
 
-  /// The axis of the greatest variance.
+  /// The axis of maximum variance.
   int widest_axis() const noexcept {
     int widest = 0;
     for (int axis = 1; axis < D; ++axis) {

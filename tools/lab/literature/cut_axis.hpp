@@ -1,4 +1,4 @@
-// An axis cut into equal cells, as partition-based joins do.
+// An axis divided into equal cells, as in partition-based joins.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace broadside::lab::literature {
 
-/// The part of an axis that finite coordinates take, cut into equal cells. What lies beyond is in the first
-/// or the last one. The cell of a coordinate does not decrease as the coordinate grows.
+/// The range of the finite coordinates on an axis, divided into equal cells. Coordinates beyond it are in the
+/// first or last cell. The cell index is monotonic in the coordinate.
 struct CutAxis {
   double low = 0;
-  double scale = 0;  // cells a unit
+  double scale = 0;  // cells per unit
   std::size_t cells = 1;
 
   std::size_t cell(float coordinate) const noexcept {
@@ -25,14 +25,14 @@ struct CutAxis {
   }
 };
 
-/// What is known of boxes on an axis: the range of their finite coordinates, and their mean extent in it.
+/// Statistics of boxes on an axis: the range of their finite coordinates, and their mean extent within it.
 /// `mean` is 0 if no coordinate is finite.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   double mean = 0;
 
-  /// Of the range; 0 if no coordinate is finite.
+  /// The length of the range; 0 if no coordinate is finite.
   double length() const noexcept { return low < high ? high - low : 0; }
 
   CutAxis cut(std::size_t cells) const noexcept {
@@ -41,7 +41,7 @@ struct Extent {
   }
 };
 
-/// The extent of `boxes`, of which there is at least one.
+/// The extent of `boxes`, which must not be empty.
 template <int D>
 Extent extent_of(std::span<const Box<D>> boxes, int axis) {
   constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// The segmented interval list of Tracy, Buss and Woods: the ends of intervals on one axis, sorted, in
+// The segmented interval list of Tracy, Buss and Woods: the end points of intervals on one axis, sorted, in
 // segments.
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace broadside::lab::literature {
 
-/// An end of a box's interval, as one number: by value, then minima before maxima, so that intervals that
-/// touch overlap, then by id, so that no two are equal.
+/// An end point of a box's interval, as one number. Ordered by value, then minima before maxima, so that
+/// touching intervals overlap, then by id, so that no two are equal.
 class IntervalEnd {
  public:
-  /// Ids need one bit less than they have.
+  /// An id leaves one bit for the kind of end point.
   static constexpr std::uint32_t max_ids = 0x7fffffffU;
 
   IntervalEnd() = default;
@@ -34,9 +34,9 @@ class IntervalEnd {
   std::uint64_t bits_ = 0;
 };
 
-/// A sorted list of interval ends in segments. Each segment knows the intervals that are open where it
-/// begins; so what overlaps an interval is found without a walk from the list's begin, and an end is put in
-/// or taken out without moving more than a segment.
+/// A sorted list of interval end points in segments. Each segment stores the intervals that are open at its
+/// beginning. So finding the overlaps of an interval needs no walk from the beginning of the list, and
+/// inserting or removing an end point moves at most one segment.
 class IntervalList {
  public:
   explicit IntervalList(std::size_t segment_ends) : segment_ends_(segment_ends) {}
@@ -51,7 +51,7 @@ class IntervalList {
     return bytes;
   }
 
-  /// Replaces all by `ends`, which are sorted.
+  /// Replaces the contents by `ends`, which are sorted.
   void assign(std::span<const IntervalEnd> ends) {
     size_ = ends.size();
     segments_.clear();
@@ -64,14 +64,14 @@ class IntervalList {
     }
   }
 
-  /// Appends all ends, sorted, to `ends`.
+  /// Appends all end points, sorted, to `ends`.
   void append_to(std::vector<IntervalEnd>& ends) const {
     for (const Segment& segment : segments_)
       ends.insert(ends.end(), segment.ends.begin(), segment.ends.end());
   }
 
-  /// Calls meet(id) for each interval that overlaps the one from `min` to `max`, whether it is in the list or
-  /// not, and for some that do not.
+  /// Calls meet(id) for each interval that overlaps [min, max], which need not be in the list, and for some
+  /// that do not overlap it.
   template <typename Meet>
   void for_each_overlap(IntervalEnd min, IntervalEnd max, Meet meet) const {
     if (segments_.empty()) return;
@@ -113,18 +113,18 @@ class IntervalList {
     if (first < segments_.size()) merge_if_short(first);
   }
 
-  /// Whether `from`, which is in the list, is in the segment of `to` or in one beside it.
+  /// Whether `from`, which is in the list, is in the segment of `to` or in an adjacent one.
   bool is_near(IntervalEnd from, IntervalEnd to) const {
     const std::size_t a = segment_of(from);
     const std::size_t b = segment_of(to);
     return a <= b + 1 && b <= a + 1;
   }
 
-  /// Moves an interval in the list, and calls swap(id) for each one of whose ends passes an end of the other
-  /// kind of this interval.
+  /// Moves an interval in the list, and calls swap(id) for each interval that has an end point passing one of
+  /// the other kind of this interval.
   template <typename Swap>
   void move(IntervalEnd old_min, IntervalEnd old_max, IntervalEnd min, IntervalEnd max, Swap swap) {
-    // The end that goes ahead first: so min stays before max.
+    // The leading end point moves first, so that min stays before max.
     if (max > old_max) move_end(old_max, max, swap);
     if (min != old_min) move_end(old_min, min, swap);
     if (max < old_max) move_end(old_max, max, swap);
@@ -137,12 +137,12 @@ class IntervalList {
         open;  // ids of intervals that begin in an earlier segment and end here or later
   };
 
-  /// The longer the list, the longer its segments: so the lists of open intervals take O(n^1.5) at worst.
+  /// Segment length grows with the list, so that the lists of open intervals take O(n^1.5) in the worst case.
   std::size_t segment_length() const noexcept {
     return std::max(segment_ends_, static_cast<std::size_t>(std::sqrt(static_cast<double>(size_))));
   }
 
-  /// The segment in which `end` is or would be.
+  /// The segment that contains `end` or would contain it.
   std::size_t segment_of(IntervalEnd end) const noexcept {
     const auto after =
         std::upper_bound(segments_.begin(), segments_.end(), end,
@@ -166,7 +166,7 @@ class IntervalList {
     open.pop_back();
   }
 
-  /// What is open behind `ends`, from what is open before them.
+  /// Updates the open intervals from before `ends` to after them.
   static void pass(std::span<const IntervalEnd> ends, std::vector<std::uint32_t>& open) {
     std::vector<std::uint32_t> closed;
     for (const IntervalEnd end : ends) {
@@ -192,7 +192,7 @@ class IntervalList {
     return true;
   }
 
-  /// Joins a segment with the one behind it where both together are short.
+  /// Merges a segment with the next one if both together are short.
   void merge_if_short(std::size_t at) {
     if (at + 1 == segments_.size() && at > 0) --at;
     if (at + 1 == segments_.size()) {
@@ -273,7 +273,7 @@ class IntervalList {
     if (mover.is_max() != passed.is_max() && mover.id() != passed.id()) swap(passed.id());
   }
 
-  /// Takes an end from one segment and puts it into another.
+  /// Moves an end point from one segment to another.
   void transfer(std::size_t source, std::vector<IntervalEnd>::iterator place, std::size_t target,
                 IntervalEnd to) {
     segments_[source].ends.erase(place);

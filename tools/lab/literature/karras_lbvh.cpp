@@ -1,12 +1,14 @@
 // Karras 2012, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees" (High Performance
-// Graphics): a binary radix tree over the Morton codes of the boxes' centres, each internal node's range of
-// leaves found from common prefixes alone, bounds bottom up. It is searched as the same author's "Thinking
-// Parallel, Part II: Tree Traversal on the GPU" (2012) does: each leaf looks for the leaves to its right.
+// Graphics): a binary radix tree over the Morton codes of the boxes' centres. Each internal node's range of
+// leaves is found from common prefixes alone; bounds are computed bottom up. The traversal is that of the
+// same author's "Thinking Parallel, Part II: Tree Traversal on the GPU" (2012): each leaf searches for the
+// leaves to its right.
 //
-// Where this differs: one thread does what one GPU thread for each node did, in a loop, so the counters by
-// which the second child to arrive goes on to the parent are plain integers. Codes are made of coordinates
-// in double, relative to the centres' bounds, and infinite centres stand at the border of these. Of two sets
-// the tree holds the right one, and the boxes of the left one search it in the order of their codes.
+// Differences: one thread loops over the nodes, where the paper has one GPU thread for each. So the counters
+// with which the second child to arrive continues to the parent are plain integers. Codes are computed from
+// coordinates in double, relative to the centres' bounds; infinite centres are clamped to these bounds. With
+// two sets, the tree holds the right one, and the boxes of the left one search it in the order of their
+// codes.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -24,7 +26,7 @@
 namespace broadside::lab::literature {
 namespace {
 
-/// Puts D - 1 zeros between the bits of `value`, of which the lowest 64 / D count.
+/// Inserts D - 1 zeros between the bits of `value`; uses its lowest 64 / D bits.
 template <int D>
 std::uint64_t spread(std::uint64_t value) noexcept {
   if constexpr (D == 2) {
@@ -44,7 +46,7 @@ std::uint64_t spread(std::uint64_t value) noexcept {
   }
 }
 
-/// Morton codes of boxes' centres: `axis_bits` bits of each coordinate.
+/// Morton codes of boxes' centres, with `axis_bits` bits for each coordinate.
 template <int D>
 class MortonCurve {
  public:
@@ -61,7 +63,7 @@ class MortonCurve {
       }
     }
     for (int axis = 0; axis < D; ++axis) {
-      if (low_[axis] > high[axis]) low_[axis] = 0;  // none is finite
+      if (low_[axis] > high[axis]) low_[axis] = 0;  // no centre is finite
       scale_[axis] = high[axis] > low_[axis] ? max_cell_ / (high[axis] - low_[axis]) : 0;
     }
   }
@@ -70,7 +72,7 @@ class MortonCurve {
     std::uint64_t code = 0;
     for (int axis = 0; axis < D; ++axis) {
       const double place = (centre_of(box, axis) - low_[axis]) * scale_[axis];
-      // A NaN, as of a box that is infinite both ways, is not above 0.
+      // NaN, for a box that is infinite both ways, compares as not above 0.
       const double inside = place > 0 ? std::min(place, max_cell_) : 0;
       code |= spread<D>(static_cast<std::uint64_t>(inside)) << axis;
     }
@@ -87,7 +89,7 @@ class MortonCurve {
   std::array<double, D> scale_;
 };
 
-/// Up to 32 bits of code are sorted as such; more, as 64.
+/// Codes of up to 32 bits are sorted as 32-bit keys, longer ones as 64-bit keys.
 template <int D, typename Key>
 class KarrasLbvh final : public Searcher<D> {
  public:
@@ -111,7 +113,7 @@ class KarrasLbvh final : public Searcher<D> {
   }
 
  private:
-  /// An internal node. A child is an internal node's place, or a leaf's with `leaf_bit`.
+  /// An internal node. A child is the index of an internal node or, with `leaf_bit`, of a leaf.
   struct Node {
     std::array<Box<D>, 2> bounds;  // of the children: one visit tests both
     std::array<std::uint32_t, 2> children;
@@ -121,10 +123,10 @@ class KarrasLbvh final : public Searcher<D> {
   };
 
   static constexpr std::uint32_t leaf_bit = 0x80000000U;
-  // Codes have up to 64 bits and places 32: each level of the tree shares at least one bit more.
+  // Codes have up to 64 bits and indices 32; each level of the tree shares at least one bit more.
   static constexpr std::size_t max_levels = 96;
 
-  /// The leaves: `boxes` from `begin` to `end` in the order of their codes.
+  /// Sorts the leaves: the boxes from `begin` to `end`, by their codes.
   void sort(const MortonCurve<D>& curve, std::span<const Box<D>> boxes, std::size_t begin, std::size_t end) {
     const auto entries = sorter_.entries(end - begin);
     for (std::size_t i = begin; i < end; ++i)
@@ -140,8 +142,8 @@ class KarrasLbvh final : public Searcher<D> {
     }
   }
 
-  /// The length of the common prefix of two leaves' codes, each followed by the leaf's place so that no two
-  /// are equal; -1 where there is no leaf j.
+  /// The length of the common prefix of two leaves' codes, each followed by the leaf's index so that no two
+  /// are equal; -1 if there is no leaf j.
   int prefix(std::int64_t i, std::int64_t j) const noexcept {
     if (j < 0 || j >= static_cast<std::int64_t>(codes_.size())) return -1;
     const Key differing = codes_[static_cast<std::size_t>(i)] ^ codes_[static_cast<std::size_t>(j)];
@@ -149,7 +151,7 @@ class KarrasLbvh final : public Searcher<D> {
     return static_cast<int>(sizeof(Key)) * 8 + std::countl_zero(static_cast<std::uint32_t>(i ^ j));
   }
 
-  /// Karras' algorithm for internal node i: the direction and length of its range, and where it splits.
+  /// Karras' algorithm for internal node i: the direction and length of its range, and its split.
   void make_node(std::int64_t i) {
     const int direction = prefix(i, i + 1) > prefix(i, i - 1) ? 1 : -1;
     const int min_prefix = prefix(i, i - direction);
@@ -192,7 +194,7 @@ class KarrasLbvh final : public Searcher<D> {
     nodes_.resize(leaves - 1);
     leaf_parents_.resize(leaves);
     for (std::size_t i = 0; i + 1 < leaves; ++i) make_node(static_cast<std::int64_t>(i));
-    // Bottom up: of two children, the one that comes second goes on to the parent's parent.
+    // Bottom up: the second of two children to arrive continues to the parent.
     for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
       Box<D> bounds = leaf_boxes_[leaf];
       std::uint32_t child = static_cast<std::uint32_t>(leaf) | leaf_bit;
@@ -262,7 +264,7 @@ class KarrasLbvh final : public Searcher<D> {
   std::vector<BoxId> ids_;
   std::vector<Box<D>> leaf_boxes_;
   std::vector<std::uint32_t> leaf_parents_;
-  std::vector<Node> nodes_;  // one less than leaves; the first is the root
+  std::vector<Node> nodes_;  // one fewer than leaves; the first is the root
 };
 
 template <int D>

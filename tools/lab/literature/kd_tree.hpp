@@ -1,4 +1,4 @@
-// The KD-tree of Serpa and Rodrigues: each box in the lowest node whose planes it does not touch.
+// The KD-tree of Serpa and Rodrigues: each box is in the lowest node whose planes it does not touch.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 
 namespace broadside::lab::literature {
 
-/// A box that touches a node's plane stands in that node, any other below it. So boxes stand in one node
-/// each, and a pair stands in one node or in two of which one is above the other.
+/// A box that touches a node's plane is stored in that node, any other box below it. So each box is in one
+/// node, and the boxes of a pair are in the same node, or in two nodes with one above the other.
 template <int D>
 class KdTree {
  public:
   explicit KdTree(std::size_t leaf_boxes) : leaf_boxes_(leaf_boxes) {}
 
-  /// Forgets all boxes.
+  /// Removes all boxes.
   void clear(std::size_t places) {
     nodes_.assign(1, Node());
     nodes_[0].region.min.fill(-infinity);
@@ -35,7 +35,7 @@ class KdTree {
 
   void resize(std::size_t places) { homes_.resize(places); }
 
-  /// Puts a box into the root, or moves it to the node that it now belongs to, or takes it out.
+  /// Inserts a box at the root, moves it to the node where it now belongs, or removes it.
   void add(std::uint32_t id) { put(root, id); }
   void move(std::uint32_t id, const Box<D>& box) {
     const std::uint32_t from = homes_[id].node;
@@ -48,15 +48,15 @@ class KdTree {
   }
   void remove(std::uint32_t id) { take(id); }
 
-  /// Brings the tree into shape for `boxes`: leaves with too many boxes are split, nodes with too few become
-  /// leaves, and a plane that divides badly is moved to the mean, or is given up.
+  /// Rebalances the tree for `boxes`: splits leaves with too many boxes, turns nodes with too few into
+  /// leaves, and moves a plane that divides badly to the mean, or gives it up.
   void refine(std::span<const Box<D>> boxes) {
     stack_.assign(1, root);
     while (!stack_.empty()) {
       const std::uint32_t at = stack_.back();
       stack_.pop_back();
       if (!nodes_[at].is_leaf()) {
-        sift(at, boxes);  // boxes of a plane that was moved, or that come from above
+        sift(at, boxes);  // boxes released by a moved plane, or passed down from above
         if (has_too_few(nodes_[at])) {
           collapse(at);
         } else if (divides_badly(nodes_[at])) {
@@ -78,7 +78,7 @@ class KdTree {
     }
   }
 
-  /// Writes the pairs of which at least one box has a flag. With `across`, those of which exactly one has.
+  /// Writes the pairs with at least one flagged box; with `across`, the pairs with exactly one.
   void search(std::span<const Box<D>> boxes, std::span<const std::uint8_t> flags, bool across,
               Checkpoint& checkpoint, PairSink& pairs) {
     search_ = {boxes, flags, across, &checkpoint, &pairs};
@@ -101,19 +101,19 @@ class KdTree {
     int axis = 0;
     float position = 0;  // of the plane
     bool translated = false;
-    Box<D> region{};  // open, but for what is infinite
+    Box<D> region{};  // open, except at infinity
     std::size_t population = 0;
-    std::size_t flagged = 0;  // of the population, while a search runs
+    std::size_t flagged = 0;  // number of flagged boxes in the population, during a search
     std::vector<std::uint32_t> boxes;
   };
 
-  /// Where a box stands.
+  /// The position of a box in the tree.
   struct Home {
     std::uint32_t node = none;
     std::uint32_t slot = 0;
   };
 
-  /// What one search is about.
+  /// The state of one search.
   struct JoinContext {
     std::span<const Box<D>> boxes;
     std::span<const std::uint8_t> flags;
@@ -131,7 +131,7 @@ class KdTree {
     return inside;
   }
 
-  /// The child that a box stands in, or no child.
+  /// The child in which a box belongs, or no child.
   static std::uint32_t child_for(const Node& node, const Box<D>& box) noexcept {
     if (box.max[node.axis] < node.position) return node.children[0];
     return box.min[node.axis] > node.position ? node.children[1] : none;
@@ -163,7 +163,7 @@ class KdTree {
       --nodes_[above].population;
   }
 
-  /// Hands the boxes of an inner node that do not touch its plane on to its children.
+  /// Passes an inner node's boxes that do not touch its plane down to its children.
   void sift(std::uint32_t at, std::span<const Box<D>> boxes) {
     Node& node = nodes_[at];
     std::size_t kept = 0;
@@ -199,8 +199,8 @@ class KdTree {
     return child;
   }
 
-  /// Gives a leaf a plane at the mean of its boxes' centres, on the axis on which they vary most or on the
-  /// one given; none if all boxes touch it, or would be on one side.
+  /// Gives a leaf a plane at the mean of its boxes' centres, on the axis of maximum variance or on `axis`. No
+  /// plane if all boxes touch it, or are on one side.
   void split(std::uint32_t at, std::span<const Box<D>> boxes, int axis) {
     Centres<D> centres;
     for (const std::uint32_t id : nodes_[at].boxes) centres.add(boxes[id]);
@@ -219,7 +219,7 @@ class KdTree {
     sift(at, boxes);
   }
 
-  /// Makes a node a leaf with all boxes that stand below it.
+  /// Turns a node into a leaf with all boxes below it.
   void collapse(std::uint32_t at) {
     std::vector<std::uint32_t> below(nodes_[at].children.begin(), nodes_[at].children.end());
     while (!below.empty()) {
@@ -244,8 +244,8 @@ class KdTree {
            nodes_[node.children[1]].population == 0;
   }
 
-  /// The published measure: the pairs that are left to test, from 0 for a perfect plane to 1 for none,
-  /// against how evenly the plane divides.
+  /// The published measure: the pairs left to test, from 0 for a perfect plane to 1 for no gain, against how
+  /// evenly the plane divides.
   bool divides_badly(const Node& node) const noexcept {
     const auto all = static_cast<double>(node.population);
     const auto left = static_cast<double>(nodes_[node.children[0]].population);
@@ -269,11 +269,12 @@ class KdTree {
     return nodes_[at].flagged = count;
   }
 
-  /// Sweeps a node's boxes against each other and against those of above_, the boxes of the nodes above that
-  /// reach into this one; then searches its children.
+  /// Sweeps a node's boxes against each other and against above_, the boxes of the nodes above that reach
+  /// into this one; then searches its children.
   void search_below(std::uint32_t at) {
     const Node& node = nodes_[at];
-    if (node.flagged == 0 && above_[1].empty()) return;  // nothing here has a flag, or is met by one that has
+    // No flagged box is in this node or reaches into it.
+    if (node.flagged == 0 && above_[1].empty()) return;
     if (!node.boxes.empty()) sweep_node(node);
     if (node.is_leaf()) return;
     for (std::size_t side = 0; side < 2; ++side) {
@@ -332,11 +333,11 @@ class KdTree {
 
   std::size_t leaf_boxes_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> free_;  // nodes that are not in the tree
+  std::vector<std::uint32_t> free_;  // nodes not in use
   std::vector<Home> homes_;          // by box
   std::vector<std::uint32_t> stack_;
 
-  // Of a search: boxes without a flag and with one.
+  // During a search: boxes without a flag and with one.
   JoinContext search_;
   std::array<std::vector<std::uint32_t>, 2> above_;
   std::array<std::vector<std::uint32_t>, 2> here_;

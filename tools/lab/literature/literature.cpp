@@ -1,4 +1,4 @@
-// The one list of the algorithms from the literature.
+// The list of the algorithms from the literature.
 #include "lab/literature/literature.hpp"
 
 namespace broadside::lab::literature {

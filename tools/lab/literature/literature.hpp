@@ -1,4 +1,4 @@
-// Algorithms from the literature, implemented here from their publications: one function for each.
+// Algorithms from the literature, implemented here from their publications, with one function for each.
 #pragma once
 
 #include <vector>

@@ -1,14 +1,14 @@
 // Tsitsigkos, Bouros, Mamoulis and Terrovitis 2019, "Parallel In-Memory Evaluation of Spatial Joins"
 // (SIGSPATIAL; arXiv 1908.11740): Patel and DeWitt's partition-based spatial merge join (PBSM, 1996) in main
-// memory. Their findings are followed: partitions are stripes along one axis, each stripe is swept along the
-// other by the forward scan of Brinkhoff et al. 1993, the sweep axis is chosen by histograms, and a stripe is
-// some ten times as wide as the mean rectangle. A pair found in several stripes is reported in the one that
-// holds its reference point (Dittrich and Seeger 2000), which is looked at on the partition axis alone.
+// memory. Follows their findings: partitions are stripes along one axis; each stripe is swept along the other
+// axis by the forward scan of Brinkhoff et al. 1993; histograms choose the sweep axis; a stripe is about ten
+// times as wide as the mean rectangle. A pair found in several stripes is reported in the stripe that holds
+// its reference point (Dittrich and Seeger 2000), compared on the partition axis alone.
 //
-// Where this differs: boxes are sorted once, by a radix sort, and then copied to the stripes in order, where
-// the paper sorts each stripe; histograms are made of a sample; the reference point's test is a bit, whether
-// the box begins in an earlier stripe; one set is joined with itself; and in 3D the third axis is one more
-// test of a pair. There is one thread.
+// Differences: boxes are sorted once, by a radix sort, and then copied to the stripes in order, where the
+// paper sorts each stripe. Histograms use a sample. The reference-point test is one bit: whether the box
+// begins in an earlier stripe. A single set is joined with itself. In 3D, the third axis is one more test of
+// a pair. Single-threaded.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +24,7 @@
 namespace broadside::lab::literature {
 namespace {
 
-/// A box in a stripe: on the sweep axis, and on the others.
+/// A box in a stripe: its interval on the sweep axis, and on the others.
 template <int D>
 struct StripeEntry {
   float begin;
@@ -38,7 +38,7 @@ struct StripeEntry {
 template <int D>
 class PbsmStripes final : public Searcher<D> {
  public:
-  /// `width` is a stripe's, in mean extents.
+  /// `width` is the width of a stripe in mean extents.
   explicit PbsmStripes(const Settings& settings) : width_(settings.number("width")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
@@ -48,7 +48,7 @@ class PbsmStripes final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis) extents_[axis] = extent_of<D>(boxes, axis);
     choose_axes(boxes, left);
     const Extent& extent = extents_[partition_axis_];
-    // No more stripes than boxes, where these are points.
+    // At most as many stripes as boxes, which matters for points.
     const double stripes = std::ceil(extent.length() / (width_ * extent.mean));
     const bool finite = stripes >= 1;  // not NaN
     const auto max_stripes = static_cast<double>(boxes.size());
@@ -71,7 +71,7 @@ class PbsmStripes final : public Searcher<D> {
  private:
   using Run = std::span<const StripeEntry<D>>;
 
-  /// The sweep is along the axis on which the fewest pairs of boxes share a cell of a histogram; stripes cut
+  /// Sweeps along the axis on which the fewest pairs of boxes share a cell of a histogram; cuts stripes on
   /// the next best.
   void choose_axes(std::span<const Box<D>> boxes, std::size_t left) {
     constexpr std::size_t sample_size = 2000;
@@ -91,7 +91,7 @@ class PbsmStripes final : public Searcher<D> {
         for (std::size_t set = 0; set < 2; ++set) counts[set] += changes[set][cell];
         shared[axis] += counts[1] * (left == 0 ? counts[1] : counts[0]);
       }
-      // One cell stands for a histogram of as many equal ones.
+      // A single cell stands for a whole histogram of equal cells.
       if (cut.cells == 1) shared[axis] *= histogram_cells;
     }
     std::array<int, D> axes;
@@ -101,7 +101,7 @@ class PbsmStripes final : public Searcher<D> {
     partition_axis_ = axes[1];
   }
 
-  /// The references of a set, stripe by stripe, in the order of their minima on the sweep axis.
+  /// The references of a set, stripe by stripe, sorted by their minima on the sweep axis.
   struct Stripes {
     std::vector<StripeEntry<D>> references;
     std::vector<std::size_t> ends;
@@ -113,7 +113,7 @@ class PbsmStripes final : public Searcher<D> {
   };
 
   void partition(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end, Stripes& partition) {
-    std::vector<std::size_t>& next = partition.ends;  // first where a stripe's next reference goes
+    std::vector<std::size_t>& next = partition.ends;  // the next position in each stripe; in the end, its end
     next.assign(stripes_.cells + 1, 0);
     const auto entries = sorter_.entries(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
@@ -165,7 +165,8 @@ class PbsmStripes final : public Searcher<D> {
     }
   }
 
-  /// The forward scan: whichever set's next box begins first is held against the other set's from there on.
+  /// The forward scan: takes the next box that begins first, from either set, and compares it with the other
+  /// set's boxes from there on.
   static void join(Run left, Run right, Checkpoint& checkpoint, PairSink& pairs) {
     auto a = left.begin();
     auto b = right.begin();
@@ -194,7 +195,7 @@ class PbsmStripes final : public Searcher<D> {
   int partition_axis_ = 1;
   CutAxis stripes_;
   RadixSort<std::uint32_t> sorter_;
-  Stripes left_;  // all boxes, where there is one set
+  Stripes left_;  // all boxes, if there is one set
   Stripes right_;
 };
 

@@ -1,4 +1,4 @@
-// The radix sort of the algorithms from the literature: places in an array, by integer keys.
+// The radix sort of the algorithms from the literature: sorts indices by integer keys.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace broadside::lab::literature {
 
-/// A signed number that orders as `value` does, for any float but NaN; -0.0 and 0.0 have the same. Infinities
-/// lie between -`beyond_floats` and `beyond_floats`.
+/// Maps a float other than NaN to a signed integer with the same order; -0.0 and 0.0 map to the same one.
+/// Infinities map to values between -`beyond_floats` and `beyond_floats`.
 inline std::int32_t ordered(float value) noexcept {
   const auto bits = std::bit_cast<std::int32_t>(value + 0.0F);
   return bits ^ ((bits >> 31) & 0x7fffffff);
 }
 
-/// Greater than ordered() of any float, infinity included: a sentinel that ends every scan.
+/// Greater than ordered() of any float, including infinity: a sentinel that ends every scan.
 inline constexpr std::int32_t beyond_floats = 0x7fffffff;
 
 /// ordered() as an unsigned key.
@@ -26,8 +26,7 @@ inline std::uint32_t sort_key(float value) noexcept {
   return static_cast<std::uint32_t>(ordered(value)) ^ 0x80000000U;
 }
 
-/// Sorts places by unsigned keys, those of equal keys staying in order. A counting pass for each 11 bits in
-/// which the keys differ.
+/// A stable sort of indices by unsigned keys: one counting pass for each 11 bits in which the keys differ.
 template <typename Key>
 class RadixSort {
  public:
@@ -36,13 +35,13 @@ class RadixSort {
     std::uint32_t place;
   };
 
-  /// Room for `count` entries to be filled in and sorted. Valid until the next call.
+  /// Returns `count` entries to fill in before sort(). Valid until the next call.
   std::span<KeyedPlace> entries(std::size_t count) {
     entries_.resize(count);
     return entries_;
   }
 
-  /// Sorts what was filled in. The result is valid until the next call of entries().
+  /// Sorts the entries. The result is valid until the next call of entries().
   std::span<const KeyedPlace> sort() {
     for (auto& counts : counts_) counts.fill(0);
     for (const KeyedPlace& entry : entries_) {

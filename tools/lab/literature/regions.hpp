@@ -14,7 +14,7 @@
 
 namespace broadside::lab::literature {
 
-/// The regions that a box touches: from `first` to `last` on each axis, both included.
+/// The regions that a box touches: from `first` to `last` on each axis, inclusive.
 template <int D>
 struct RegionRange {
   std::array<std::uint32_t, D> first;
@@ -35,14 +35,13 @@ struct RegionRange {
   friend bool operator==(const RegionRange&, const RegionRange&) = default;
 };
 
-/// Equal regions over the finite coordinates of some boxes; those at the border go on without end.
+/// Equal regions over the finite coordinates of some boxes; the outer ones extend to infinity.
 template <int D>
 class Regions {
  public:
   using Place = std::array<std::uint32_t, D>;
 
-  /// About as many as are wanted, but so few that a box of a sample of the present ones is in at most four of
-  /// them in the mean.
+  /// About `wanted` regions, but so few that a sample's boxes are in at most four regions each on average.
   Regions(std::span<const Box<D>> boxes, double wanted) {
     measure(boxes);
     constexpr std::size_t sample_size = 1000;
@@ -53,7 +52,7 @@ class Regions {
     }
     std::array<bool, D> is_done{};
     while (static_cast<double>(count()) < wanted) {
-      // The axis whose regions are widest is halved, unless too many boxes would be in both halves.
+      // Halves the axis whose regions are widest, unless too many boxes would be in both halves.
       int widest = -1;
       for (int axis = 0; axis < D; ++axis) {
         if (!is_done[axis] && (widest < 0 || width(axis) > width(widest))) widest = axis;
@@ -90,7 +89,7 @@ class Regions {
     return index;
   }
 
-  /// Calls visit(region) with the place of each region in the range.
+  /// Calls visit(region) with the index of each region in the range.
   template <typename Visit>
   void for_each(const RegionRange<D>& range, Visit visit) const {
     Place region = range.first;
@@ -118,7 +117,7 @@ class Regions {
       }
     }
     for (int axis = 0; axis < D; ++axis) {
-      if (!(low_[axis] < high_[axis])) low_[axis] = high_[axis] = 0;  // nothing to cut
+      if (!(low_[axis] < high_[axis])) low_[axis] = high_[axis] = 0;  // empty range
       cut(axis, 1);
     }
   }

@@ -1,16 +1,16 @@
 // Tracy, Buss and Woods 2009, "Efficient Large-Scale Sweep and Prune Methods with AABB Insertion and Removal"
-// (IEEE VR): sweep and prune in the regions of a grid, a box in each region that it touches, with segmented
-// interval lists (interval_list.hpp) in each region, one an axis. A box that moves a little slides past the
-// ends beside its own, and each end of the other kind that it passes is a pair to look at. A box that comes,
-// goes or jumps is put in or taken out: the list of the first axis says what it may overlap. Where a share of
-// a region's boxes come or go in one frame, they do so as a batch: lists are merged or thinned in one pass,
-// and one sweep finds the pairs in which they are.
+// (IEEE VR): sweep and prune in the regions of a grid. A box is in each region that it touches; each region
+// has a segmented interval list (interval_list.hpp) for each axis. A box that moves a little slides past the
+// adjacent end points, and each end point of the other kind that it passes is a candidate pair. A box that is
+// added, removed or jumps is inserted or erased: the list of the first axis gives its candidates. If a large
+// share of a region's boxes come or go in one frame, they form a batch: lists are merged or thinned in one
+// pass, and one sweep finds the pairs of the batch.
 //
-// Where this differs: pairs found in several regions are sorted out by the Tracker, which takes
-// an event twice, and in a search from nothing by the region of the greater minima, where the paper counts
-// them in a table. A search from nothing, which is one batch into empty lists, sorts the one axis that it
-// sweeps. The grid's size is chosen from a sample: fewer regions than asked for where boxes would be in too
-// many. Segments are longer in long lists: the square root of their length.
+// Differences: in motion, the Tracker, which accepts an event twice, removes pairs found in several regions;
+// a search from nothing reports a pair in the region of its greater minima. The paper counts pairs in a
+// table. A search from nothing, which is one batch into empty lists, sorts only the axis that it sweeps. A
+// sample determines the grid's size: fewer regions than asked for if boxes would be in too many. Segments are
+// longer in long lists: the square root of their length.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -44,16 +44,16 @@ class SegmentedSap final : public Searcher<D> {
 
  private:
   /// A box in a region. A pair is reported in the region that holds the greater of its minima on each axis:
-  /// unless both boxes begin before it on some axis.
+  /// unless both boxes begin before that region on some axis.
   struct RegionEntry {
     Box<D> box;
     std::uint32_t id;
     std::uint32_t begins_before;  // a bit for each axis
   };
 
-  /// The members of each region, in the order of their minima on the first axis.
+  /// The members of each region, sorted by their minima on the first axis.
   void file(std::span<const Box<D>> boxes, const Regions<D>& regions) {
-    begins_.assign(regions.count() + 2, 0);  // until the end of this function, one place further on
+    begins_.assign(regions.count() + 2, 0);  // until the end of this function, shifted by one
     const auto entries = sorter_.entries(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       entries[i] = {sort_key(boxes[i].min[0]), static_cast<std::uint32_t>(i)};
@@ -131,9 +131,9 @@ class SegmentedSapFollower final : public Follower<D> {
   }
 
  private:
-  using Lists = std::vector<IntervalList>;  // one an axis
+  using Lists = std::vector<IntervalList>;  // one per axis
 
-  /// A box that a region loses or gains.
+  /// A box to erase from a region or insert into it.
   struct Transfer {
     std::size_t region;
     std::uint32_t id;
@@ -141,7 +141,7 @@ class SegmentedSapFollower final : public Follower<D> {
     friend auto operator<=>(const Transfer&, const Transfer&) = default;
   };
 
-  /// How many boxes there are, and in how many regions they are altogether.
+  /// The number of boxes, and the total number of regions they are in.
   struct Load {
     std::size_t boxes = 0;
     std::size_t references = 0;
@@ -162,8 +162,8 @@ class SegmentedSapFollower final : public Follower<D> {
     return load;
   }
 
-  /// Whether there are far more or fewer boxes than the regions were made for, or they have grown so that
-  /// they would be in too many.
+  /// Whether there are far more or fewer boxes than the regions were made for, or the boxes have grown so
+  /// that they would be in too many regions.
   bool needs_new_regions(const Change<D>& change) const {
     const Load load = load_after(change);
     constexpr std::size_t few = 100;
@@ -171,7 +171,7 @@ class SegmentedSapFollower final : public Follower<D> {
            load.references > 2 * std::max(made_for_.references, 4 * load.boxes);
   }
 
-  /// Regions that suit the boxes as they were and as they are, with the former in them.
+  /// Makes regions that suit both the previous and the current boxes, and inserts the previous ones.
   void build(const Change<D>& change) {
     std::vector<Box<D>> boxes(change.before.begin(), change.before.end());
     boxes.insert(boxes.end(), change.now.begin(), change.now.end());
@@ -209,8 +209,8 @@ class SegmentedSapFollower final : public Follower<D> {
     return {box.max[axis], true, id};
   }
 
-  /// Slides a box in the regions in which it stays, if it has not far to go there. Lists where it leaves or
-  /// enters.
+  /// Slides a box in the regions in which it stays, if it does not move far there. Records a transfer for
+  /// each region that it leaves or enters.
   template <typename LookAt>
   void move(std::uint32_t id, const Change<D>& change, LookAt look_at) {
     const Box<D>& before = change.before[id];
@@ -274,7 +274,7 @@ class SegmentedSapFollower final : public Follower<D> {
     }
   }
 
-  /// Takes boxes out of regions, or puts them in: those of a region one by one, or as a batch.
+  /// Erases boxes from regions, or inserts them: one by one, or as a batch per region.
   template <typename LookAt>
   void transfer(std::vector<Transfer>& transfers, std::span<const Box<D>> boxes, bool enter, LookAt look_at) {
     std::ranges::sort(transfers);
@@ -320,7 +320,7 @@ class SegmentedSapFollower final : public Follower<D> {
     }
   }
 
-  /// Takes the batch out of a region's lists.
+  /// Erases the batch from a region's lists.
   void let_go(Lists& lists) {
     for (IntervalList& list : lists) {
       ends_.clear();
@@ -330,7 +330,7 @@ class SegmentedSapFollower final : public Follower<D> {
     }
   }
 
-  /// Sweeps a list for the pairs in which at least one is in the batch.
+  /// Sweeps a list for the pairs with at least one box in the batch.
   template <typename LookAt>
   void look_at_batch(const IntervalList& list, LookAt look_at) {
     ends_.clear();
@@ -360,7 +360,7 @@ class SegmentedSapFollower final : public Follower<D> {
   Load load_;                 // of the frame that the lists hold
   Load made_for_;             // of the frame that the regions were made for
 
-  // For one update.
+  // Valid during one update.
   std::vector<Transfer> leaving_;
   std::vector<Transfer> entering_;
   std::vector<std::uint8_t> in_batch_;  // by box

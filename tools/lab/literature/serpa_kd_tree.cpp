@@ -1,16 +1,16 @@
 // Serpa and Rodrigues 2019, "Flexible Use of Temporal and Spatial Reasoning for Fast and Scalable CPU
-// Broad-Phase Collision Detection Using KD-Trees" (Computer Graphics Forum), as their framework Broadmark has
-// it: a KD-tree whose nodes hold the boxes that touch their planes (kd_tree.hpp). Planes stand at the mean of
-// the boxes' centres, on the axis on which these vary most. From frame to frame the tree is kept: boxes move
-// to where they belong now, leaves split, nodes that have become small are trimmed, and a measure of each
-// node says when to translate its plane and when to give it up. Each node's boxes are swept along their
-// widest axis, against each other and against those from the nodes above, eight at a time. Pairs of two boxes
-// that rest are neither sought nor tested again.
+// Broad-Phase Collision Detection Using KD-Trees" (Computer Graphics Forum), as in their framework Broadmark:
+// a KD-tree whose nodes hold the boxes that touch their planes (kd_tree.hpp). Planes are at the mean of the
+// boxes' centres, on the axis of maximum variance. The tree is kept from frame to frame: boxes move to the
+// nodes where they now belong, leaves split, nodes that have become small are trimmed, and a measure of each
+// node decides when to translate its plane and when to give it up. Each node's boxes are swept along their
+// widest axis, against each other and against those from the nodes above, eight at a time. Pairs of two
+// resting boxes are neither searched for nor tested again.
 //
-// Where this differs: a box that moves is taken from its node to its new one, where theirs passes over all
-// boxes in each frame; nodes have lists of their own instead of parts of one array. A plane that is given up
-// is chosen anew with all below it, where theirs keeps the larger child's planes. A node is not split where
-// one side would be empty. Boxes are not enlarged by a margin: all pairs must be exact.
+// Differences: a moving box goes directly from its node to the new one, where their code passes over all
+// boxes in each frame. Nodes have their own lists instead of parts of one array. A plane that is given up is
+// chosen anew with all below it, where their code keeps the larger child's planes. A node is not split if one
+// side would be empty. Boxes are not enlarged by a margin, because all pairs must be exact.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -43,7 +43,7 @@ class SerpaKdTree final : public Searcher<D> {
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     add_present(tree_, input.boxes);
-    // A flag for the boxes of the left set.
+    // Flags the boxes of the left set.
     is_left_.assign(input.left_count, 1);
     if (!is_left_.empty()) is_left_.resize(input.boxes.size());
     Checkpoint checkpoint(input.workers.checkpoint);

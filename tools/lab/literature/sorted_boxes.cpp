@@ -1,4 +1,4 @@
-// The sweep over sorted boxes, written once with Highway and compiled for each instruction set.
+// The sweep over sorted boxes, written once with Highway and compiled for each SIMD target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/literature/sorted_boxes.cpp"
 #include "lab/literature/sorted_boxes.hpp"
@@ -14,12 +14,12 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Eight, as in the publication, or as many as there are.
+// Eight lanes, as in the publication, or as many as the target has.
 using Floats = hn::CappedTag<float, 8>;
 using Integers = hn::RebindToSigned<Floats>;
 static_assert(hn::MaxLanes(Floats()) <= SortedBoxes<2>::read_ahead);
 
-/// Writes the pairs of `box` at `place` with those of `others` that begin from `first` on and before it ends.
+/// Writes the pairs of `box` at `place` with the boxes of `others` from `first` on that begin before it ends.
 template <int D>
 HWY_INLINE void scan(const SortedBoxes<D>& boxes, std::size_t place, const SortedBoxes<D>& others,
                      std::size_t first, Checkpoint& checkpoint, PairSink& pairs) {
@@ -27,7 +27,7 @@ HWY_INLINE void scan(const SortedBoxes<D>& boxes, std::size_t place, const Sorte
   if (others.begin()[first] > end) return;
   constexpr Floats floats;
   constexpr Integers integers;
-  const auto limit = hn::Set(integers, end + 1);  // at most infinity's, so there is one more
+  const auto limit = hn::Set(integers, end + 1);  // at most infinity's, so there is a greater integer
   const auto low0 = hn::Set(floats, boxes.low(0)[place]);
   const auto high0 = hn::Set(floats, boxes.high(0)[place]);
   const auto low1 = hn::Set(floats, boxes.low(D - 2)[place]);
@@ -55,7 +55,8 @@ HWY_INLINE void sweep_one(const SortedBoxes<D>& boxes, Checkpoint& checkpoint, P
   for (std::size_t i = 0; i + 1 < boxes.size(); ++i) scan(boxes, i, boxes, i + 1, checkpoint, pairs);
 }
 
-/// The pairs in which the box of `others` begins with or after that of `boxes`, or only after it.
+/// The pairs in which the box of `others` begins with or after the box of `boxes`; with OnlyAfter, only after
+/// it.
 template <int D, bool OnlyAfter>
 HWY_INLINE void sweep_across(const SortedBoxes<D>& boxes, const SortedBoxes<D>& others,
                              Checkpoint& checkpoint, PairSink& pairs) {

@@ -1,7 +1,7 @@
-// Boxes sorted by where they begin on one axis, as a structure of arrays, and the sweep over them.
+// Boxes sorted by their minima on one axis, as a structure of arrays, and the sweep over them.
 //
-// The sweep is that of Terdiman's "Box pruning revisited", parts 11 to 15: the sweep axis apart from the
-// others, as integers that order as the floats do, a sentinel instead of a test for the end, and one box
+// The sweep is that of Terdiman's "Box pruning revisited", parts 11 to 15: the sweep axis is stored apart
+// from the others, as integers in the floats' order; a sentinel replaces the test for the end; one box is
 // tested against eight others at once (part 15, with Giesen's kernel for AVX).
 #pragma once
 
@@ -25,10 +25,10 @@ class SortedBoxes {
  public:
   static constexpr std::size_t other_axes = D - 1;
 
-  /// How far a sweep reads beyond the last box.
+  /// How many entries a sweep may read beyond the last box.
   static constexpr std::size_t read_ahead = 8;
 
-  /// Room for `count` boxes, each to be set().
+  /// Resizes to `count` boxes; each must then be set().
   void resize(std::size_t count) {
     size_ = count;
     begin_.resize(count + read_ahead);
@@ -41,7 +41,7 @@ class SortedBoxes {
     }
   }
 
-  /// Puts a box at `place`. Minima on `sweep_axis` must ascend with places.
+  /// Stores a box at `place`. Minima on `sweep_axis` must ascend with places.
   void set(std::size_t place, const Box<D>& box, BoxId id, int sweep_axis) {
     begin_[place] = ordered(box.min[sweep_axis]);
     end_[place] = ordered(box.max[sweep_axis]);
@@ -62,7 +62,7 @@ class SortedBoxes {
 
  private:
   std::size_t size_ = 0;
-  std::vector<std::int32_t> begin_;  // on the sweep axis, with sentinels behind the last
+  std::vector<std::int32_t> begin_;  // on the sweep axis, with sentinels after the last
   std::vector<std::int32_t> end_;
   std::array<std::vector<float>, other_axes> low_;
   std::array<std::vector<float>, other_axes> high_;
@@ -73,7 +73,7 @@ class SortedBoxes {
 template <int D>
 void sweep(const SortedBoxes<D>& boxes, Checkpoint& checkpoint, PairSink& pairs);
 
-/// Writes each pair of a box of `left` and an overlapping one of `right` once. Both must have the same sweep
+/// Writes each overlapping pair of a box of `left` and a box of `right` once. Both must have the same sweep
 /// axis.
 template <int D>
 void sweep(const SortedBoxes<D>& left, const SortedBoxes<D>& right, Checkpoint& checkpoint, PairSink& pairs);

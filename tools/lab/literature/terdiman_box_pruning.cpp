@@ -1,14 +1,14 @@
 // Terdiman 2017 to 2018, "Box pruning revisited", parts 1 to 17 (codercorner.com; code: BoxPruning17): boxes
-// sorted along one axis, copied in that order, and swept with the sweep axis apart from the others, by
-// integers and with sentinels (sorted_boxes.hpp). Before the sweep, boxes are dealt into buckets by the
-// middles of the other axes (parts 16 and 17): four quadrants, and one bucket of those that cross a middle. A
-// quadrant is swept against itself and against the crossing ones. For two sets, each has buckets of its own,
-// and two are swept where their bounds overlap.
+// are sorted along one axis, copied in that order, and swept with the sweep axis stored apart from the
+// others, as integers and with sentinels (sorted_boxes.hpp). Before the sweep, boxes are distributed to
+// buckets by the middles of the other axes (parts 16 and 17): four quadrants, and one bucket of the boxes
+// that cross a middle. A quadrant is swept against itself and against the crossing boxes. With two sets, each
+// has its own buckets, and two buckets are swept if their bounds overlap.
 //
-// Where this differs: the sweep within a bucket is part 15's, eight boxes at once, where part 17's tests one
-// box at a time with four lanes for y and z. In 2D there are two halves and a bucket of crossing boxes. The
-// middles are those of the finite coordinates. The sweep is along x there; here, unless told otherwise, along
-// the axis on which centres vary most.
+// Differences: the sweep within a bucket is that of part 15, eight boxes at once, where part 17 tests one box
+// at a time with four lanes for y and z. In 2D there are two halves and a bucket of crossing boxes. The
+// middles are those of the finite coordinates. The original sweeps along x; this sweeps, unless told
+// otherwise, along the axis on which centres have the maximum variance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,11 +31,11 @@ namespace {
 template <int D>
 constexpr std::size_t bucket_count = (std::size_t{1} << (D - 1)) + 1;
 
-/// The last bucket: of boxes that cross a middle.
+/// The last bucket: boxes that cross a middle.
 template <int D>
 constexpr std::size_t crossing = bucket_count<D> - 1;
 
-/// The boxes of one set, dealt into buckets, each sorted along the sweep axis.
+/// The boxes of one set, distributed to buckets, each sorted along the sweep axis.
 template <int D>
 class SweptBuckets {
  public:
@@ -88,7 +88,7 @@ class SweptBuckets {
     return middles;
   }
 
-  /// A bit for each axis on which the box lies above the middle; the last bucket if it crosses one.
+  /// A bit for each axis on which the box is above the middle; the last bucket if it crosses one.
   static std::size_t bucket_of(const Box<D>& box, const Middles& middles, int sweep_axis) {
     std::size_t bucket = 0;
     bool crosses = false;
@@ -142,8 +142,8 @@ class TerdimanBoxPruning final : public Searcher<D> {
     return centres.widest_axis();
   }
 
-  int axis_;              // the sweep axis; -1: that on which centres vary most
-  SweptBuckets<D> left_;  // all boxes, where there is one set
+  int axis_;              // the sweep axis; -1: that of maximum variance of centres
+  SweptBuckets<D> left_;  // all boxes, if there is one set
   SweptBuckets<D> right_;
 };
 

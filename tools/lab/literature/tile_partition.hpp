@@ -1,4 +1,4 @@
-// Boxes in the tiles of a uniform grid, in each tile by classes: what two_layer_grid.cpp joins.
+// The boxes in each tile of a uniform grid, by class: the input of the joins of two_layer_grid.cpp.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace broadside::lab::literature {
 
-/// A class of a tile's boxes: bit k is set if they begin before the tile on axis k. 0 is the authors' A, and
-/// in 2D 1 is their C, 2 their B and 3 their D. Two classes are joined if they have no bit in common.
+/// A class of a tile's boxes: bit k is set if they begin before the tile on axis k. 0 is the authors' A; in
+/// 2D, 1 is their C, 2 their B and 3 their D. Two classes are joined if they have no bit in common.
 using BoxClass = unsigned;
 
 template <int D>
@@ -61,7 +61,7 @@ struct TileRange {
     return count;
   }
 
-  /// Calls `visit` with each tile's number and the class that the box has in it.
+  /// Calls `visit` with each tile's index and the box's class in it.
   template <typename Visit>
   void for_each(const TileGrid<D>& grid, const Visit& visit) const {
     visit_axis<D - 1>(grid, 0, 0, visit);
@@ -81,7 +81,7 @@ struct TileRange {
   }
 };
 
-/// The references of a set, tile by tile, and in a tile class by class.
+/// The references of a set, tile by tile, and within a tile class by class.
 template <int D>
 class TilePartition {
  public:
@@ -94,7 +94,8 @@ class TilePartition {
           grid, [this](std::size_t tile, BoxClass of) { ++ends_[tile * class_count<D> + of + 1]; });
     for (std::size_t run = 1; run < ends_.size(); ++run) ends_[run] += ends_[run - 1];
     references_.resize(ends_.back());
-    // Now ends_[run] is where the next reference of the run goes, and at last where the run ends.
+    // From here, ends_[run] is the position of the run's next reference; after the loop, it is the end of the
+    // run.
     std::uint32_t id = first_id;
     for (const Box<D>& box : boxes) {
       const TileReference<D> reference{box, id++};
@@ -112,8 +113,8 @@ class TilePartition {
     return ends_[tile * class_count<D> + of] - begin(tile, of);
   }
 
-  /// Sorts a tile's classes on the sweep axis, those that have a class of `other` to be joined with: by their
-  /// beginnings, or by their ends if they begin before the tile.
+  /// Sorts the classes of a tile that will be joined with a class of `other`, on the sweep axis: by their
+  /// minima, or by their maxima if they begin before the tile.
   void sort(std::size_t tile, const TilePartition& other) {
     for (BoxClass of = 0; of < class_count<D>; ++of) {
       if (size(tile, of) < 2 || !other.has_partner(tile, of)) continue;

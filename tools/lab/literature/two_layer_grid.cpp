@@ -1,18 +1,18 @@
 // Tsitsigkos, Lampropoulos, Bouros, Mamoulis and Terrovitis 2021, "A Two-layer Partitioning for Non-point
 // Spatial Data" (ICDE; extended as Tsitsigkos et al. 2024, "Two-layer Space-oriented Partitioning for
-// Non-point Data", IEEE TKDE 36(3), arXiv 2307.09256): a uniform grid has a box in each tile that it touches,
+// Non-point Data", IEEE TKDE 36(3), arXiv 2307.09256). A uniform grid has a box in each tile that it touches,
 // and a tile divides its boxes into classes by where they begin: A in this tile, B before it on the second
 // axis, C before it on the first, D before it on both. Two boxes of classes that begin before the tile on the
-// same axis are together in an earlier tile as well. So only nine of the sixteen combinations of classes are
+// same axis are also together in an earlier tile. So only nine of the sixteen combinations of classes are
 // joined, and each pair is found exactly once without a reference point. Each combination is a join of its
-// own ("mini-join"), of which we have the version with both of the authors' optimisations: a bound that the
-// classes decide is not compared, and a class that begins before the tile on the sweep axis is sorted by its
-// end, so that all boxes that reach a place stand together at the back.
+// own ("mini-join"). This has both of the authors' optimisations: it does not compare a bound that the
+// classes decide, and it sorts a class that begins before the tile on the sweep axis by its maxima, so that
+// all boxes that reach a place are together at the back.
 //
-// Where this differs: in 3D there are three axes, eight classes and 27 combinations; one set is joined with
-// itself, in five combinations (14 in 3D); references of all classes store all bounds, where the authors drop
-// the bounds that are never compared; the number of tiles has a default, and is halved where boxes would have
-// too many references. There is one thread.
+// Differences: in 3D there are three axes, eight classes and 27 combinations. A single set is joined with
+// itself, in five combinations (14 in 3D). References of all classes store all bounds, where the authors drop
+// the bounds that are never compared. The number of tiles has a default, and is halved if boxes would have
+// too many references. Single-threaded.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,15 +30,15 @@
 namespace broadside::lab::literature {
 namespace {
 
-/// A tile is this many mean extents of the boxes wide by default, and has this many boxes, or more.
+/// The default width of a tile in mean extents of the boxes; the minimum number of boxes per tile.
 constexpr double extents_per_tile = 2;
 constexpr double boxes_per_tile = 4;
 
-/// With more references on average, tiles are made larger.
+/// With more references per box on average, tiles are made larger.
 constexpr std::size_t max_references_per_box = 8;
 
-/// Whether boxes of class P and of class Q that overlap on the first axis overlap on the others. What begins
-/// before the tile begins before the end of what begins in it.
+/// Whether boxes of class P and of class Q that overlap on the first axis overlap on the others. A box that
+/// begins before the tile begins before the end of any box that begins in it.
 template <int D, BoxClass P, BoxClass Q>
 bool meets_beside(const Box<D>& p, const Box<D>& q) noexcept {
   bool meets = true;
@@ -57,7 +57,7 @@ class TwoLayerGrid final : public Searcher<D> {
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     if (input.boxes.empty()) return std::nullopt;
-    boxes_.assign(input.boxes.begin(), input.boxes.end());  // read twice, and must be the same then
+    boxes_.assign(input.boxes.begin(), input.boxes.end());  // read twice, and must not change in between
     const std::span<const Box<D>> boxes = boxes_;
     const TileGrid<D> grid = fitting_grid(boxes);
     Checkpoint checkpoint(input.workers.checkpoint);
@@ -94,7 +94,7 @@ class TwoLayerGrid final : public Searcher<D> {
     }
   }
 
-  /// Square tiles, as many as asked for along the longest axis.
+  /// Square tiles, with the requested number along the longest axis.
   std::array<double, D> square_tiles(const std::array<Extent, D>& extents) const {
     const double longest = std::ranges::max(extents, {}, &Extent::length).length();
     std::array<double, D> tiles;
@@ -116,11 +116,11 @@ class TwoLayerGrid final : public Searcher<D> {
     return tiles;
   }
 
-  /// Makes `tiles` at least 1 on each axis and at most `most` in all, by the same factor on each axis where
-  /// that is possible.
+  /// Limits `tiles` to at least 1 on each axis and at most `max_tiles` in all, by the same factor on each
+  /// axis if possible.
   static void shrink(std::array<double, D>& tiles, double max_tiles) {
     for (double& count : tiles) count = count > 1 ? count : 1;
-    // In each step another axis may come down to 1.
+    // Each step may reduce another axis to 1.
     for (int step = 0; step < D; ++step) {
       double all = 1;
       int divided = 0;
@@ -171,7 +171,7 @@ class TwoLayerGrid final : public Searcher<D> {
     (classes);
   }
 
-  /// The forward scan, of a class with itself: only A has no bit in common with itself.
+  /// The forward scan of a class with itself: only A has no bit in common with itself.
   static void join_within(Run run, Checkpoint& checkpoint, PairSink& pairs) {
     for (auto p = run.begin(); p != run.end(); ++p) {
       auto q = p + 1;
@@ -193,8 +193,8 @@ class TwoLayerGrid final : public Searcher<D> {
       join_scanning<P, Q>(left, right, checkpoint, pairs);
   }
 
-  /// `before` begins before the tile on the sweep axis and is sorted by its ends: it overlaps there whatever
-  /// begins in the tile, up to these ends.
+  /// `before` begins before the tile on the sweep axis and is sorted by its maxima: it overlaps on this axis
+  /// all boxes that begin in the tile up to these maxima.
   template <BoxClass Before, BoxClass In>
   static void join_reaching(Run before, Run in, Checkpoint& checkpoint, PairSink& pairs) {
     auto reaching = before.begin();
@@ -208,7 +208,8 @@ class TwoLayerGrid final : public Searcher<D> {
     }
   }
 
-  /// The forward scan: whichever class's next box begins first is held against the other's from there on.
+  /// The forward scan: takes the next box that begins first, from either class, and compares it with the
+  /// other class's boxes from there on.
   template <BoxClass P, BoxClass Q>
   static void join_scanning(Run left, Run right, Checkpoint& checkpoint, PairSink& pairs) {
     auto p = left.begin();
@@ -232,9 +233,9 @@ class TwoLayerGrid final : public Searcher<D> {
     }
   }
 
-  std::size_t tiles_;  // along the longest axis; 0 leaves the number to the boxes
+  std::size_t tiles_;  // along the longest axis; 0 chooses the number by the boxes
   std::vector<Box<D>> boxes_;
-  TilePartition<D> left_;  // all boxes, where there is one set
+  TilePartition<D> left_;  // all boxes, if there is one set
   TilePartition<D> right_;
 };
 

@@ -1,4 +1,4 @@
-// What measuring a search and measuring a history have in common.
+// Common parts of measuring searches and measuring histories.
 #include "lab/measure/benchmark.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::string fault_of(const std::string& algorithm, const std::function<std::stri
   } catch (const Stopped&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw;  // the machine's fault
+    throw;  // not the algorithm's fault
   } catch (const std::exception& thrown) {
     return fmt::format("{} threw: {}", algorithm, thrown.what());
   }
@@ -94,7 +94,7 @@ std::string unfit(const Entry& entry, int dimension, const Extremes& extremes) {
   if (extremes.boxes > algorithm.limits.max_boxes)
     return fmt::format("does not take more than {} boxes", grouped(algorithm.limits.max_boxes));
   try {
-    // A value may make sense in one dimension only, such as an axis.
+    // A value, such as an axis, may be valid in one dimension only.
     dimension == 2 ? void(Finder<2>(algorithm, entry.spec)) : void(Finder<3>(algorithm, entry.spec));
   } catch (const InvalidSpec& unusable) {
     return unusable.what();

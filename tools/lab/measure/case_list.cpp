@@ -21,7 +21,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Runs a step that reads a value; what it throws of a spec or a file gets the value's place in front.
+/// Runs a step that reads a value. Prefixes errors of specs and files with the value's place.
 template <typename Step>
 auto at_place(const JsonPlace& place, const Step& step) {
   try {
@@ -37,7 +37,7 @@ std::size_t count_from(const JsonPlace& place, std::size_t min_count, std::size_
   const std::uint64_t count = place.count();
   if (count < min_count || count > max_count) {
     place.refuse(max_count == SIZE_MAX ? fmt::format("a whole number of at least {}", min_count)
-                                  : fmt::format("a whole number from {} to {}", min_count, max_count));
+                                       : fmt::format("a whole number from {} to {}", min_count, max_count));
   }
   return count;
 }
@@ -48,7 +48,7 @@ double fraction_from(const JsonPlace& place) {
   return fraction;
 }
 
-/// Changes what the object at `place` gives.
+/// Sets the fields of `effort` that the object at `place` has.
 void read_effort(const JsonPlace& place, Effort& effort) {
   const std::pair<const char*, double Effort::*> times[] = {
       {"budget_seconds", &Effort::budget_seconds},
@@ -85,7 +85,7 @@ void read_measure_options(const JsonPlace& place, ListedCase& listed) {
   }
 }
 
-/// A scene whose seeds are the boxes of these files, one after the other.
+/// A scene whose seeds select the boxes of these files, in order.
 NamedScene scene_of_files(std::vector<NamedScene> files, std::uint64_t first_seed) {
   std::string names;
   for (const NamedScene& file : files) names += (names.empty() ? "" : " ") + file.spec.name;
@@ -128,7 +128,7 @@ NamedScene read_scene(const JsonPlace& place, std::size_t dimension, std::uint64
   return scene_of_files(std::move(files), first_seed);
 }
 
-/// How many boxes there are and how they move, which depends on the scene.
+/// The number of boxes and their motion, which depend on the scene.
 void read_boxes(const JsonPlace& place, ListedCase& listed) {
   const Scene& scene = listed.scene.scene;
   CaseRequest& request = listed.request;
@@ -162,7 +162,7 @@ void read_boxes(const JsonPlace& place, ListedCase& listed) {
     place.at("seeds").refuse(fmt::format("1: scene '{}' is the same for every seed", scene.name));
 }
 
-/// Whether any of these has phases to tell on such a case.
+/// Whether any of these entries records phases on such a case.
 bool any_phases(const std::vector<Entry>& entries, const CaseRequest& request) {
   return std::ranges::any_of(entries, [&](const Entry& entry) {
     const Algorithm& algorithm = *entry.algorithm;
@@ -200,7 +200,7 @@ std::string read_instruction_set(const JsonPlace& place) {
   return name;
 }
 
-/// Holds the library to an instruction set, or to none, while it lives.
+/// During its lifetime, restricts the library to an instruction set, if one is given.
 class HeldToInstructionSet {
  public:
   explicit HeldToInstructionSet(const std::string& name) { limit_instruction_set(name); }
@@ -242,7 +242,7 @@ std::vector<ListedCase> read_case_list(std::string_view text, const std::string&
   if (const JsonPlace schema = root.at("schema"); schema.text() != "broadside.cases/1")
     schema.refuse("\"broadside.cases/1\"");
   Effort effort;
-  // All algorithms of a case take part in the same rounds, however far behind.
+  // All algorithms of a case take part in the same rounds, however slow they are.
   effort.far_ratio = std::numeric_limits<double>::infinity();
   if (root.has("effort")) read_effort(root.at("effort"), effort);
   std::vector<ListedCase> cases;

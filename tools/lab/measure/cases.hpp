@@ -1,4 +1,4 @@
-// Cases: searches of boxes and updates of moving ones, by all algorithms in turn.
+// Measures a case: searches of boxes or updates of moving ones, by all algorithms in turn.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace broadside::lab {
 
-/// Inputs for a function whose caller names D and Real: they are not deduced.
+/// Inputs of a function whose caller specifies D and Real: they are not deduced.
 template <int D, typename Real>
 using Histories = std::type_identity_t<std::span<const History<D, Real>>>;
 
-/// Some of the boxes of a history and its first steps, as a history of their own.
+/// A subset of the boxes of a history and its first steps, as a history.
 template <int D, typename Real>
 History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std::size_t max_steps) {
   constexpr std::size_t left_out = static_cast<std::size_t>(-1);
@@ -46,19 +46,19 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
   return thin;
 }
 
-/// Times one whole find() an entry and round, into a vector whose memory is there already. A round is on the
-/// boxes that one input (one a seed of the case) begins with, and the inputs take turns; each entry takes
-/// part in the first rounds, as many as the effort says, and every result is checked. One measurement a
-/// entry, in their order. Where boxes are of floats, the floor takes part in every round.
+/// Times one whole find() per entry and round, into a vector with memory already allocated. A round uses the
+/// boxes of one input (one per seed of the case); inputs take turns. Each entry takes part in the first
+/// rounds, as many as the effort allows, and every result is checked. Returns one measurement per entry, in
+/// their order. With float boxes, the lower bound (floor.hpp) is timed in every round.
 ///
 /// Throws Stopped. An exception of an algorithm counts as its failure.
 template <int D, typename Real = float>
 CaseResult measure_find(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark);
 
-/// Times each update() of a history but for the first, in which all is new and which is timed apart. A round
-/// is a pass over one input (one a seed of the case), and the inputs take turns; each entry takes part in the
-/// first rounds, as many as the effort says. In a round the entries take turns frame by frame, and all events
-/// are checked. One measurement an entry, in their order.
+/// Times each update() of a history after the first, in which all is new and which is timed separately. A
+/// round is a pass over one input (one per seed of the case); inputs take turns. Each entry takes part in the
+/// first rounds, as many as the effort allows. In a round the entries take turns frame by frame, and all
+/// events are checked. Returns one measurement per entry, in their order.
 ///
 /// Throws Stopped. An exception of an algorithm counts as its failure.
 template <int D, typename Real = float>

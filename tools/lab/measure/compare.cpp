@@ -1,4 +1,4 @@
-// The comparison: algorithms against each other on many cases, every result checked.
+// The comparison: measures algorithms on many cases, and checks every result.
 #include "lab/measure/compare.hpp"
 
 #include <algorithm>
@@ -19,12 +19,12 @@
 namespace broadside::lab {
 namespace {
 
-/// On how many seeds a case is run in rotation: a small input that is repeated teaches the branch predictor
-/// what no user's boxes would, and seeds differ. Each seed is measured several times.
+/// How many seeds of a case are taken in turn. A small input that is repeated would train the branch
+/// predictor as no user's boxes would, and seeds differ. Each seed is measured several times.
 std::size_t seeds_for(std::size_t boxes, Mode mode) {
   if (mode == Mode::find && boxes <= 2'000) return 25;
   const std::size_t seeds = boxes < 500'000 ? 4 : 1;
-  // Frames differ among themselves.
+  // The frames of a history already differ.
   return mode == Mode::find || boxes <= 2'000 ? seeds : std::max<std::size_t>(seeds / 2, 1);
 }
 
@@ -44,13 +44,13 @@ double moving_fraction(const History<D>& history) {
   return history.steps.empty() ? 0 : sum / static_cast<double>(history.steps.size());
 }
 
-/// Refuses motion whose steps, and the events that are to be expected of them, would fill the machine.
+/// Refuses motion whose steps and expected events would exceed the memory.
 template <int D>
 void check_steps(const CaseRequest& request) {
   constexpr double max_bytes = 4e9;  // bytes
   const double moved =
       request.moving * static_cast<double>(request.boxes) * static_cast<double>(request.frames);
-  // In a frame about as many pairs begin or end as boxes move, where these have some neighbours.
+  // If boxes have some neighbours, about as many pairs begin or end in a frame as boxes move.
   const double taken = moved * static_cast<double>(sizeof(Box<D>) + sizeof(BoxId) + 2 * sizeof(Pair));
   if (taken > max_bytes) {
     throw std::runtime_error(fmt::format(
@@ -89,7 +89,7 @@ class Runner {
   /// Finds the scene and checks its values before anything is measured.
   void resolve(const CaseRequest& request) {
     scenes_.emplace_back();
-    // A file is read once.
+    // Reads each file once.
     for (std::size_t i = 0; i + 1 < scenes_.size(); ++i) {
       if (options_.plan[i].scene == request.scene && scenes_[i]) scenes_.back() = scenes_[i];
     }
@@ -124,7 +124,8 @@ class Runner {
       return;
     }
     Effort effort = options_.effort;
-    if (!options_.measure_options.times) effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
+    if (!options_.measure_options.times)
+      effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
     const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.measure_options};
     comparison_.cases.push_back(of.mode == Mode::find
                                     ? measure_find<D>(of, inputs, benchmark)
@@ -171,8 +172,8 @@ class Runner {
   const Catalogue& catalogue_;
   const CompareOptions& options_;
   std::vector<Entry> entries_;
-  std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty where there is none
-  std::string place_;                              // of the case that is going on, in the plan
+  std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty if it does not exist
+  std::string place_;                              // position of the current case in the plan
   Comparison comparison_;
   ProcessorShare share_;
 };

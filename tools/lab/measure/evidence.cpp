@@ -1,4 +1,4 @@
-// Which structures and libraries of a case agree.
+// Counts how many structures and libraries of a case agree.
 #include "lab/measure/evidence.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* our_library = "Broadside";
 
-/// "Bullet" of "Bullet 3.24".
+/// "Bullet", for "Bullet 3.24".
 std::string library_of(const Measurement& measurement) {
   if (measurement.kind != AlgorithmKind::peer) return our_library;
   const std::string& version = measurement.version;

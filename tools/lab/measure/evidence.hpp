@@ -1,4 +1,4 @@
-// Which structures and libraries of a case agree.
+// Counts how many structures and libraries of a case agree.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace broadside::lab {
 
-/// Fills in how many structures and libraries gave the same pairs (by number and hash) as each measurement of
-/// a case that was verified. An algorithm is one structure, whatever its spec; auto, which takes one of the
-/// others, is none. Broadside's own, the paper's listings and `references` are of one library; each other
-/// library is told by its version, up to the number.
+/// For each verified measurement of a case, fills in how many structures and libraries gave the same pairs
+/// (compared by number and hash). An algorithm is one structure, whatever its spec; auto does not count,
+/// because it uses one of the others. Broadside's algorithms, the paper's listings and `references` count as
+/// one library. Other libraries are identified by their version text up to the number.
 void count_agreement(std::span<Measurement> measurements, std::span<const Reference> references);
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// The events that a history must give, frame by frame, and their hash.
+// The expected events of a history, frame by frame, and their hash.
 #include "lab/measure/expected_events.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::vector<Pair> without(std::span<const Pair> pairs, std::span<const Pair> oth
   return rest;
 }
 
-/// Calls `visit` with the boxes of each frame and what changed.
+/// Calls `visit` with the boxes of each frame and the places that changed.
 template <int D, typename Real, typename Visit>
 void replay(const History<D, Real>& history, const Visit& visit) {
   std::vector<Box<D, Real>> boxes = history.boxes;
@@ -27,18 +27,18 @@ void replay(const History<D, Real>& history, const Visit& visit) {
   }
 }
 
-/// Marks the places below `size` that may differ from the frame before, where there were `before` boxes.
+/// Marks the places below `size` that may differ from the previous frame, which had `before` boxes.
 template <int D, typename Real>
 std::vector<bool> changes_of(const Frame<D, Real>& frame, std::size_t before) {
   std::vector<bool> changes(std::max(frame.boxes.size(), before), false);
   for (const BoxId id : frame.changed) changes[index(id)] = true;
-  // Boxes that are new, or left the array at its end, need not be listed.
+  // Boxes that are new, or were removed at the array's end, need not be listed.
   for (std::size_t i = std::min(frame.boxes.size(), before); i < changes.size(); ++i) changes[i] = true;
   return changes;
 }
 
-/// The pairs of a frame by the definition, given those of the frame before: two boxes that both stayed as
-/// they were overlap if they did, so that only the changed ones are tested, each against all.
+/// The pairs of a frame by brute force, given those of the previous frame: the overlap of two unchanged boxes
+/// is unchanged, so only changed boxes are tested, each against all.
 template <int D, typename Real>
 std::vector<Pair> pairs_after(const Frame<D, Real>& frame, std::size_t boxes_before,
                               std::span<const Pair> before) {
@@ -96,7 +96,7 @@ ExpectedEvents expected_events(const Reference& reference, const History<D, Real
     const std::vector<Pair> before = std::exchange(pairs, reference.pairs<D, Real>(frame.boxes, asks));
     const std::size_t number = expected.frames.size();
     expected.frames.push_back({without(pairs, before), without(before, pairs)});
-    // Other boxes in each frame.
+    // Samples different boxes in each frame.
     auto divergence =
         expected.fault.empty() ? check_sample<D, Real>(frame.boxes, pairs, number + 1) : std::nullopt;
     if (divergence) {
@@ -109,7 +109,8 @@ ExpectedEvents expected_events(const Reference& reference, const History<D, Real
 }
 
 void EventHasher::add(const FrameEvents& events) noexcept {
-  // One step of a polynomial a list: the place in the history counts, the order in the list does not.
+  // One step of a polynomial per list: the hash depends on the position in the history, but not on the order
+  // within a list.
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
   hash_ = (hash_ + hash_of(events.begun)) * odd + 1;
   hash_ = (hash_ + hash_of(events.ended)) * odd + 1;

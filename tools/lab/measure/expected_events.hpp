@@ -23,22 +23,23 @@ struct FrameEvents {
 /// The expected events of a history.
 struct ExpectedEvents {
   std::vector<FrameEvents> frames;  ///< the first frame's, then one for each step
-  std::string fault;                ///< what is wrong with the reference itself; empty if nothing is
+  std::string fault;                ///< the fault of the reference itself; empty if there is none
 };
 
-/// How many tests of two boxes the definition's events of a history take: in each frame the changed boxes
-/// against all, or all against all where more than half of them changed.
+/// The number of box tests that brute force makes for the events of a history: in each frame, the changed
+/// boxes against all, or all against all if more than half of them changed.
 template <int D, typename Real>
 double tests_by_definition(const History<D, Real>& history);
 
-/// The events of `history` by the reference: what differs between its pairs of one frame and the next. Where
-/// the reference is not the definition, its pairs are sampled in every frame, each time those of other boxes.
+/// The events of `history` by the reference: the differences between its pairs of consecutive frames. If the
+/// reference is not brute force, a sample of its pairs is checked in every frame, each time for different
+/// boxes.
 template <int D, typename Real>
 ExpectedEvents expected_events(const Reference& reference, const History<D, Real>& history,
                                const std::function<void()>& asks = {});
 
-/// Hashes the events of frame after frame: the same for any order within a frame, different for another
-/// frame, and for a pair that ends instead of beginning.
+/// Hashes the events of each frame: independent of the order within a frame, dependent on the frame, and on
+/// whether a pair begins or ends.
 class EventHasher {
  public:
   void add(const FrameEvents& events) noexcept;
@@ -48,7 +49,7 @@ class EventHasher {
   std::uint64_t hash_ = 0;
 };
 
-/// What differs first, with `name`, the frame and the boxes in its text; empty if the events are equal and
+/// The first difference, with `name`, the frame and the boxes in its text; empty if the events are equal and
 /// sorted.
 template <int D, typename Real = float>
 std::string difference(const FrameEvents& found, const FrameEvents& expected, std::string_view name,

@@ -1,4 +1,4 @@
-// Measures searches: every algorithm on the same boxes, in rounds, each result checked.
+// Measures searches: every algorithm on the same boxes, in rounds, with each result checked.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -21,23 +21,23 @@
 namespace broadside::lab {
 namespace {
 
-/// The most pairs that are kept to compare with one by one; more are compared by count and hash, and one by
-/// one only where these differ.
+/// The maximum number of pairs kept for comparison one by one. More pairs are compared by count and hash, and
+/// one by one only if these differ.
 constexpr std::size_t max_pairs_kept = 1'000'000;
 
-/// Stands in for the floor where boxes are of doubles: they have none.
+/// Replaces the lower bound (floor.hpp) for boxes of doubles, which do not have one.
 struct NoFloor {
   template <typename Boxes>
   void run(const Boxes&, std::span<Pair>) const noexcept {}
 };
 
-/// What a search of one input must give.
+/// The expected result of a search of one input.
 struct ExpectedPairs {
   Reference reference;
   std::size_t input;
   std::size_t count;
   std::uint64_t hash;
-  std::vector<Pair> pairs;  // sorted; empty if they are too many to keep
+  std::vector<Pair> pairs;  // sorted; empty if there are too many to keep
   std::string fault;        // of the reference itself
 };
 
@@ -70,7 +70,7 @@ class FindCase {
     for (FindParticipant<D, Real>& participant : participants_) warm_up(participant);
     has_floor_ =
         std::is_same_v<Real, float> && !participants_.empty() && boxes_of(0).size() >= min_boxes_of_floor;
-    if (has_floor_) call_floor(0);  // the first call takes its memory
+    if (has_floor_) call_floor(0);  // the first call allocates its memory
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
     }
@@ -100,8 +100,8 @@ class FindCase {
       Finder<D, Real> finder(tried->algorithm(), entry.spec);
       benchmark_.watch.ask_within(finder);
       const double first = call(finder, *tried, some);
-      // Where the machine stalls for a moment, a short call seems many times as long as it is; and the first
-      // call takes memory.
+      // A brief stall of the machine can make a short call seem many times as long, and the first call
+      // allocates memory.
       constexpr double is_short_ms = 50;
       return (first < is_short_ms ? std::min(first, call(finder, *tried, some)) : first) / 1e3;
     };
@@ -131,7 +131,7 @@ class FindCase {
     pairs_.resize(touched_);
   }
 
-  /// Makes the finder and calls it for the first time: it takes its memory, which is counted.
+  /// Makes the finder and calls it for the first time, so that it allocates its memory, which is counted.
   void warm_up(FindParticipant<D, Real>& participant) {
     Measurement& measurement = *participant.measurement;
     benchmark_.watch.at(measurement.algorithm + ", checking");
@@ -155,9 +155,8 @@ class FindCase {
     });
   }
 
-  /// One timed call of each participant that takes part in this round, all on the same boxes; false where
-  /// none does. The floor comes behind the last participant in the list of turns, and takes part in every
-  /// round.
+  /// Times one call of each participant in this round, all on the same boxes; false if there are none. The
+  /// lower bound comes after the last participant in the list of turns, and takes part in every round.
   bool play(std::size_t round) {
     const std::size_t input = round % inputs_.size();
     std::vector<FindParticipant<D, Real>*> players;
@@ -197,7 +196,7 @@ class FindCase {
     });
   }
 
-  /// Milliseconds for the floor's work, with as many pairs as a search must give.
+  /// Milliseconds of the lower bound's work, with as many pairs as the search's expected result.
   double call_floor(std::size_t input) {
     pairs_.resize(expectation(*participants_[0].entry->algorithm, input).count);
     caches_.settle(std::as_bytes(boxes_of(input)));
@@ -239,7 +238,7 @@ class FindCase {
         .text;
   }
 
-  /// What the entry must find in the input; computed when first asked for.
+  /// The expected result of the entry on the input; computed on first use.
   const ExpectedPairs& expectation(const Algorithm& entry, std::size_t input) {
     const Reference reference(entry, benchmark_.known, boxes_of(0).size(),
                               benchmark_.effort.definition_boxes);
@@ -272,9 +271,9 @@ class FindCase {
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<FindParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<ExpectedPairs>> expectations_;
-  std::vector<Pair> pairs_;               // of the last call; its memory serves all
+  std::vector<Pair> pairs_;               // of the last call; the memory is reused for all
   std::optional<Statistics> statistics_;  // likewise
-  std::size_t touched_ = 0;               // how many pairs of that memory were written to
+  std::size_t touched_ = 0;               // how many pairs of that memory have been written to
   CacheState caches_;
   Stopwatch watch_;
   std::conditional_t<std::is_same_v<Real, float>, Floor<D>, NoFloor> floor_;

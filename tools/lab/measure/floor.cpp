@@ -1,5 +1,5 @@
-// The floor: what a search cannot do without, timed beside the searches. A sort, a gather and the pairs
-// written.
+// The lower bound of a search's time ("floor" in results): a sort, a gather and writing the pairs, timed
+// beside the searches.
 #include "lab/measure/floor.hpp"
 
 #include <bit>
@@ -15,7 +15,7 @@ constexpr std::size_t digit(std::uint64_t key, int at) {
   return key >> (32 + at * digit_bits) & (buckets - 1);
 }
 
-/// Orders as `value` does; -0.0 and 0.0 have the same.
+/// Maps a float to an integer with the same order; -0.0 and 0.0 map to the same one.
 std::uint32_t sort_key(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
   return bits ^ (static_cast<std::uint32_t>(static_cast<std::int32_t>(bits) >> 31) | 0x80000000U);

@@ -1,6 +1,6 @@
-// The global operator new and delete, replaced by ones that can count. The forms for arrays and the ones that
-// do not throw end in the ones replaced here, as the standard says. BROADSIDE_COUNTS_ALLOCATIONS comes from
-// the build: 0 where malloc cannot tell a block's size, or where a sanitizer has its own operator new.
+// Replaces the global operator new and delete by versions that can count. The array and nothrow forms call
+// the ones replaced here, as the C++ standard requires. The build sets BROADSIDE_COUNTS_ALLOCATIONS: 0 if
+// malloc cannot tell a block's size, or if a sanitizer has its own operator new.
 #include "lab/measure/memory.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void count_given_back(void* block) noexcept {
   held.fetch_sub(static_cast<std::int64_t>(malloc_usable_size(block)), std::memory_order_relaxed);
 }
 
-/// Memory from `allocate`, which returns null where there is none: the loop that operator new is bound to.
+/// Memory from `allocate`, which returns null on failure: the new-handler loop that operator new must have.
 template <typename Allocate>
 void* take(const Allocate& allocate) {
   while (true) {
@@ -72,8 +72,8 @@ std::optional<Allocation> AllocationMeter::read() const noexcept {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  // Nothing goes back to the system at the heap's end, and large blocks come from the heap as well, where
-  // they are used again.
+  // Never returns memory at the heap's end to the system, and takes large blocks from the heap as well, where
+  // they are reused.
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   mallopt(M_MMAP_MAX, 0);
 #endif
@@ -86,13 +86,13 @@ void CacheState::settle(std::span<const std::byte> input) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < memory_.size(); i += line / sizeof(std::uint64_t)) sum += ++memory_[i];
   for (std::size_t i = 0; i < input.size(); i += line) sum += std::to_integer<std::uint64_t>(input[i]);
-  // Kept, so that no compiler leaves the reading out.
+  // Stored, so that the compiler cannot remove the reads.
   memory_[1] = sum;
 }
 
 }  // namespace broadside::lab
 
-// Weak, so that a program may have operators of its own, as the tests of memory do.
+// Weak, so that a program may define its own operators, as the tests of memory do.
 #if BROADSIDE_COUNTS_ALLOCATIONS
 [[gnu::weak]] void* operator new(std::size_t size) {
   return broadside::lab::take([size] { return std::malloc(std::max<std::size_t>(size, 1)); });
@@ -100,7 +100,7 @@ void CacheState::settle(std::span<const std::byte> input) {
 
 [[gnu::weak]] void* operator new(std::size_t size, std::align_val_t alignment) {
   const auto align = static_cast<std::size_t>(alignment);
-  // aligned_alloc wants a multiple of the alignment.
+  // aligned_alloc requires a multiple of the alignment.
   const std::size_t whole = std::max((size + align - 1) / align * align, align);
   return broadside::lab::take([=] { return std::aligned_alloc(align, whole); });
 }

@@ -1,4 +1,4 @@
-// Memory while something is measured: counted allocations, freed memory kept, caches in the same state.
+// Memory during measurements: counts allocations, keeps freed memory, and puts caches into the same state.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 
 namespace broadside::lab {
 
-/// Memory taken through operator new while a block ran.
+/// Memory allocated through operator new during a block.
 struct Allocation {
-  std::int64_t kept;  ///< bytes taken and not given back; negative if older memory was given back
-  std::int64_t peak;  ///< the most that was held at one moment above the level at the start
+  std::int64_t kept;  ///< bytes allocated and not freed; negative if older memory was freed
+  std::int64_t peak;  ///< maximum above the level at the start
 };
 
-/// Counts what all threads allocate while it exists. Only one may exist at a time. While none does, an
-/// allocation costs what it always did.
+/// Counts the allocations of all threads during its lifetime. Only one may exist at a time. Without one, an
+/// allocation costs no more than usual.
 class AllocationMeter {
  public:
   AllocationMeter() noexcept;
@@ -24,13 +24,13 @@ class AllocationMeter {
   AllocationMeter(const AllocationMeter&) = delete;
   AllocationMeter& operator=(const AllocationMeter&) = delete;
 
-  /// What was counted so far. Empty in builds that do not count: a sanitizer has its own operator new.
+  /// The counts so far. Empty in builds that do not count, because a sanitizer has its own operator new.
   std::optional<Allocation> read() const noexcept;
 };
 
-/// Has the process keep memory that is freed, from now on. A later allocation then costs no page faults,
-/// whichever algorithm took that memory first; otherwise the first to need memory pays for all that follow.
-/// Where the C library is not glibc it does nothing.
+/// Makes the process keep freed memory from now on. Later allocations then cause no page faults, whichever
+/// algorithm used that memory first; otherwise the first algorithm would pay for all that follow. Does
+/// nothing without glibc.
 void keep_freed_memory();
 
 /// The processor's caches.
@@ -38,12 +38,12 @@ class CacheState {
  public:
   CacheState();
 
-  /// Empties the first two levels, as the rest of an engine's frame does, and reads `input`, which an engine
-  /// has just written.
+  /// Evicts the first two cache levels, as the rest of an engine's frame does, and reads `input`, which an
+  /// engine has just written.
   void settle(std::span<const std::byte> input);
 
  private:
-  std::vector<std::uint64_t> memory_;  // more than the second level holds
+  std::vector<std::uint64_t> memory_;  // larger than the second level
 };
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// Ratios of times that were measured in the same rounds, with intervals.
+// Ratios of times measured in the same rounds, with confidence intervals.
 #include "lab/measure/paired_ratio.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t replicate_count = 1'000;
 
-/// The median of numbers that may be put in another order.
+/// The median of numbers, which it may reorder.
 double median_in_place(std::vector<double>& numbers) {
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
   std::nth_element(numbers.begin(), middle, numbers.end());
@@ -104,7 +104,7 @@ void add_ratios(CaseResult& result) {
       return paired_ratio(result.of, measurement, *other);
     };
     measurement.to_fastest = ratio_to(fastest);
-    // Most often our best is the fastest of all, and a ratio takes a thousand samples.
+    // Reuses a ratio, which takes a thousand bootstrap samples: most often our best is the fastest of all.
     measurement.to_best_own = own == fastest ? measurement.to_fastest : ratio_to(own);
     measurement.to_fastest_peer = peer == fastest ? measurement.to_fastest : ratio_to(peer);
   }
@@ -112,11 +112,11 @@ void add_ratios(CaseResult& result) {
 
 MeanRatio geometric_mean(std::span<const RatiosBySeed> pairs) {
   std::vector<double> medians;
-  std::vector<double> sums(replicate_count, 0);  // of logarithms, in each sample of the bootstrap
+  std::vector<double> sums(replicate_count, 0);  // of logarithms, in each bootstrap sample
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     medians.push_back(pairs[i].median());
     std::vector<double> replicates(replicate_count, medians.back());
-    // Each pair draws numbers of its own: what they have in common would not average out.
+    // Each pair has its own random numbers: errors common to all pairs would not average out.
     if (pairs[i].rounds() >= min_rounds_of_interval) replicates = pairs[i].replicates(replicate_count, i + 1);
     for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += std::log(replicates[j]);
   }

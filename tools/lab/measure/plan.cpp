@@ -1,4 +1,4 @@
-// Which cases a comparison consists of. The two plans are the two lists below.
+// The cases of a comparison. The two plans are the two lists below.
 #include "lab/measure/plan.hpp"
 
 #include <algorithm>
@@ -16,10 +16,10 @@ constexpr std::size_t default_boxes = 10'000;
 constexpr std::size_t standard_frames = 20;
 constexpr double default_moving = 0.1;
 
-/// A part of a plan: every combination, in both dimensions where the scene has them.
+/// A part of a plan: all combinations, in each dimension that the scene has.
 struct PlanPart {
   std::vector<std::string> scenes;
-  std::vector<std::size_t> boxes;  // 0: the scene's own
+  std::vector<std::size_t> boxes;  // 0: the scene's own number
   std::vector<double> moving = {0};
   std::size_t frames = 0;
 };
@@ -51,8 +51,8 @@ std::vector<PlanPart> long_parts() {
   };
 }
 
-/// What a scene is known to have, before it is made. A scene that is not there is thought to have both
-/// dimensions, so that it is reported once it is to be compared.
+/// Whether a scene has this dimension, before it is made. A missing scene is assumed to have both dimensions,
+/// so that the comparison reports it.
 bool has_dimension(const std::string& scene, int dimension) {
   try {
     return find_scene(scene).scene.has_dimension(dimension);

@@ -1,4 +1,4 @@
-// Which measurements of a case are how fast.
+// Ranks the measurements of a case by time.
 #include "lab/measure/ranking.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace broadside::lab {
 namespace {
 
-/// The fastest of the measurements that `eligible` accepts: of two, the one that is faster in the rounds that
-/// both took part in, as ratios have it.
+/// The fastest of the measurements that `eligible` accepts: of two, the one that is faster in their common
+/// rounds.
 template <typename Eligible>
 const Measurement* fastest_among(const CaseResult& result, const Eligible& eligible) {
   const Measurement* fastest = nullptr;

@@ -1,4 +1,4 @@
-// What the pairs of an algorithm under measurement are compared with.
+// The reference that an algorithm's pairs are compared with.
 #include "lab/measure/reference.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How often a case's algorithms run.
+// How many rounds a case's algorithms run.
 #include "lab/measure/rounds.hpp"
 
 #include <algorithm>
@@ -18,8 +18,7 @@ double sum_of(const std::vector<double>& samples) {
   return std::accumulate(samples.begin(), samples.end(), 0.0);
 }
 
-/// The least time of a first round among the algorithms of a kind, in milliseconds; infinite where there is
-/// none.
+/// The minimum time of a first round among the algorithms of a kind, in milliseconds; infinite without any.
 double min_first_round(std::span<const Measurement> all, AlgorithmKind kind) {
   double min_time = std::numeric_limits<double>::infinity();
   for (const Measurement& measurement : all) {
@@ -61,7 +60,7 @@ std::size_t round_limit(const Measurement& measurement, std::span<const Measurem
   if (measurement.samples_ms.empty()) return no_limit;
   const double own = min_first_round(all, AlgorithmKind::own);
   const double peer = min_first_round(all, AlgorithmKind::peer);
-  // Without a peer, nothing is far behind one; without one of ours, peers alone count.
+  // Without a peer, no algorithm counts as far behind; without one of ours, only peers count.
   const double close = std::max({far_from_seconds * 1e3, effort.far_ratio * peer,
                                  own < std::numeric_limits<double>::infinity() ? effort.far_ratio * own : 0});
   if (round_times(measurement).front() > close) return effort.far_rounds;

@@ -1,6 +1,5 @@
-// How often a case's algorithms run: what is too slow is estimated from a few of the boxes, and which rounds
-// an algorithm takes part in. Algorithms take part in the first rounds, without a gap, so that round r of any
-// two is on the same boxes.
+// How many rounds a case's algorithms run. The time of slow algorithms is estimated from a few of the boxes.
+// Algorithms take part in the first rounds, without gaps, so that round r of any two uses the same boxes.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +14,8 @@
 
 namespace broadside::lab {
 
-/// The order in which `entries` algorithms take their turn in a round: drawn anew for each round, and the
-/// same in each run. No algorithm always runs after the same other one.
+/// The order of `entries` algorithms in a round: random for each round, but the same in each run. No
+/// algorithm always runs after the same other one.
 std::vector<std::size_t> turns(std::size_t entries, std::size_t round);
 
 /// Whether a case that has taken `milliseconds` may play this round: one of the first two, or within the
@@ -27,16 +26,16 @@ bool has_time(const Effort& effort, std::size_t round, double milliseconds);
 inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 /// Whether the algorithm takes part in another round: it has neither failed nor run out of memory, and the
-/// effort or, where there is one, its limit asks for more.
+/// effort and its limit, if it has one, allow more.
 bool has_another_round(const Measurement& measurement, const Effort& effort, std::size_t limit);
 
-/// After the first round: the limit for one of the algorithms that took part in it. Readers need the ratio of
-/// what is close to the fastest, so the rounds are for that. `slow_seconds` is the effort's for searches or
-/// for histories.
+/// After the first round: the limit for an algorithm that took part in it. Readers need the ratios of
+/// algorithms close to the fastest, so most rounds are for these. `slow_seconds` is the effort's for searches
+/// or for histories.
 std::size_t round_limit(const Measurement& measurement, std::span<const Measurement> all,
                         const Effort& effort, double slow_seconds);
 
-/// A time that was not measured.
+/// A time that was extrapolated, not measured.
 struct Estimate {
   double seconds;    ///< for all boxes
   std::size_t from;  ///< the number of boxes that was measured
@@ -46,12 +45,12 @@ struct Estimate {
 /// From this many boxes on, an algorithm is tried on a few of them before it runs on all.
 inline constexpr std::size_t boxes_worth_estimating = 5'000;
 
-/// Whether an algorithm would take longer than `budget` seconds on `boxes` boxes: its estimate if so, empty
-/// if it may run. `seconds_for` measures it on that number of the boxes.
+/// The algorithm's estimated time if it would exceed `budget` seconds on `boxes` boxes; empty if it may run.
+/// `seconds_for` measures it on a given number of the boxes.
 ///
-/// A twentieth of the boxes is measured first. If even quadratic growth from there stays in the budget,
-/// nothing else is; otherwise a fifth, where that is affordable, and the growth between the two says how to
-/// scale: as n^1 at least and n^2 at most, and n^1.8 counts as n^2.
+/// First measures a twentieth of the boxes. If even quadratic growth from there stays within the budget,
+/// measures nothing else. Otherwise measures a fifth, if affordable, and scales by the growth between the
+/// two: at least n^1 and at most n^2, where n^1.8 counts as n^2.
 std::optional<Estimate> estimate_above(double budget, std::size_t boxes,
                                        const std::function<double(std::size_t boxes)>& seconds_for);
 

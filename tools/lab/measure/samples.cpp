@@ -1,4 +1,4 @@
-// What a list of measured times comes to.
+// Statistics of a list of measured times.
 #include "lab/measure/samples.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a list of measured times comes to.
+// Statistics of a list of measured times.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@ namespace broadside::lab {
 /// The middle sample, or the mean of the middle two. Throws std::invalid_argument if there are none.
 double median(std::span<const double> samples);
 
-/// The smallest sample that at least `fraction` of all are not above: 0.99 for p99. Throws
-/// std::invalid_argument if there are none.
+/// The smallest sample such that at least `fraction` of all are not above it: 0.99 for p99. Throws
+/// std::invalid_argument if there are no samples.
 double percentile(std::span<const double> samples, double fraction);
 
 /// The geometric mean of positive numbers. Throws std::invalid_argument if there are none.

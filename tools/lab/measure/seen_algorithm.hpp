@@ -1,5 +1,5 @@
-// SeenAlgorithm: an algorithm with the lab's view of the searcher or follower that a Finder or Tracker makes
-// of it.
+// SeenAlgorithm: an algorithm whose searchers or followers the lab can inspect while a Finder or Tracker uses
+// them.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@
 
 namespace broadside::lab {
 
-/// Not to be copied: the algorithm's factories write to this object.
+/// Not copyable, because the algorithm's factories write to this object.
 class SeenAlgorithm {
  public:
-  /// Of a copy of `algorithm`, whose factories note what they make: searchers for a Finder, or followers for
-  /// a Tracker. Listings record their phases if `records_phases`.
+  /// A copy of `algorithm` whose factories record the objects they make: searchers for a Finder, or followers
+  /// for a Tracker. Listings record their phases if `records_phases`.
   enum class Sees { searchers, followers };
   SeenAlgorithm(Algorithm algorithm, Sees sees, bool records_phases)
       : algorithm_(std::move(algorithm)), records_phases_(records_phases) {
@@ -28,10 +28,10 @@ class SeenAlgorithm {
 
   const Algorithm& algorithm() const noexcept { return algorithm_; }
 
-  /// The structure that a peer's last search has left; null where there is none.
+  /// The structure left by a peer's last search; null if there is none.
   peers::TearDown* structure() const noexcept { return structure_; }
 
-  /// The phases of a listing's last search or frame; null where they are not recorded.
+  /// The phases of a listing's last search or frame; null if they are not recorded.
   const paper::Phases* phases() const noexcept {
     return phased_ != nullptr && records_phases_ ? &phased_->phases() : nullptr;
   }

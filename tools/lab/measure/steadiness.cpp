@@ -12,7 +12,7 @@
 namespace broadside::lab {
 namespace {
 
-/// On a quiet machine up to 1.42.
+/// On a quiet machine, spreads reach up to 1.42.
 constexpr double greatest_spread = 1.5;
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Whether measured times can be trusted: whether others had the processor, and how far samples lie apart.
+// Whether measured times can be trusted: whether other processes used the processor, and the spread of
+// samples.
 #pragma once
 
 #include <chrono>
@@ -13,8 +14,8 @@
 
 namespace broadside::lab {
 
-/// How much of the time since it was made this process has had a processor: 1 for one thread that always
-/// runs, more where several do. Waiting counts as not having one.
+/// The fraction of the time since construction in which this process had a processor: 1 for one thread that
+/// always runs, more for several. Waiting counts as not having one.
 class ProcessorShare {
  public:
   double value() const;
@@ -24,24 +25,23 @@ class ProcessorShare {
   std::clock_t used_ = std::clock();
 };
 
-/// Whether others had the processor for more than a tenth of the time, in a run of one thread.
+/// Whether a run of one thread lacked the processor for more than a tenth of the time.
 bool is_busy(double share);
 
-/// A line that says so where a run of one thread had a processor for less than nine tenths of the time; else
-/// empty.
+/// A warning if a run of one thread had a processor for less than nine tenths of the time; otherwise empty.
 std::string busy_hint(double share);
 
-/// The median sample over the least one, where every `period`-th sample is of the same boxes: the median over
-/// all boxes that were sampled twice, so that a few stalls do not count. Empty with fewer than three
-/// repetitions.
+/// The median sample over the minimum, for samples of the same boxes (every `period`-th sample is); then the
+/// median over all boxes that were sampled at least twice, so that a few stalls do not count. Empty with
+/// fewer than three repetitions.
 std::optional<double> spread(std::span<const double> samples, std::size_t period);
 
-/// Whether something else slowed the measurement down, so far as its samples tell: its spread() is over 1.5.
-/// False where there are too few repetitions to tell: other boxes of a scene, or other frames, take other
-/// times by themselves. docs/benchmarking.md says why so much.
+/// Whether something else slowed the measurement down, as far as its samples show: its spread() is above 1.5.
+/// False if there are too few repetitions to tell: times also differ between the boxes of different seeds or
+/// frames. docs/benchmarking.md explains the threshold.
 bool is_unsteady(const Case& of, const Measurement& measurement);
 
-/// How many measurements have times, and how many of them are unsteady.
+/// The number of measurements with times, and how many of them are unsteady.
 struct Steadiness {
   std::size_t measurements = 0;
   std::size_t unsteady = 0;
@@ -54,11 +54,11 @@ struct Steadiness {
   friend bool operator==(const Steadiness&, const Steadiness&) = default;
 };
 
-/// Of one case.
+/// For one case.
 Steadiness steadiness_of(const CaseResult& result);
 
-/// A line for the end of tables that says how many are unsteady and what to do, `more` at last;
-/// empty where none is.
+/// A line for the end of tables that says how many measurements are unsteady and what to do, followed by
+/// `more`; empty if none is unsteady.
 std::string hint_of(const Steadiness& steadiness, std::string_view more);
 
 }  // namespace broadside::lab

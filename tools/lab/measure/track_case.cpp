@@ -1,4 +1,4 @@
-// Measures trackers: every algorithm over the same histories, frame by frame in turns, all events checked.
+// Measures trackers: every algorithm on the same histories, frame by frame in turns, with all events checked.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -40,12 +40,12 @@ struct TrackParticipant {
   std::vector<double> frames_ms{};      // of this pass
   std::vector<double> builds_ms{};      // the first frames of all timed passes
   std::vector<paper::Phases> phases{};  // of this pass
-  std::optional<Statistics> counts{};   // the sum of this pass, but for the first frame
+  std::optional<Statistics> counts{};   // the sum of this pass, without the first frame
   std::int64_t pairs = 0;
-  Allocation memory{0, 0};  // taken by the tracker since it was made
+  Allocation memory{0, 0};  // allocated by the tracker since it was made
   std::size_t max_rounds = no_limit;
-  bool plays = false;    // in the current pass
-  bool is_long = false;  // some of its frames are long
+  bool plays = false;    // takes part in the current pass
+  bool is_long = false;  // has long frames
 };
 
 template <int D, typename Real>
@@ -60,7 +60,7 @@ class TrackCase {
         extremes_.boxes = std::max(extremes_.boxes, step.size);
       }
     }
-    // What checking a whole history may cost, in searches.
+    // The maximum cost of checking a whole history, in searches.
     constexpr double searches = 4;
     const auto boxes = static_cast<double>(benchmark.effort.definition_boxes);
     is_by_definition_ = tests_by_definition(inputs[0]) <= searches * boxes * boxes / 2;
@@ -99,7 +99,7 @@ class TrackCase {
       return seconds_of(entry, thinned(history, count, 2));
     };
     attempt(measurement, [&]() -> std::string {
-      // A history cannot be left half way, so that its frames share the budget.
+      // A history cannot stop half way, so its frames share the budget.
       if (const auto estimate = estimate_above(budget, case_.boxes, history_seconds))
         skip(measurement, *estimate, case_.frames + 1, budget);
       return {};
@@ -107,8 +107,8 @@ class TrackCase {
     return measurement.reason.empty();
   }
 
-  /// Seconds for as many frames as the case has, by a history's first frame and the mean of its others; of
-  /// two tries the shorter one where they are short, since those are easily disturbed.
+  /// Seconds for all of the case's frames, extrapolated from a history's first frame and the mean of its
+  /// others. Short times, which are easily disturbed, are measured twice, and the shorter one counts.
   double seconds_of(const Entry& entry, const History<D, Real>& history) {
     constexpr double is_short = 0.02;  // for all frames
     double min_time = INFINITY;
@@ -142,7 +142,8 @@ class TrackCase {
     return watch.milliseconds();
   }
 
-  /// Has every participant follow the first input once, untimed: it takes its memory, which is counted.
+  /// Runs every participant over the first input once, untimed, so that it allocates its memory, which is
+  /// counted.
   void warm_up() {
     for (TrackParticipant<D, Real>& participant : participants_) participant.plays = true;
     pass(0, 0, true);
@@ -158,7 +159,7 @@ class TrackCase {
     }
   }
 
-  /// Lets every participant that takes part in this round follow the same input; false where none does.
+  /// Runs every participant of this round over the same input; false if there are none.
   bool play(std::size_t round) {
     for (TrackParticipant<D, Real>& participant : participants_)
       participant.plays =
@@ -182,8 +183,8 @@ class TrackCase {
     return true;
   }
 
-  /// Lets the participants that play follow an input from its first frame to its last, frame by frame in
-  /// turns. `number` is the pass's, by which turns are drawn.
+  /// Runs the playing participants over an input from its first frame to its last, frame by frame in turns.
+  /// The order of turns depends on `number`, the number of the pass.
   void pass(std::size_t input, std::size_t number, bool counts_memory) {
     const History<D, Real>& history = inputs_[input];
     std::vector<Box<D, Real>> boxes = history.boxes;
@@ -244,7 +245,7 @@ class TrackCase {
     events_.ended.resize(touched_);
   }
 
-  /// Runs one frame and adds the memory it takes to the participant's.
+  /// Runs one frame and adds the memory it allocates to the participant's.
   template <typename Run>
   double counted(TrackParticipant<D, Real>& participant, const Run& run) {
     const AllocationMeter meter;
@@ -258,14 +259,14 @@ class TrackCase {
     return milliseconds;
   }
 
-  /// Notes which events there are while warming up.
+  /// During the warm-up: adds the frame's events to the hash and to the number of pairs.
   void note(TrackParticipant<D, Real>& participant) {
     participant.hasher.add(events_);
     participant.pairs +=
         static_cast<std::int64_t>(events_.begun.size()) - static_cast<std::int64_t>(events_.ended.size());
   }
 
-  /// Notes the phases and counts of one frame after the first.
+  /// Stores the phases and counts of one frame after the first.
   void note_frame(TrackParticipant<D, Real>& participant) {
     if (const paper::Phases* const phases = participant.seen->phases()) participant.phases.push_back(*phases);
     if (!statistics_) return;
@@ -274,7 +275,7 @@ class TrackCase {
     participant.counts->references += statistics_->references;
   }
 
-  /// Notes the counts of a mean frame of the pass that has ended.
+  /// Stores the mean counts per frame of the finished pass.
   void note_statistics(TrackParticipant<D, Real>& participant, std::size_t input) {
     if (!participant.counts) return;
     const std::size_t frames = inputs_[input].steps.size();
@@ -285,7 +286,7 @@ class TrackCase {
     if (input == 0) participant.measurement->statistics = mean;
   }
 
-  /// What the participant must report on the input; computed when first asked for.
+  /// The expected events of the participant on the input; computed on first use.
   const ExpectedEvents& expectation(TrackParticipant<D, Real>& participant, std::size_t input) {
     const Reference reference(*participant.entry->algorithm, benchmark_.known, case_.boxes,
                               is_by_definition_ ? case_.boxes : 0);
@@ -302,7 +303,7 @@ class TrackCase {
     return expectations_.back()->events;
   }
 
-  /// What a reference says otherwise than another one on the same input; empty if they agree.
+  /// The difference between two references on the same input; empty if they agree.
   std::string disagreement(const Reference& reference, const ExpectedEvents& events,
                            const InputEvents& other) const {
     for (std::size_t frame = 0; frame < events.frames.size(); ++frame) {
@@ -324,9 +325,9 @@ class TrackCase {
   std::vector<Measurement> measurements_;  // of the entries, in their order
   std::vector<TrackParticipant<D, Real>> participants_;
   std::vector<std::unique_ptr<InputEvents>> expectations_;
-  FrameEvents events_;                    // of the last update; its memory serves all
+  FrameEvents events_;                    // of the last update; the memory is reused for all
   std::optional<Statistics> statistics_;  // likewise
-  std::size_t touched_ = 0;               // how many events of that memory were written to
+  std::size_t touched_ = 0;               // how many events of that memory have been written to
   CacheState caches_;
   Stopwatch watch_;
 };

@@ -27,7 +27,8 @@ template <int D>
 using BoostPoint = geometry::model::point<float, D, geometry::cs::cartesian>;
 template <int D>
 using BoostBox = geometry::model::box<BoostPoint<D>>;
-// Of its parameters a packed tree takes only how many values a node holds: as in Boost's own benchmark.
+// The only parameter that matters to a packed tree is the number of values per node: the same as in Boost's
+// own benchmark.
 template <int D>
 using BoostTree = geometry::index::rtree<std::pair<BoostBox<D>, std::uint32_t>, geometry::index::rstar<16>>;
 
@@ -54,8 +55,8 @@ class BoostRtree final : public Searcher<D>, public TearDown {
     values_.reserve(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       values_.push_back({boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i)});
-    tree_.emplace(values_);  // made of a range, it is packed
-    // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
+    tree_.emplace(values_);  // constructed from a range, the tree is packed
+    // In the order of the tree's leaves, so that a query finds the nodes of the previous one in the cache.
     for (const Value& value : *tree_) {
       const auto report = [&pairs, i = value.second](const Value& other) {
         if (other.second > i) pairs.add(BoxId{i}, BoxId{other.second});
@@ -116,7 +117,7 @@ Algorithm boost_rtree() {
       .version = "Boost " + std::to_string(version / 100'000) + "." + std::to_string(version / 100 % 1000),
       .in_2d = {.searcher = make_strategy<BoostRtree<2>>},
       .in_3d = {.searcher = make_strategy<BoostRtree<3>>},
-      // It compares their centres.
+      // It compares the boxes' centres.
       .limits = {.infinite_boxes = false, .max_coordinate = std::numeric_limits<float>::max()},
   };
 }

@@ -1,4 +1,4 @@
-// Box2D's b2BroadPhase: a balanced binary tree of boxes with margins, filled one by one.
+// Box2D's b2BroadPhase: a balanced binary tree of enlarged boxes, inserted one by one.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,9 +19,9 @@
 namespace broadside::lab::peers {
 namespace {
 
-/// The power of two that makes a typical box half a metre to a metre long, as the tree's margins of 0.1 m ask
-/// for, as far as no coordinate overflows: recorded scenes keep the size that they were made in. What it
-/// rounds (denormals) keeps its order, so that no pair is lost.
+/// The power of two that scales a typical box to half a metre to a metre, which suits the tree's margins of
+/// 0.1 m, as far as no coordinate overflows. Recorded scenes keep their original scale. Rounding (of
+/// denormals) keeps the order of coordinates, so no pair is lost.
 float scale_of(std::span<const Box2> boxes) {
   float greatest = 0;
   for (const Box2& box : boxes) {
@@ -29,10 +29,12 @@ float scale_of(std::span<const Box2> boxes) {
       if (!std::isinf(at)) greatest = std::max(greatest, std::abs(at));
     }
   }
-  constexpr int greatest_exponent = 100;  // products of two lengths overflow, and only make a worse tree
+  constexpr int greatest_exponent = 100;  // a product of two lengths may overflow, which only makes the tree
+                                          // worse
   const int wanted = -1 - std::ilogb(typical_extent(boxes));
   const int max_scale_exponent = greatest > 0 ? greatest_exponent - std::ilogb(greatest) : greatest_exponent;
-  return std::ldexp(1.0f, std::clamp(std::min(wanted, max_scale_exponent), -greatest_exponent, greatest_exponent));
+  return std::ldexp(1.0f,
+                    std::clamp(std::min(wanted, max_scale_exponent), -greatest_exponent, greatest_exponent));
 }
 
 b2AABB scaled(const Box2& box, float scale) {
@@ -59,7 +61,7 @@ class Box2dSearcher final : public Searcher<2>, public TearDown {
   void tear_down() override { broad_phase_.reset(); }
 
  private:
-  /// What b2BroadPhase::UpdatePairs calls: margins make more pairs than there are.
+  /// The callback of b2BroadPhase::UpdatePairs; margins give more pairs than overlap.
   struct PairReport {
     std::span<const Box2> boxes;
     CallbackSink pairs;
@@ -74,15 +76,15 @@ class Box2dSearcher final : public Searcher<2>, public TearDown {
   std::optional<b2BroadPhase> broad_phase_;  // of the last search
 };
 
-/// Follows b2ContactManager: pairs of fat boxes are contacts, which are looked at again in every frame; the
-/// broad phase tells those of boxes that left their margins.
+/// Works like b2ContactManager: pairs of enlarged boxes are contacts, which are tested again in every frame;
+/// the broad phase reports the contacts of boxes that left their margins.
 class Box2dFollower final : public Follower<2> {
  public:
   std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
     if (change.rebuild) build(change);
     moved_.assign(change.now.size(), 0);
     proxies_.resize(std::max(proxies_.size(), change.now.size()), b2BroadPhase::e_nullProxy);
-    // Removals first: each looks through the list of what has moved.
+    // Removals first: each searches the list of moved proxies.
     for (const BoxId id : change.changed) {
       if (!is_present(change.now[index(id)])) remove(id);
     }
@@ -97,7 +99,7 @@ class Box2dFollower final : public Follower<2> {
       };
       if (either(change.flags)) {
         change.report(pair.first, pair.second, begun, ended);
-        // The broad phase tells the contacts of what it moved anew.
+        // The broad phase reports the contacts of the proxies that it moved.
         if (either(moved_)) continue;
       }
       *kept++ = pair;
@@ -162,8 +164,8 @@ class Box2dFollower final : public Follower<2> {
     moved_[index(id)] = !(fat.lowerBound == fat_now.lowerBound && fat.upperBound == fat_now.upperBound);
   }
 
-  /// What b2Fixture hands on, by which the tree predicts motion: the step of the centre; or none where a box
-  /// moved farther than its own size, since it was put there, as b2Body::SetTransform does.
+  /// The displacement that b2Fixture passes to the tree, to predict motion: the step of the centre. Zero if
+  /// the box moved farther than its own size, because it was then placed, as by b2Body::SetTransform.
   static b2Vec2 displacement(const b2AABB& before, const b2AABB& now) {
     const b2Vec2 step = now.GetCenter() - before.GetCenter();
     const b2Vec2 size = now.upperBound - now.lowerBound;
@@ -174,7 +176,7 @@ class Box2dFollower final : public Follower<2> {
   std::optional<b2BroadPhase> broad_phase_;
   float scale_ = 1;
   std::vector<std::int32_t> proxies_;  // by place
-  std::vector<std::uint8_t> moved_;    // by place: whether the tree holds the box elsewhere than before
+  std::vector<std::uint8_t> moved_;    // by place: whether the tree moved the box's proxy
   std::vector<Pair> contacts_;
 };
 

@@ -1,4 +1,4 @@
-// Bullet's bt32BitAxisSweep3: sorted ends of boxes on three axes, kept from frame to frame.
+// Bullet's bt32BitAxisSweep3: sorted end points of boxes on three axes, kept from frame to frame.
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 
 #include "lab/peers/bullet_proxies.hpp"
@@ -22,7 +22,7 @@ std::unique_ptr<btBroadphaseInterface> make_sweep(std::span<const Box<D>> boxes,
     min.setMin(bullet_point(box.min));
     max.setMax(bullet_point(box.max));
   }
-  // Room to move in; what leaves it is still found, though at a higher cost. No axis may be without extent.
+  // Room to move in; boxes beyond it are still found, at a higher cost. Every axis needs an extent.
   const btVector3 room = (max - min) * btScalar(0.25) + btVector3(1, 1, 1);
   constexpr bool no_rays = true;
   return std::make_unique<bt32BitAxisSweep3>(min - room, max + room, max_boxes, nullptr, no_rays);

@@ -1,4 +1,5 @@
-// Bullet's dynamic tree of boxes: btDbvt joined with itself, and btDbvtBroadphase, which keeps one in motion.
+// Bullet's dynamic bounding volume tree: btDbvt joined with itself, and btDbvtBroadphase, which keeps one for
+// moving boxes.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -42,8 +43,8 @@ class BulletDbvt final : public Searcher<D>, public TearDown {
   btDbvt tree_;  // of the last search
 };
 
-/// Bullet makes moving boxes larger by 0.05, being made for boxes of about 1: by a twentieth of what is usual
-/// here.
+/// Bullet enlarges moving boxes by 0.05, for boxes of size about 1: this uses a twentieth of the typical
+/// extent.
 template <int D>
 float margin_for(std::span<const Box<D>> boxes) {
   std::vector<float> sides;
@@ -56,11 +57,11 @@ float margin_for(std::span<const Box<D>> boxes) {
   return *middle / 20;
 }
 
-/// When the pairs of boxes that moved are looked for.
+/// When the pairs of moved boxes are searched for.
 enum class Collide { at_once, deferred, by_motion };
 
-/// With a margin of its own, where Bullet has one for the whole program, and with its proxies, which Bullet
-/// leaves to its caller to take out one by one.
+/// Has its own margin, where Bullet has one for the whole program, and frees its proxies, which Bullet leaves
+/// to the caller to remove one by one.
 class OwnDbvt final : public btDbvtBroadphase {
  public:
   OwnDbvt(float margin, Collide collide) : margin_(margin), collide_(collide) {
@@ -82,7 +83,7 @@ class OwnDbvt final : public btDbvtBroadphase {
     if (rested || m_updates_done != updates) ++left_margin_;
   }
 
-  /// Where many boxes left their margins in this frame, many will in the next one.
+  /// If many boxes left their margins in this frame, many will in the next one.
   void calculateOverlappingPairs(btDispatcher* dispatcher) override {
     btDbvtBroadphase::calculateOverlappingPairs(dispatcher);
     const int boxes = m_sets[DYNAMIC_SET].m_leaves + m_sets[FIXED_SET].m_leaves;
@@ -91,12 +92,12 @@ class OwnDbvt final : public btDbvtBroadphase {
   }
 
  private:
-  // The fraction of the boxes from which on deferred is as fast or faster (docs/peers.md).
+  // The fraction of the boxes from which deferred search is at least as fast (docs/peers.md).
   static constexpr double many = 0.1;
 
   float margin_;
   Collide collide_;
-  int left_margin_ = 0;  // boxes, since the last search
+  int left_margin_ = 0;  // number of boxes, since the last search
 };
 
 template <int D>
@@ -134,7 +135,7 @@ Algorithm bullet_dbvt() {
                 .followers = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<2>}}},
       .in_3d = {.searcher = make_strategy<BulletDbvt<3>>,
                 .followers = {{.name = "btDbvtBroadphase", .make = make_dbvt_follower<3>}}},
-      // Moving boxes are made larger, and their centres compared.
+      // Moving boxes are enlarged, and their centres compared.
       .limits = {.infinite_boxes = false, .max_coordinate = 1e30},
       .own_allocator = true,
   };

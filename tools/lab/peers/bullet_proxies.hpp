@@ -1,4 +1,4 @@
-// Boxes in one of Bullet's broad phases, whose pairs are those in its cache.
+// Boxes in one of Bullet's broad phases, whose pair cache gives the pairs.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ inline BoxId id_in(const void* data) { return BoxId(std::bit_cast<std::uintptr_t
 /// Such as "Bullet 3.24".
 std::string bullet_version();
 
-/// Makes an empty broad phase, which frees its proxies, for `boxes` and at most `most` boxes.
+/// Makes an empty broad phase, which frees its proxies, for `boxes` and at most `max_boxes` boxes.
 template <int D>
 using MakeBroadphase =
     std::function<std::unique_ptr<btBroadphaseInterface>(std::span<const Box<D>> boxes, unsigned max_boxes)>;
@@ -46,7 +46,7 @@ using MakeBroadphase =
 template <int D>
 class BulletProxies final : public Proxies<D> {
  public:
-  /// `bounded` if the broad phase can hold no more boxes than it was made for.
+  /// `bounded` if the broad phase cannot hold more boxes than it was made for.
   BulletProxies(MakeBroadphase<D> make, bool bounded) : make_(std::move(make)), bounded_(bounded) {}
 
   void clear(std::span<const Box<D>> boxes) override {
@@ -74,7 +74,7 @@ class BulletProxies final : public Proxies<D> {
 
   void collect(std::span<const Box<D>> boxes, std::span<const std::uint8_t> flags, PairSink& pairs) override {
     broadphase_->calculateOverlappingPairs(nullptr);
-    // The cache holds pairs of boxes that it knows rounded or made larger, and some that ended a while ago.
+    // The cache has pairs of rounded or enlarged boxes, and some that no longer overlap.
     btOverlappingPairCache& cache = *broadphase_->getOverlappingPairCache();
     const btBroadphasePair* const cached = cache.getOverlappingPairArrayPtr();
     for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
@@ -90,7 +90,7 @@ class BulletProxies final : public Proxies<D> {
   bool bounded_;
   unsigned max_boxes_ = 0;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
-  std::vector<btBroadphaseProxy*> proxies_;  // by place; null where there is no box
+  std::vector<btBroadphaseProxy*> proxies_;  // by place; null if there is no box
 };
 
 }  // namespace broadside::lab::peers

@@ -1,4 +1,4 @@
-// Takes pairs from a library's callback.
+// Receives pairs from a library's callback.
 #pragma once
 
 #include <exception>
@@ -7,13 +7,13 @@
 
 namespace broadside::lab::peers {
 
-/// Writes pairs to a sink from within a library's callback. What the sink throws is kept until the library
-/// has returned: an exception must not unwind C code or a traversal half done.
+/// Writes pairs to a sink from within a library's callback. Stores an exception of the sink until the library
+/// has returned: an exception must not unwind through C code or an unfinished traversal.
 class CallbackSink {
  public:
   explicit CallbackSink(PairSink& pairs) : pairs_(pairs) {}
 
-  /// Writes the pair unless the sink threw before; whether it could be written.
+  /// Writes the pair, unless the sink threw earlier; returns whether it was written.
   bool add(BoxId a, BoxId b) noexcept {
     if (thrown_) return false;
     try {
@@ -24,7 +24,7 @@ class CallbackSink {
     return !thrown_;
   }
 
-  /// Throws what the sink threw, if it did.
+  /// Rethrows the sink's exception, if there was one.
   void finish() const {
     if (thrown_) std::rethrow_exception(thrown_);
   }

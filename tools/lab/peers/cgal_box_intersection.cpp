@@ -15,9 +15,9 @@
 namespace broadside::lab::peers {
 namespace {
 
-/// The cutoff that is fastest or within a third of it for 1,000 to 1,000,000 boxes, where cutoffs from 10 to
-/// 3200 were measured (docs/peers.md): the sweep costs a box its neighbours along one axis, the split the
-/// depth of the trees.
+/// The cutoff that is fastest, or within a third of the fastest, for 1,000 to 1,000,000 boxes, among measured
+/// cutoffs from 10 to 3200 (docs/peers.md). Sweeping costs a box its neighbours along one axis, splitting
+/// costs it the depth of the trees.
 std::ptrdiff_t cutoff_for(std::size_t boxes) {
   return 4 + static_cast<std::ptrdiff_t>(4 * std::sqrt(static_cast<double>(boxes)));
 }
@@ -32,7 +32,7 @@ class CgalBoxIntersection final : public Searcher<D> {
     const std::span<const Box<D>> boxes = input.boxes;
     boxes_.clear();
     boxes_.reserve(boxes.size());
-    const std::array<int, D> axes = axes_by_extent(boxes);  // it sweeps along its first one
+    const std::array<int, D> axes = axes_by_extent(boxes);  // CGAL sweeps along the first axis
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       float min[D];
       float max[D];
@@ -43,7 +43,7 @@ class CgalBoxIntersection final : public Searcher<D> {
       boxes_.emplace_back(min, max, BoxId(i));
     }
     const auto report = [&pairs](const CgalBox& a, const CgalBox& b) { pairs.add(a.info(), b.info()); };
-    // It sorts the boxes themselves; pointers to them, which it takes as well, are slower.
+    // CGAL sorts the boxes themselves; pointers to them, which it accepts as well, are slower.
     CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
                                   cutoff_ > 0 ? cutoff_ : cutoff_for(boxes.size()),
                                   CGAL::Box_intersection_d::CLOSED);
@@ -75,7 +75,7 @@ Algorithm cgal_box_intersection() {
                     .max = 1e9}},
       .in_2d = {.searcher = make_strategy<CgalBoxIntersection<2>>},
       .in_3d = {.searcher = make_strategy<CgalBoxIntersection<3>>},
-      // The least and the greatest float are its ends of the axes.
+      // Its axes end at the lowest and the highest float.
       .limits = {.infinite_boxes = false, .max_coordinate = 3.4e38},
   };
 }

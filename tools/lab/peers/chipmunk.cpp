@@ -28,21 +28,21 @@ struct FreeIndex {
 };
 using ChipmunkIndex = std::unique_ptr<cpSpatialIndex, FreeIndex>;
 
-/// An object in an index. It must not move in memory while it is there.
+/// An object in an index. Must not move in memory while it is there.
 struct ChipmunkObject {
   cpBB bounds;
-  cpVect velocity;  ///< a second
+  cpVect velocity;  ///< per second
   BoxId id;
-  std::uint32_t moved = 0;  ///< the frame in which it moved last
-  bool awake = false;       ///< whether it is in the index for what moves
-  bool listed = false;      ///< whether it is in the list of those awake
+  std::uint32_t moved = 0;  ///< the last frame in which it moved
+  bool awake = false;       ///< whether it is in the index of moving objects
+  bool listed = false;      ///< whether it is in the list of awake objects
 };
 
-/// What a cpSpatialIndexBBFunc must do for a ChipmunkObject.
+/// The cpSpatialIndexBBFunc of a ChipmunkObject.
 cpBB bounds_of(void* object) { return static_cast<ChipmunkObject*>(object)->bounds; }
 
-/// Makes an empty index that suits `boxes`; for objects that move or for one search. Where there is an
-/// index of resting objects, which must outlive it, moving objects are searched in that one, too.
+/// Makes an empty index that suits `boxes`, for moving objects or for one search. If there is an index of
+/// resting objects, which must outlive it, moving objects are also searched for there.
 using MakeIndex = ChipmunkIndex (*)(std::span<const Box2> boxes, bool moving, cpSpatialIndex* resting);
 
 ChipmunkObject object_of(const Box2& box, BoxId id) {
@@ -51,7 +51,7 @@ ChipmunkObject object_of(const Box2& box, BoxId id) {
 
 cpHashValue hash_of(const ChipmunkObject& object) { return index(object.id); }
 
-/// What a search hands through to its callback: margins and cells tell more than the overlapping pairs.
+/// The context of a search's callback: margins and cells give more than the overlapping pairs.
 struct PairQuery {
   std::span<const Box2> boxes;
   CallbackSink pairs;
@@ -64,7 +64,7 @@ struct PairQuery {
     return id;
   }
 
-  /// Likewise for a search for each of the boxes, which reports every pair twice.
+  /// Likewise for one query per box, which reports every pair twice.
   static cpCollisionID take_once(void* first, void* second, cpCollisionID id, void* data) {
     const bool once = static_cast<ChipmunkObject*>(first)->id < static_cast<ChipmunkObject*>(second)->id;
     return once ? take(first, second, id, data) : id;
@@ -98,11 +98,11 @@ class ChipmunkSearcher final : public Searcher<2>, public TearDown {
  private:
   MakeIndex make_;
   std::vector<ChipmunkObject> objects_;
-  ChipmunkIndex index_;  // of the last search; points into them
+  ChipmunkIndex index_;  // of the last search; points into objects_
 };
 
-/// As cpSpace does, with an index for what moves and one for what rests: shapes go to the latter with their
-/// body once it has slept for a while, and the former alone is brought up to date and searched.
+/// Works like cpSpace, with one index for moving and one for resting objects: shapes go to the latter when
+/// their body has slept for a while, and only the former is updated and searched.
 class ChipmunkFollower final : public PeerFollower<2> {
  public:
   explicit ChipmunkFollower(MakeIndex make) : make_(make) {}
@@ -110,7 +110,7 @@ class ChipmunkFollower final : public PeerFollower<2> {
  private:
   static constexpr std::uint32_t frames_until_sleep = 30;  // half a second
 
-  /// The first boxes rest until they move, as the ground does.
+  /// The first boxes rest until they move, like the ground.
   void build(std::span<const Box2> boxes, std::span<const Box2> now) override {
     moving_.reset();
     resting_ = make_(now, true, nullptr);
@@ -155,7 +155,7 @@ class ChipmunkFollower final : public PeerFollower<2> {
     starts_ = false;
   }
 
-  /// The index of what rests knows no pairs within: each box is looked up.
+  /// The index of resting objects cannot report its own pairs: looks up each box.
   void find_resting(std::span<const Box2> boxes, PairSink& pairs) {
     PairQuery search{boxes, CallbackSink(pairs)};
     for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -165,7 +165,7 @@ class ChipmunkFollower final : public PeerFollower<2> {
     search.pairs.finish();
   }
 
-  /// Whether the object has no place among those awake any more.
+  /// Whether the object no longer belongs to the awake ones.
   bool falls_asleep(BoxId id, std::span<const Box2> boxes) {
     ChipmunkObject& object = objects_[index(id)];
     if (!is_present(boxes[index(id)])) return !(object.listed = false);
@@ -194,8 +194,8 @@ class ChipmunkFollower final : public PeerFollower<2> {
     return object.awake ? moving_.get() : resting_.get();
   }
 
-  /// The velocity that makes the tree's margin last for some frames: a game has 60 frames a second. What
-  /// moves farther than its own size was put elsewhere and has no velocity.
+  /// The velocity that makes the tree's margin last for some frames, at 60 frames per second. A box that
+  /// moves farther than its own size was placed there, and has no velocity.
   static cpVect velocity(const Box2& before, const Box2& now) {
     constexpr double frames_per_second = 60;
     const auto centre = [](const Box2& box, int axis) { return (double{box.min[axis]} + box.max[axis]) / 2; };
@@ -208,11 +208,11 @@ class ChipmunkFollower final : public PeerFollower<2> {
 
   MakeIndex make_;
   std::deque<ChipmunkObject> objects_;  // by place
-  ChipmunkIndex resting_;               // points into them
-  ChipmunkIndex moving_;                // likewise, and to resting_
-  std::vector<BoxId> awake_;            // those in moving_, and some that were removed from it
+  ChipmunkIndex resting_;               // points into objects_
+  ChipmunkIndex moving_;                // points into objects_ and resting_
+  std::vector<BoxId> awake_;            // objects in moving_, and some that were removed from it
   std::uint32_t frame_ = 0;
-  bool starts_ = true;  // there was nothing before: all that is there is in resting_
+  bool starts_ = true;  // there was nothing before: all boxes are in resting_
 };
 
 /// The description of an index that `make` makes: a searcher that fills a new one in each call, and a
@@ -235,7 +235,7 @@ Algorithm chipmunk_index(MakeIndex make) {
 
 ChipmunkIndex make_tree(std::span<const Box2>, bool moving, cpSpatialIndex* resting) {
   ChipmunkIndex tree(cpBBTreeNew(bounds_of, resting));
-  // Margins are for what moves.
+  // Margins are for moving boxes.
   if (moving)
     cpBBTreeSetVelocityFunc(tree.get(),
                             [](void* object) { return static_cast<ChipmunkObject*>(object)->velocity; });
@@ -255,7 +255,7 @@ Algorithm chipmunk_bb_tree() {
 namespace {
 
 ChipmunkIndex make_hash(std::span<const Box2> boxes, bool, cpSpatialIndex* resting) {
-  // Its manual: cells about as large as the objects, and ten times as many cells as objects.
+  // From its manual: cells about as large as the objects, and ten times as many cells as objects.
   constexpr std::size_t cells_per_box = 10;
   constexpr std::size_t max_cells = 100'000'000;
   const std::size_t cells = std::min(cells_per_box * std::max<std::size_t>(boxes.size(), 1), max_cells);

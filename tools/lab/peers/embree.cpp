@@ -1,5 +1,5 @@
-// Embree: rtcCollide joins a hierarchy of boxes with itself; rays go through it with the boxes as user
-// geometry.
+// Embree: rtcCollide joins a bounding volume hierarchy of boxes with itself; rays traverse it with the boxes
+// as user geometry.
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -25,11 +25,11 @@ struct EmbreeRelease {
   void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
 };
 
-/// A device, scene or geometry that is released with its owner.
+/// A device, scene or geometry, released by its owner.
 template <typename Handle>
 using EmbreeOwned = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
 
-/// A box of 2D lies flat at 0.
+/// A 2D box is flat at z = 0.
 template <int D>
 RTCBounds bounds_of(const Box<D>& box) {
   return {.lower_x = box.min[0],
@@ -61,10 +61,11 @@ class EmbreeCollide final : public Searcher<D> {
     boxes_ = input.boxes;
     pairs_ = &pairs;
     thrown_ = nullptr;
-    // A device with one thread would hold all of the process to one; an arena with one holds what runs in it.
+    // A device with one thread would restrict the whole process to one; an arena with one thread restricts
+    // only the code that runs in it.
     arena_.execute([this] {
-      // Searched once, a hierarchy built fast is worth more than a good one. But the fast builder ends the
-      // program where all boxes are one point.
+      // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
+      // terminates the program if all boxes are one point.
       const Box<D>& first = boxes_.front();
       const bool all_one_point =
           first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
@@ -87,7 +88,7 @@ class EmbreeCollide final : public Searcher<D> {
     *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
   }
 
-  /// Takes pairs of leaves, both ways round; Embree does not promise that their boxes overlap.
+  /// Receives pairs of leaves, in both orders; Embree does not guarantee that their boxes overlap.
   static void report(void* user, RTCCollision* collisions, unsigned count) {
     auto& self = *static_cast<EmbreeCollide*>(user);
     if (self.thrown_) return;
@@ -115,7 +116,7 @@ class EmbreeCollide final : public Searcher<D> {
   EmbreeOwned<RTCDevice> device_;
   EmbreeOwned<RTCScene> scene_;
   EmbreeOwned<RTCGeometry> geometry_;
-  std::span<const Box<D>> boxes_;  // of the search that is going on
+  std::span<const Box<D>> boxes_;  // of the current search
   PairSink* pairs_ = nullptr;
   std::exception_ptr thrown_;
 };
@@ -163,7 +164,7 @@ class EmbreeQueries final : public QueryPeer<3> {
   }
 
  private:
-  /// What the callback gets to see: Embree hands its context on.
+  /// The context that Embree passes to the callback.
   struct RayContext {
     RayContext(const Ray<3>& searched, Answers* found, std::size_t number)
         : ray(searched), answers(found), query(number) {
@@ -171,9 +172,9 @@ class EmbreeQueries final : public QueryPeer<3> {
       for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = 1 / ray.direction[axis];
     }
 
-    RTCIntersectContext context;  // first, so that its address is the search's
+    RTCIntersectContext context;  // first, so that its address is that of the search
     const Ray<3>& ray;
-    Answers* answers;  // of all hits; null for the first one
+    Answers* answers;  // of all hits; null to find the first hit only
     std::size_t query;
     std::array<float, 3> inverse;
   };
@@ -200,7 +201,7 @@ class EmbreeQueries final : public QueryPeer<3> {
     *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
   }
 
-  /// Slabs, with an inverse that was computed once a ray, as fast code does.
+  /// The slab test, with an inverse direction computed once per ray, as in fast code.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const auto& self = *static_cast<const EmbreeQueries*>(arguments->geometryUserPtr);
     const auto& search = *reinterpret_cast<const RayContext*>(arguments->context);
@@ -240,7 +241,7 @@ Algorithm embree_collide() {
       .version = "Embree " RTC_VERSION_STRING,
       .in_2d = {.searcher = make_strategy<EmbreeCollide<2>>},
       .in_3d = {.searcher = make_strategy<EmbreeCollide<3>>},
-      // Beyond 1.844e18 it drops boxes as invalid.
+      // Beyond 1.844e18, Embree drops boxes as invalid.
       .limits = {.infinite_boxes = false, .max_coordinate = 1.8e18},
       .own_allocator = true,
   };

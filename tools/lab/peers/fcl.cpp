@@ -1,5 +1,5 @@
-// FCL's broad-phase managers as searchers: all objects are registered at once, then collide() runs once. They
-// take boxes of 2D as slabs of one thickness.
+// FCL's broad-phase managers as searchers: registers all objects at once, then runs collide() once. 2D boxes
+// become slabs of one thickness.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -32,19 +32,19 @@
 namespace broadside::lab::peers {
 namespace {
 
-/// The depth of a box of 2D. Not none: the trees' Morton codes divide by the extent of all.
+/// The depth of a 2D box. Not 0, because the trees' Morton codes divide by the extent of all boxes.
 constexpr double slab = 1;
 
-/// An object that is nothing but its bounds.
+/// An object with bounds but no geometry.
 class FclObject final : public fcl::CollisionObjectd {
  public:
-  /// What has no geometry can be in a manager and must not be asked for by itself.
+  /// An object without geometry may be in a manager but must not be queried itself.
   explicit FclObject(BoxId id, const std::shared_ptr<fcl::CollisionGeometryd>& geometry = nullptr)
       : fcl::CollisionObject<double>(geometry), id_(id) {}
 
   BoxId id() const { return id_; }
 
-  /// A box of 2D becomes a slab of this depth.
+  /// A 2D box becomes a slab of this depth.
   template <int D>
   void set(const Box<D>& box, double depth) {
     for (int axis = 0; axis < D; ++axis) {
@@ -57,7 +57,7 @@ class FclObject final : public fcl::CollisionObjectd {
     }
   }
 
-  /// Makes the bounds larger by less than floats lie apart.
+  /// Enlarges the bounds by less than the distance between floats.
   void widen() {
     const auto gap = [](double at) { return std::abs(at) * 0x1p-45 + 0x1p-300; };
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,8 +70,7 @@ class FclObject final : public fcl::CollisionObjectd {
   BoxId id_;
 };
 
-/// What a search hands through to its callback, which drops what a manager tells beyond the overlapping
-/// pairs.
+/// The context of a search's callback, which drops reported pairs that do not overlap.
 template <int D>
 struct FclSearch {
   std::span<const Box<D>> boxes;
@@ -124,13 +123,13 @@ class FclSearcher final : public Searcher<D>, public TearDown {
   MakeManager<D> make_;
   bool widened_;
   double depth_;
-  std::vector<FclObject> objects_;  // by place; more than there are boxes, once there were more
+  std::vector<FclObject> objects_;  // by place; may have more elements than there are boxes
   std::vector<fcl::CollisionObjectd*> pointers_;
   FclManager manager_;  // of the last search; points into objects_
 };
 
-/// The description of a manager: a searcher that fills a new one in each call. `widened` if it goes wrong
-/// where two bounds are equal; `depth` is that of boxes of 2D.
+/// The description of a manager: a searcher that fills a new one in each call. `widened` if it fails on equal
+/// bounds; `depth` is that of 2D boxes.
 Algorithm fcl_manager(MakeManager<2> make_2d, MakeManager<3> make_3d, bool widened = false,
                       double depth = slab) {
   return {
@@ -156,14 +155,14 @@ FclManager make_plain(std::span<const Box<D>>) {
   return std::make_unique<Manager>();
 }
 
-/// FCL's two trees of boxes, whose nodes are allocated one by one or stand in an array.
+/// FCL's two trees of boxes, whose nodes are allocated one by one or are in an array.
 using Tree = fcl::DynamicAABBTreeCollisionManagerd;
 using ArrayTree = fcl::DynamicAABBTreeCollisionManager_Array<double>;
 
 template <typename Manager>
 std::unique_ptr<Manager> make_tree() {
   auto tree = std::make_unique<Manager>();
-  tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
+  tree->tree_init_level = 2;  // sorted by Morton codes, as in FCL's own tests
   return tree;
 }
 
@@ -201,7 +200,7 @@ class FclTreeFollower final : public PeerFollower<D> {
 
   void collide(const Change<D>& change, PairSink& pairs) override {
     FclSearch<D> search{change.now, CallbackSink(pairs)};
-    // One by one where few changed: all against each other takes time for resting boxes as well.
+    // One by one if few changed: a full search takes time for resting boxes as well.
     constexpr std::size_t few = 4;
     if (change.changed.size() < change.now.size() / few) {
       ChangedQuery query{&search, change.flags};
@@ -215,7 +214,7 @@ class FclTreeFollower final : public PeerFollower<D> {
     search.pairs.finish();
   }
 
-  /// The search for the pairs of one object that changed.
+  /// The search for the pairs of one changed object.
   struct ChangedQuery {
     FclSearch<D>* search;
     std::span<const std::uint8_t> changed;
@@ -224,7 +223,7 @@ class FclTreeFollower final : public PeerFollower<D> {
       const auto& query = *static_cast<ChangedQuery*>(data);
       const BoxId a = static_cast<FclObject*>(other)->id();
       const BoxId b = static_cast<FclObject*>(asked)->id();
-      // It finds itself, and another one that changed will find it in turn.
+      // The object finds itself; another changed object will find it in turn.
       constexpr bool stop = true;
       if (a == b || (query.changed[index(a)] != 0 && a < b)) return !stop;
       return FclSearch<D>::take(other, asked, query.search);
@@ -237,11 +236,11 @@ class FclTreeFollower final : public PeerFollower<D> {
     return objects_[index(id)];
   }
 
-  // What an object must have to be asked for by itself; its size is of no interest.
+  // An object must have a geometry to be queried itself; its size is irrelevant.
   std::shared_ptr<fcl::CollisionGeometryd> geometry_ = std::make_shared<fcl::Sphered>(1);
   std::deque<FclObject> objects_;  // by place
   std::vector<fcl::CollisionObjectd*> pointers_;
-  std::unique_ptr<Tree> tree_;  // points into them
+  std::unique_ptr<Tree> tree_;  // points into objects_
 };
 
 // As in FCL's own tests: a table that grows, over the bounds of all objects.
@@ -252,8 +251,8 @@ template <int D>
 FclManager make_hash(std::span<const Box<D>> boxes) {
   const double cell = std::exp2(std::ceil(std::log2(cell_size(boxes, 1))));
   // A box that ends on a cell's border is not inserted into the next cell, where a box that touches it
-  // begins. With cells of a power of two that start at an odd multiple of 2^-30 cells, no float lies on a
-  // border.
+  // begins. If cells have a power of two as size and begin at an odd multiple of 2^-30 cells, no float is on
+  // a border.
   constexpr double offset = 0.40625 + 0x1p-30;
   fcl::Vector3d min = fcl::Vector3d::Zero();
   fcl::Vector3d max = fcl::Vector3d::Zero();
@@ -263,7 +262,7 @@ FclManager make_hash(std::span<const Box<D>> boxes) {
     max[axis] = (std::ceil(high / cell) + 1 + offset) * cell;
   }
   if constexpr (D == 2) {
-    // One layer of cells around what is flat.
+    // One layer of cells around flat boxes.
     min[2] = (offset - 1) * cell;
     max[2] = offset * cell;
   }
@@ -282,7 +281,8 @@ Algorithm fcl_dynamic_aabb_tree() {
   return algorithm;
 }
 
-// Its update() ends the program in some histories of the law, so motion is followed by registering all again.
+// Its update() terminates the program on some histories of the equivalence test, so all objects are
+// registered again for each frame.
 Algorithm fcl_dynamic_aabb_tree_array() {
   Algorithm algorithm = fcl_manager(make_tree_for<ArrayTree, 2>, make_tree_for<ArrayTree, 3>);
   algorithm.name = "fcl_dynamic_aabb_tree_array";
@@ -291,9 +291,9 @@ Algorithm fcl_dynamic_aabb_tree_array() {
   return algorithm;
 }
 
-// It finds pairs when objects are registered, and loses pairs that only touch, since equal end points are in
-// no order: therefore the widened bounds. Its update() looks for each pair through the list of all, and
-// taking an object out reads what was erased, so motion is followed by registering all again.
+// It finds pairs when objects are registered, and loses pairs that only touch, since it does not order equal
+// end points: hence the widened bounds. Its update() searches the list of all pairs for each pair, and
+// removing an object reads erased data, so all objects are registered again for each frame.
 Algorithm fcl_sap() {
   using Manager = fcl::SaPCollisionManagerd;
   constexpr bool widened = true;

@@ -1,4 +1,4 @@
-// GEOS's STRtree, which GIS programs use, and a query for each box.
+// GEOS's STRtree, which GIS programs use, with one query per box.
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -19,11 +19,11 @@ class GeosStrtree final : public Searcher<2>, public TearDown {
   std::optional<Statistics> search(const SearchInput<2>& input, PairSink& pairs) override {
     const std::span<const Box2> boxes = input.boxes;
     constexpr std::size_t standard_capacity = 10;
-    // A tree once built takes no more items, and its memory cannot be handed on to a new one.
+    // A built tree takes no more items, and a new one cannot reuse its memory.
     auto& tree = tree_.emplace(standard_capacity, boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       tree.insert(envelope(boxes[i]), static_cast<std::uint32_t>(i));
-    // In the order of the tree's leaves, so that a query finds in the cache what the last one touched.
+    // In the order of the tree's leaves, so that a query finds the nodes of the previous one in the cache.
     for (const std::uint32_t i : tree.items()) {
       tree.query(envelope(boxes[i]), [&pairs, i](const std::uint32_t& j) {
         if (j > i) pairs.add(BoxId{i}, BoxId{j});
@@ -51,7 +51,7 @@ Algorithm geos_strtree() {
       .source = "GEOS, TemplateSTRtree, after Leutenegger et al. 1997",
       .version = std::string("GEOS ") + GEOS_VERSION,
       .in_2d = {.searcher = make_strategy<GeosStrtree>},
-      // It compares their centres.
+      // It compares the boxes' centres.
       .limits = {.infinite_boxes = false, .max_coordinate = std::numeric_limits<float>::max()},
   };
 }

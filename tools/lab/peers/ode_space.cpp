@@ -1,5 +1,5 @@
-// ODE's spaces as searchers and followers: geoms of a class of our own, whose bounds are exactly the boxes,
-// put in one by one; then one dSpaceCollide().
+// ODE's spaces as searchers and followers. Geoms of a custom class, whose bounds are exactly the boxes, are
+// added one by one; then dSpaceCollide() runs once.
 #include "lab/peers/ode_space.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace broadside::lab::peers {
 namespace {
 
-/// A box in a space. It must not move in memory while it is there.
+/// A box in a space. Must not move in memory while it is there.
 struct Item {
   Box3 box;
   BoxId id;
@@ -33,13 +33,13 @@ void bounds_of(dGeomID geom, dReal bounds[6]) {
   }
 }
 
-/// The number of our class of geoms. ODE is started by the first call and stopped when the program ends.
+/// The number of our geom class. ODE is started by the first call and stopped when the program ends.
 int geom_class() {
   struct Ode {
     Ode() {
       dInitODE2(0);
       dGeomClass box{};
-      box.bytes = 1;  // not used, and not to be none
+      box.bytes = 1;  // unused, but must not be 0
       box.collider = [](int) -> dColliderFn* { return nullptr; };
       box.aabb = bounds_of;
       number = dCreateGeomClass(&box);
@@ -57,7 +57,7 @@ struct DestroyGeom {
 };
 using Geom = std::unique_ptr<dxGeom, DestroyGeom>;
 
-/// What a search hands through to its callback. A space tells boxes that reach to infinity without a test.
+/// The context of a search's callback. A space reports boxes that reach to infinity without a test.
 struct SpaceQuery {
   std::span<const Box3> boxes;
   CallbackSink& pairs;
@@ -81,7 +81,7 @@ class Geoms {
   std::size_t size() const { return geoms_.size(); }
   dGeomID operator[](std::size_t place) const { return geoms_[place].get(); }
 
-  /// Gives the place its box, and marks the geom as moved.
+  /// Sets the box of a place, and marks the geom as moved.
   void put(std::size_t place, const Box3& box, double shift = 0) {
     while (geoms_.size() <= place) {
       items_.push_back({{}, BoxId(items_.size()), 0});
@@ -93,8 +93,7 @@ class Geoms {
     dGeomSetPosition(geoms_[place].get(), 0, 0, 0);
   }
 
-  /// Adds a geom that is in no space. Its bounds are computed before, so that a tree files it by the new
-  /// ones.
+  /// Adds a geom that is in no space. Computes its bounds first, so that a tree files it by the new ones.
   void add_to(dSpaceID space, std::size_t place) const {
     dReal bounds[6];
     dGeomGetAABB(geoms_[place].get(), bounds);
@@ -128,7 +127,7 @@ class OdeSearcher final : public Searcher<3>, public TearDown {
   }
 
   void tear_down() override {
-    // The last one first: it is the first that a list is searched for.
+    // The last one first: a removal searches the list from there.
     for (; in_space_ > 0; --in_space_) dSpaceRemove(space_.get(), geoms_[in_space_ - 1]);
     space_.reset();
   }
@@ -162,7 +161,7 @@ class OdeFollower final : public PeerFollower<3> {
     sink.finish();
   }
 
-  /// A box that is not there is a geom that is disabled: taking it out would have a tree look through lists.
+  /// An absent box is a disabled geom: removing it would make a tree search lists.
   void set(std::size_t place, const Box3& box) {
     if (!is_present(box)) {
       if (place < geoms_.size()) dGeomDisable(geoms_[place]);

@@ -1,4 +1,4 @@
-// What ODE's three spaces share: geoms whose bounds are exactly our boxes.
+// Common parts of ODE's three spaces: geoms whose bounds are exactly our boxes.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace broadside::lab::peers {
 
-/// Destroys a space, which holds no geom any more.
+/// Destroys a space, which no longer holds a geom.
 struct DestroySpace {
   void operator()(dSpaceID space) const { dSpaceDestroy(space); }
 };
@@ -24,10 +24,10 @@ struct OdeSpaceKind {
   /// Makes an empty space that suits `boxes`.
   OdeSpace (*make)(std::span<const Box3> boxes);
 
-  /// What is added to every coordinate on its way into a space for `boxes`; null where nothing is.
+  /// The offset to add to every coordinate in a space for `boxes`; null: no offset.
   double (*shift)(std::span<const Box3> boxes) = nullptr;
 
-  /// Whether what the space keeps from one frame to the next saves it anything.
+  /// Whether the structure that the space keeps between frames saves it any work.
   bool tracks = true;
 
   /// Declared limit.

@@ -11,7 +11,7 @@ namespace broadside::lab::peers {
 namespace {
 
 OdeSpace make_sap_space(std::span<const Box3> boxes) {
-  // ODE's dSAP_AXES_XYZ and its like: the first axis is swept along.
+  // For ODE's dSAP_AXES_XYZ and the like: it sweeps along the first axis.
   const auto [first, second, third] = axes_by_extent(boxes);
   return OdeSpace(dSweepAndPruneSpaceCreate(nullptr, first | second << 2 | third << 4));
 }
@@ -29,11 +29,11 @@ Algorithm ode_sap() {
 
 namespace {
 
-// The space keeps a bit for every pair of boxes and finds it by an int.
+// The space keeps a bit for every pair of boxes, indexed by an int.
 constexpr std::size_t max_boxes = 1 << 17;
 
 struct Levels {
-  int min;  ///< of cells of 2^least
+  int min;  ///< cells have side 2^level
   int max;
 };
 
@@ -47,24 +47,24 @@ Levels levels_of(std::span<const Box3> boxes) {
       longest = std::max(longest, double{box.max[axis]} - box.min[axis]);
     }
   }
-  // A cell's place is an int: what is farther off aborts the program.
+  // Cell coordinates are ints: a box farther away aborts the program.
   constexpr int max_bits = 29;
   const int finest = greatest > 0 ? std::ilogb(greatest) + 1 - max_bits : -max_bits;
   const int min = std::max(std::ilogb(typical_extent(boxes)) + 1, finest);
   return {min, longest > 0 ? std::max(std::ilogb(longest) + 1, min) : min};
 }
 
-// The space hashes places as unsigned numbers, so that a cell may be another one to a box that begins before
-// 0 than to one that begins behind it, and pairs be lost. Among positive places that cannot be. What the sum
-// rounds keeps its order.
+// The space hashes cell coordinates as unsigned numbers, so a cell may differ between a box that begins below
+// 0 and one that begins above, and pairs are lost. This shift makes all coordinates positive. Rounding of the
+// sums keeps their order.
 double shift_of(std::span<const Box3> boxes) {
   constexpr int bits = 30;
   return std::ldexp(1.0, levels_of(boxes).min + bits);
 }
 
 OdeSpace make_hash_space(std::span<const Box3> boxes) {
-  // Its manual: the sizes of the smallest and the largest cells are 2^level. A box goes to cells as large as
-  // itself, and the smaller half of all where the typical one goes.
+  // From its manual: the smallest and the largest cells have side 2^level. A box goes to cells of about its
+  // own size; the smaller half of all boxes goes where the typical one goes.
   OdeSpace space(dHashSpaceCreate(nullptr));
   const Levels levels = levels_of(boxes);
   dHashSpaceSetLevels(space.get(), levels.min, levels.max);
@@ -73,7 +73,7 @@ OdeSpace make_hash_space(std::span<const Box3> boxes) {
 
 }  // namespace
 
-// Its table is new in each search, so that following motion is searching.
+// Its table is new in each search, so the follower searches from nothing.
 Algorithm ode_hash() {
   Algorithm algorithm =
       ode_space({.make = make_hash_space, .shift = shift_of, .tracks = false, .max_boxes = max_boxes});
@@ -87,7 +87,8 @@ Algorithm ode_hash() {
 namespace {
 
 OdeSpace make_quadtree_space(std::span<const Box3> boxes) {
-  // The blocks of the whole tree are made beforehand: about as many leaves as boxes, none smaller than a box.
+  // Allocates the blocks of the whole tree in advance: about as many leaves as boxes, each at least as large
+  // as a box.
   constexpr int greatest_depth = 10;
   dVector3 centre{};
   dVector3 half{};

@@ -1,4 +1,4 @@
-// PeerFollower: follows boxes with a library that moves its boxes and then reports all pairs, not the new
+// PeerFollower: follows boxes with a library that moves its boxes and then reports all pairs, not only new
 // ones.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace broadside::lab::peers {
 
-/// Turns the pairs that a library reports after its boxes moved into events. Keeps the pairs from frame to
+/// Converts the pairs that a library reports after its boxes moved to events. Keeps the pairs from frame to
 /// frame.
 template <int D>
 class PeerFollower : public Follower<D> {
@@ -21,7 +21,7 @@ class PeerFollower : public Follower<D> {
     if (change.rebuild) {
       build(change.before, change.now);
       pairs_.clear();
-      // Nearly always there was no frame before.
+      // There is rarely a previous frame.
       if (std::ranges::any_of(change.before, is_present<D, float>)) {
         find({.before = change.before,
               .now = change.before,
@@ -34,7 +34,7 @@ class PeerFollower : public Follower<D> {
     }
     move(change);
     find(change, found_);
-    // What a pair was in the other frame can be seen from its boxes.
+    // Whether the pair held in the other frame follows from its boxes.
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };
@@ -55,15 +55,14 @@ class PeerFollower : public Follower<D> {
   }
 
  private:
-  /// Forgets all boxes and takes the present ones of `boxes`. `now` are the next frame's, for a library that
-  /// must know the size of its world beforehand.
+  /// Removes all boxes and adds the present ones of `boxes`. `now` holds the next frame's boxes, for
+  /// libraries that need the world's size in advance.
   virtual void build(std::span<const Box<D>> boxes, std::span<const Box<D>> now) = 0;
 
-  /// Takes every change.
+  /// Applies every change.
   virtual void move(const Change<D>& change) = 0;
 
-  /// Writes each overlapping pair of `change.now` once; pairs of two boxes that did not change may be left
-  /// out.
+  /// Writes each overlapping pair of `change.now` once; may leave out pairs of two unchanged boxes.
   virtual void collide(const Change<D>& change, PairSink& pairs) = 0;
 
   void find(const Change<D>& change, std::vector<Pair>& pairs) {
@@ -73,7 +72,7 @@ class PeerFollower : public Follower<D> {
     collector.flush();
   }
 
-  std::vector<Pair> pairs_;  // those of the frame before
+  std::vector<Pair> pairs_;  // of the previous frame
   std::vector<Pair> found_;
 };
 

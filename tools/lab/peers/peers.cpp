@@ -1,4 +1,4 @@
-// The one list of peers; which of them are in this build was decided at configure time (CMakeLists.txt).
+// The list of peers; CMakeLists.txt decides at configure time which of them are in this build.
 #include "lab/peers/peers.hpp"
 
 #include <algorithm>
@@ -74,9 +74,9 @@ struct PeerList {
   }
 };
 
-/// What is known of the cost of assertions in Debian's build of a library. Measured by hand: docs/peers.md.
+/// The measured cost of assertions in Debian's build of a library; measured by hand: docs/peers.md.
 struct BuildNote {
-  std::string_view prefix;  ///< of the library's peers
+  std::string_view prefix;  ///< of the names of the library's peers
   std::string_view text;
 };
 

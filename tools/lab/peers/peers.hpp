@@ -1,4 +1,4 @@
-// The other libraries in the comparison: one function for each of their algorithms.
+// The other libraries in the comparison, with one function for each of their algorithms.
 #pragma once
 
 #include <span>
@@ -16,14 +16,14 @@ std::vector<Algorithm> peers();
 /// A peer that was left out of this build.
 struct MissingPeer {
   std::string name;
-  std::string reason;  ///< the package whose lack at configure time left it out
+  std::string reason;  ///< the package that was missing at configure time
 };
 
 /// The peers that were left out of this build, in the same order. Thread-safe.
 std::span<const MissingPeer> missing_peers();
 
-/// What is known of the build of the library behind a peer that its times should be read with, as a sentence
-/// (docs/peers.md); empty where nothing is.
+/// A sentence about the build of a peer's library that affects its times (docs/peers.md); empty if nothing is
+/// known.
 std::string_view build_note(std::string_view peer);
 
 // One for each algorithm. Peers that are not in the build are declared but not defined.

@@ -1,4 +1,4 @@
-// Adapts a library that follows boxes one by one to a Follower and a Searcher.
+// Adapts a library that follows boxes one by one to Follower and Searcher.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace broadside::lab::peers {
 
-/// A library's own objects for boxes: bodies, proxies, leaves. One for each present box.
+/// A library's own objects for boxes: bodies, proxies or leaves. One for each present box.
 template <int D>
 class Proxies {
  public:
@@ -22,11 +22,11 @@ class Proxies {
   Proxies& operator=(const Proxies&) = delete;
   virtual ~Proxies() = default;
 
-  /// Forgets every box. `boxes` will be there: for libraries that take bounds of the world, or
-  /// a cell size.
+  /// Removes every box. `boxes` will be added next: for libraries that need the world's bounds or a cell
+  /// size.
   virtual void clear(std::span<const Box<D>> boxes) = 0;
 
-  /// Whether the layout of clear() suits `boxes` as well; if not, clear() is called again.
+  /// Whether the layout made by clear() also suits `boxes`; if not, clear() is called again.
   virtual bool fits(std::span<const Box<D>>) const { return true; }
 
   /// Adds a new box, or moves or removes a known one. No box is absent.
@@ -34,14 +34,14 @@ class Proxies {
   virtual void move(BoxId id, const Box<D>& box) = 0;
   virtual void remove(BoxId id) = 0;
 
-  /// Writes each overlapping pair of `boxes`, which are as they were added and moved, once; where there are
-  /// flags, pairs of two boxes whose flags are 0 may be left out. A library that knows boxes by larger ones
-  /// has what it reports tested against `boxes`.
+  /// Writes each overlapping pair of `boxes`, in their state after all additions and moves, once. With flags,
+  /// may leave out pairs of two boxes with flag 0. A library that enlarges boxes has its reported pairs
+  /// tested against `boxes`.
   virtual void collect(std::span<const Box<D>> boxes, std::span<const std::uint8_t> flags,
                        PairSink& pairs) = 0;
 };
 
-/// Adds the present ones of `boxes` to empty proxies.
+/// Adds the present boxes of `boxes` to empty proxies.
 template <int D>
 void add_all(Proxies<D>& proxies, std::span<const Box<D>> boxes) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -49,7 +49,7 @@ void add_all(Proxies<D>& proxies, std::span<const Box<D>> boxes) {
   }
 }
 
-/// Follows with proxies: tells the library what changed, and then asks it for the pairs.
+/// Follows boxes with proxies: passes the changes to the library, then asks it for the pairs.
 template <int D>
 class ProxyFollower final : public PeerFollower<D> {
  public:
@@ -82,7 +82,7 @@ class ProxyFollower final : public PeerFollower<D> {
   std::unique_ptr<Proxies<D>> proxies_;
 };
 
-/// Searches with proxies, all of them added anew.
+/// Searches with proxies, all of which are added anew.
 template <int D>
 class ProxySearcher final : public Searcher<D> {
  public:

@@ -1,4 +1,4 @@
-// Other libraries that answer queries about boxes, each behind one interface, for the benchmark of queries.
+// Other libraries that answer queries about boxes, behind one interface, for the benchmark of queries.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace broadside::lab::peers {
 
-/// What a batch of queries found, as a set: how many, and a hash of each with the number of its query.
+/// The results of a batch of queries, as a set: their number, and a hash of each with the number of its
+/// query.
 struct Answers {
   std::uint64_t count = 0;
   std::uint64_t hash = 0;
@@ -26,7 +27,7 @@ struct Answers {
   friend bool operator==(const Answers&, const Answers&) = default;
 };
 
-/// Another library's index of finite boxes. Rays have a finite `t_max` and begin in no box.
+/// Another library's index of finite boxes. Rays have a finite `t_max` and start outside all boxes.
 template <int D>
 class QueryPeer {
  public:

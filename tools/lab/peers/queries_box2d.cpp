@@ -109,7 +109,7 @@ class Box2dQueries final : public QueryPeer<2> {
   }
 
   std::span<const Box2> boxes_;
-  float scale_;  // a power of two that makes a typical box about a metre long, as its margins ask
+  float scale_;  // a power of two that scales a typical box to about a metre, to suit the tree's margins
   std::vector<BoxId> id_of_;  // by proxy
   b2DynamicTree tree_;
 };

@@ -1,10 +1,10 @@
-// What a library's structure takes to be torn down is not part of a search.
+// Excludes the destruction of a library's structure from the time of a search.
 #pragma once
 
 namespace broadside::lab::peers {
 
-/// A searcher that keeps its library's structure after the search, so that the structure can be torn down
-/// after the clock has stopped. The next search tears down what is still there.
+/// A searcher that keeps its library's structure after the search, so that it can be destroyed after the
+/// clock has stopped. The next search destroys a structure that is still there.
 class TearDown {
  public:
   virtual ~TearDown() = default;

@@ -1,4 +1,4 @@
-// Lengths that the boxes suggest.
+// Parameters derived from the boxes: typical extents and cell sizes.
 #include "lab/peers/typical_extent.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ double longest_side(const Box<D>& box) {
   return longest;
 }
 
-/// The greatest absolute coordinate and the longest side of the world, infinite coordinates aside.
+/// The maximum absolute coordinate and the longest side of the world, without infinite coordinates.
 template <int D>
 std::array<double, 2> reach(std::span<const Box<D>> boxes) {
   double greatest = 0;
@@ -32,7 +32,7 @@ std::array<double, 2> reach(std::span<const Box<D>> boxes) {
   return {greatest, side};
 }
 
-/// The number of cells that the boxes touch together, give or take where they lie.
+/// An upper bound on the total number of cells that the boxes touch: ignores their offsets within cells.
 template <int D>
 double cells_touched(std::span<const Box<D>> boxes, double cell) {
   double sum = 0;

@@ -1,4 +1,4 @@
-// What the system says of the machine.
+// The machine's properties, as the system reports them.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace broadside::lab::platform {
 
-/// Empty where it is not told, as are the names below.
+/// Empty if unknown; so are the names below.
 std::string processor_name();
 
-/// Its name and version, such as "Debian GNU/Linux 12 (bookworm), Linux 6.1.0 x86_64".
+/// The system's name and version, such as "Debian GNU/Linux 12 (bookworm), Linux 6.1.0 x86_64".
 std::string system_name();
 
-/// The memory that is built in; 0 where it is not told.
+/// The installed memory; 0 if unknown.
 std::uint64_t memory_bytes();
 
-/// The highest clock of a processor in MHz, or its present one where only that is told; 0 where neither is.
+/// The highest clock rate of a processor in MHz, or the current one if only that is known; 0 if neither is.
 double clock_mhz();
 
 /// A cache that the first processor uses.
@@ -28,11 +28,10 @@ struct Cache {
   friend bool operator==(const Cache&, const Cache&) = default;
 };
 
-/// From the nearest to the farthest; empty where they are not told.
+/// From the nearest to the farthest; empty if unknown.
 std::vector<Cache> caches();
 
-/// How many processes ran or waited for a processor over the last minute, on average; empty where it is not
-/// told.
+/// The average number of processes that ran or waited for a processor over the last minute; empty if unknown.
 std::optional<double> load();
 
 }  // namespace broadside::lab::platform

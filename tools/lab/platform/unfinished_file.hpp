@@ -1,4 +1,4 @@
-// A file that is written beside the place where it is to stand.
+// A file that is written beside its target.
 #pragma once
 
 #include <filesystem>
@@ -6,22 +6,22 @@
 
 namespace broadside::lab::platform {
 
-/// The file that is to stand at a path, until then beside it. Where the system can do that, it has no name,
-/// so that nothing is left even of a process that is killed; else one that cannot be guessed, so that no link
-/// can be planted there. One at a time.
+/// A file that will replace the one at a path, and is beside it until then. If the system supports it, the
+/// file has no name, so that nothing remains even if the process is killed; otherwise its name cannot be
+/// guessed, so that no link can be planted there. Only one at a time.
 class UnfinishedFile {
  public:
-  /// `target` is not a link. While a file is there, only its owner can read the new one.
+  /// `target` is not a link. During its lifetime, only the owner can read the new file.
   explicit UnfinishedFile(const std::filesystem::path& target);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-  /// Negative where none could be made, and errno says why.
+  /// Negative if none could be made; errno gives the reason.
   int descriptor() const;
 
-  /// Whether it now stands in its place, where the system has them with the permissions of the old file;
-  /// where not, errno says why.
+  /// Moves the file to its target, with the old file's permissions on systems that have them. Returns whether
+  /// it succeeded; if not, errno gives the reason.
   bool take_place();
 
  private:
@@ -29,7 +29,7 @@ class UnfinishedFile {
   std::unique_ptr<State> state_;
 };
 
-/// Removes the file that is being written, if it has a name: for a signal's handler that ends the process.
+/// Removes the unfinished file, if it has a name: for a signal handler that ends the process.
 /// Async-signal-safe.
 void remove_unfinished_file() noexcept;
 

@@ -1,7 +1,7 @@
-// Recordings of Box2D: rain, a tumbler and pyramids, after the samples that come with it.
+// Recordings of Box2D: rain, a tumbler and pyramids, modelled on Box2D's own samples.
 //
-// A fixture is a box: its shape's own bounds, not the fattened ones of the engine's tree, but with the skin
-// of 1 cm that Box2D gives to polygons. Ground, walls and platforms are among the boxes, first.
+// Each fixture is a box: its shape's own bounds, not the enlarged ones of the engine's tree, but with the
+// skin of 1 cm that Box2D gives to polygons. Ground, walls and platforms are the first boxes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,8 +14,7 @@
 namespace broadside::lab::recordings {
 namespace {
 
-/// A world of boxes and circles of about 1 m, the size that the engine is made for, stepped 60 times a
-/// second.
+/// A world of boxes and circles of about 1 m, the size that the engine is tuned for, at 60 steps per second.
 class Box2dWorld {
  public:
   explicit Box2dWorld(const SceneRequest& request) : count_(request.boxes), random_(request.seed) {}
@@ -26,7 +25,7 @@ class Box2dWorld {
     world_.Step(1.0F / 60, velocity_iterations, position_iterations);
   }
 
-  /// The first fixtures, as many as were asked for.
+  /// The first fixtures, as many as were requested.
   std::vector<Box2> boxes() const {
     std::vector<Box2> boxes(count_);
     for (std::size_t i = 0; i < count_; ++i) {
@@ -38,7 +37,7 @@ class Box2dWorld {
   }
 
  protected:
-  /// How many fixtures are still wanted.
+  /// The number of fixtures still missing.
   std::size_t wanted() const { return count_ - std::min(count_, fixtures_.size()); }
 
   float between(double low, double high) { return static_cast<float>(random_.between(low, high)); }
@@ -73,12 +72,13 @@ class Box2dWorld {
   std::vector<b2Fixture*> fixtures_;
 };
 
-/// The side of a square in which each of `count` bodies has `area` square metres, at least 10 m.
+/// The side of a square with `area` square metres for each of `count` bodies, at least 10 m.
 float square_side(std::size_t count, double area) {
   return static_cast<float>(std::max(10.0, std::sqrt(static_cast<double>(count) * area)));
 }
 
-/// Boxes and balls fall through a square with slanting platforms; what falls out below starts again above.
+/// Boxes and balls fall through a square with slanting platforms; those that leave it below start again
+/// above.
 class Rain : public Box2dWorld {
  public:
   static constexpr std::size_t warm_up = 120;
@@ -184,7 +184,7 @@ class Pyramid : public Box2dWorld {
   struct Ball {
     b2Body* body;
     b2Vec2 home;
-    std::size_t start;  // the step of each period in which it is shot
+    std::size_t start;  // the step within each period at which the ball is shot
   };
 
   std::vector<Ball> balls_;

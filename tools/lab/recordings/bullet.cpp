@@ -1,8 +1,8 @@
 // Recordings of Bullet: the three scenes of Broadmark (Serpa and Rodrigues 2019), free fall, Brownian motion
 // and moving gravity.
 //
-// A body is a box: the exact bounds of its box or ball, without the margin that Bullet adds to the bounds of
-// a turned box. Ground and walls are among the boxes, first.
+// Each body is a box: the exact bounds of its box or ball, without the margin that Bullet adds to the bounds
+// of a rotated box. Ground and walls are the first boxes.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,11 +15,11 @@
 namespace broadside::lab::recordings {
 namespace {
 
-/// A world of boxes and balls of about 1 m in a container, stepped 60 times a second.
+/// A world of boxes and balls of about 1 m in a container, at 60 steps per second.
 class BulletWorld {
  public:
-  /// Bodies start on a lattice, each with a cube of `spacing` metres to itself; `height` is that of the
-  /// container over its width.
+  /// Bodies start on a lattice, each in its own cube of `spacing` metres; `height` is the container's height
+  /// over its width.
   BulletWorld(const SceneRequest& request, double spacing, double height)
       : count_(request.boxes), random_(request.seed) {
     const double cells = std::cbrt(static_cast<double>(count_) / height);
@@ -53,7 +53,7 @@ class BulletWorld {
     world_.stepSimulation(btScalar(1) / 60, no_substeps);
   }
 
-  /// The first bodies, as many as were asked for.
+  /// The first bodies, as many as were requested.
   std::vector<Box3> boxes() const {
     std::vector<Box3> boxes(count_);
     for (std::size_t i = 0; i < count_; ++i) {
@@ -82,7 +82,7 @@ class BulletWorld {
 
   std::span<const std::unique_ptr<btRigidBody>> moving() const { return std::span(bodies_).subspan(walls); }
 
-  /// Lets no body fall asleep, where something other than a touch may move it.
+  /// Prevents bodies from falling asleep, for scenes in which something other than a contact may move them.
   void keep_awake() {
     for (const auto& body : moving()) body->setActivationState(DISABLE_DEACTIVATION);
   }
@@ -143,7 +143,7 @@ class FreeFall : public BulletWorld {
   }
 };
 
-/// Weightless bodies, each of them kicked every now and then in any direction.
+/// Weightless bodies that are kicked in random directions now and then.
 class Brownian : public BulletWorld {
  public:
   static constexpr std::size_t warm_up = 60;

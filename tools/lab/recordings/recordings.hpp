@@ -12,13 +12,13 @@
 
 namespace broadside::lab::recordings {
 
-/// Three scenes of Box2D's, in 2D. Where it was missing when this was built, they say so and make nothing.
+/// Three scenes of Box2D, in 2D. Without Box2D in this build, the scenes say so and make nothing.
 std::vector<Scene> box2d();
 
 /// Broadmark's three scenes, in Bullet, in 3D; likewise.
 std::vector<Scene> bullet();
 
-/// The history of `world.boxes()` after `warm_up` calls of world.step() and over `frames` more. Throws
+/// The history of `world.boxes()` over `frames` steps, after `warm_up` calls of world.step(). Throws
 /// std::runtime_error if the engine gives an invalid box.
 template <int D, typename World>
 History<D> record(World& world, std::size_t warm_up, std::size_t frames) {

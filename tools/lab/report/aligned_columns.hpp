@@ -7,18 +7,17 @@
 
 namespace broadside::lab {
 
-/// Cells, row by row; the columns become as wide as their widest cell.
+/// A table of cells, added row by row; each column is as wide as its widest cell.
 class AlignedColumns {
  public:
-  /// One character a column: '<' aligns it to the left, '>' to the right. The last column's cells may be as
-  /// long as they like and are not filled up.
+  /// One character per column: '<' aligns it to the left, '>' to the right. Cells of the last column may have
+  /// any length and are not padded.
   explicit AlignedColumns(std::string_view alignment) : alignment_(alignment) {}
 
-  /// Adds a row of as many cells as there are columns. Throws std::invalid_argument if there are more or
-  /// less.
+  /// Adds a row with one cell per column. Throws std::invalid_argument if there are more or fewer.
   void add(std::vector<std::string> row);
 
-  /// All rows, each with `indent` before it and a line's end after it; no spaces before a line's end.
+  /// All rows, each with `indent` before it and a newline after it; no spaces before newlines.
   std::string text(std::string_view indent) const;
 
  private:

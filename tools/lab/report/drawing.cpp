@@ -1,4 +1,4 @@
-// A scene's boxes and what algorithms lay over them, as paths.
+// Draws a scene's boxes and the structures of algorithms as paths.
 #include "lab/report/drawing.hpp"
 
 #include <algorithm>
@@ -44,7 +44,8 @@ std::vector<Rectangle> seen(std::span<const Box<D>> boxes, const Axes& axes) {
   return rectangles;
 }
 
-/// A sweep at its middle box: where its line is, within which part, and which boxes it crosses there.
+/// A sweep at its middle box: the position of its line, the part that it sweeps, and the boxes that it
+/// crosses.
 template <int D>
 struct Sweep {
   int axis;
@@ -72,7 +73,7 @@ std::optional<Sweep<D>> sweep_of(const Outline<D>& outline, std::span<const Box<
   return sweep;
 }
 
-/// The sweep's line and the boxes that it crosses, where its axis is one of the view's.
+/// The sweep's line and the boxes that it crosses, if its axis is one of the view's.
 template <int D>
 std::string path_of(const Sweep<D>& sweep, const Axes& axes, const Window& window) {
   std::string path;
@@ -83,7 +84,7 @@ std::string path_of(const Sweep<D>& sweep, const Axes& axes, const Window& windo
   return path;
 }
 
-/// By place in the array: whether a box overlaps another one.
+/// For each box, whether it overlaps another one.
 template <int D>
 std::vector<bool> touching(std::span<const Box<D>> boxes) {
   std::vector<Pair> pairs;
@@ -94,11 +95,11 @@ std::vector<bool> touching(std::span<const Box<D>> boxes) {
   return touches;
 }
 
-/// A scene's boxes in a frame, which must be there.
+/// A scene's boxes in a frame, which must exist.
 template <int D>
 std::vector<Box<D>> boxes_at(std::size_t frame, const NamedScene& named, SceneRequest request) {
   const bool moves = D == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d);
-  // Boxes that rest could be set moving; they would not be the scene's own frames.
+  // Boxes at rest could be set moving, but the frames would not be the scene's own.
   request.frames = moves ? frame : 0;
   History<D> history = make_history<D>(named.scene, named.spec, request);
   const std::size_t last = history.steps.size();

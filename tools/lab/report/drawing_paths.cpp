@@ -1,4 +1,4 @@
-// Boxes and the lines between them as the paths of an SVG, short.
+// Boxes and the lines between them as compact SVG paths.
 #include "lab/report/drawing_paths.hpp"
 
 #include <algorithm>
@@ -11,16 +11,16 @@ namespace {
 
 constexpr int view_width = 1000;
 
-/// The view's least height over its width.
+/// The view's minimum height over its width.
 constexpr double flattest = 0.25;
 
-/// Room around what is shown, of the window's width.
+/// The margin around the contents, as a fraction of the window's width.
 constexpr double margin = 0.01;
 
 /// The side of the square that shows a point, in tenths.
 constexpr long dot = 40;
 
-/// Of the boxes' middles, those beyond this quantile at either end may be outliers.
+/// Boxes whose centres are beyond this quantile at either end may be outliers.
 constexpr double outlying = 0.01;
 
 /// The number of tenths as a decimal number.
@@ -32,12 +32,12 @@ std::string tenths(long number) {
 
 long in_tenths(double units) { return std::lround(10 * units); }
 
-/// Two numbers, the second one's sign being what parts them where it has one.
+/// Two numbers, separated by a blank unless the second one has a sign.
 std::string joined(const std::string& first, const std::string& second) {
   return second.starts_with('-') ? first + second : first + " " + second;
 }
 
-/// A straight line from a point on: 'h' to the right, 'v' down.
+/// A straight line from a point: 'h' to the right, 'v' down.
 std::string stroke(const std::string& x, const std::string& y, char command, const std::string& length) {
   return "M" + joined(x, y) + command + length;
 }
@@ -47,7 +47,7 @@ double place(double world, double low, double high, int length) {
   return world >= high ? length : (world - low) / (high - low) * length;
 }
 
-/// The finite stretch of an axis that shows most rectangles whole.
+/// The finite range of an axis that shows most rectangles whole.
 std::pair<double, double> range_of(std::span<const Rectangle> rectangles, int axis) {
   std::vector<double> middles;
   double low = std::numeric_limits<double>::infinity();
@@ -67,13 +67,13 @@ std::pair<double, double> range_of(std::span<const Rectangle> rectangles, int ax
   const auto last = static_cast<double>(middles.size() - 1);
   const double first = middles[static_cast<std::size_t>(std::floor(outlying * last))];
   const double final = middles[static_cast<std::size_t>(std::ceil((1 - outlying) * last))];
-  // A few boxes without extent at one place tell no scale: then all is shown.
+  // A few boxes without extent at one place give no scale: then shows everything.
   const double beyond = (final - first) / 4;
   if (!(beyond > 0)) return {low, high};
   return {std::max(low, first - beyond), std::min(high, final + beyond)};
 }
 
-/// Sorts intervals and joins those that touch.
+/// Sorts intervals and merges those that touch.
 void join(std::vector<std::pair<int, int>>& intervals) {
   std::ranges::sort(intervals);
   std::size_t kept = 0;

@@ -1,4 +1,4 @@
-// A drawing as a picture of its own: SVG.
+// A drawing as an SVG file.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -11,14 +11,14 @@
 namespace broadside::lab {
 namespace {
 
-/// Pixels of a panel's width, and around it.
+/// The width of a panel and of the space around it, in pixels.
 constexpr int panel_width = 420;
 constexpr int gap = 20;
 constexpr int title_height = 46;
 constexpr int key_line_height = 16;
 constexpr std::size_t max_columns = 3;
 
-/// How many characters of a caption go into a panel's width.
+/// How many characters of a caption fit into a panel's width.
 constexpr std::size_t caption_length = 72;
 
 constexpr const char* style =
@@ -49,7 +49,7 @@ std::string escaped(const std::string& text) {
         out += "&quot;";
         break;
       default:
-        // Control characters are no characters of XML.
+        // XML does not allow control characters.
         out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
     }
   }
@@ -59,10 +59,10 @@ std::string escaped(const std::string& text) {
 struct Panel {
   const DrawingView* view;
   std::size_t number;         // of the view
-  const DrawingLayer* layer;  // or none
+  const DrawingLayer* layer;  // null if there is none
 };
 
-/// The part of a text that fits into `most` characters, as SVG; the whole is shown where a mouse rests on it.
+/// A text as SVG, cut to `max_length` characters; the whole text is its tooltip.
 std::string shortened(const std::string& text, std::size_t max_length = caption_length) {
   if (text.size() <= max_length) return escaped(text);
   return escaped(text.substr(0, max_length - 3)) + "...<title>" + escaped(text) + "</title>";
@@ -72,7 +72,7 @@ std::string caption_of(const DrawingLayer& layer) {
   return layer.caption.empty() ? "nothing laid over the boxes" : layer.caption;
 }
 
-/// Of a layer's levels, the uppermost ones stand out.
+/// Upper levels of a layer have stronger lines.
 std::string lines_of(const DrawingLayer& layer) {
   std::string lines;
   const std::size_t count = layer.levels.size();
@@ -107,7 +107,7 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
   return text + "</svg>\n</g>\n";
 }
 
-/// What a screen reader says of the picture.
+/// The description of the picture for screen readers.
 std::string description_of(const Drawing& drawing) {
   std::string text = fmt::format("{} in {}D", counted(drawing.boxes, "box", "boxes"), drawing.dimension);
   if (drawing.of > drawing.boxes) text += ", for " + grouped(drawing.of);
@@ -156,7 +156,7 @@ std::string svg_of(const Drawing& drawing) {
   const bool swept = std::ranges::any_of(
       panels, [](const Panel& panel) { return panel.layer != nullptr && !panel.layer->active.empty(); });
   if (swept) colours += " Green: a sweep half way.";
-  // On one line where the picture is wide enough.
+  // On one line if the picture is wide enough.
   std::vector<std::string> key_lines = {key + " " + colours};
   if (key_lines[0].size() > columns * caption_length) key_lines = {key, colours};
   const int height = y + gap / 2 + key_line_height * static_cast<int>(key_lines.size());

@@ -28,7 +28,7 @@ Json json_of(const std::optional<PairedRatio>& ratio) {
           {"of_ms", ratio->of_ms}};
 }
 
-/// A count of each seed that was measured; null for the others.
+/// A count of each measured seed; null for the others.
 Json by_seed(const Measurement& measurement, std::uint64_t Statistics::*count) {
   Json counts = Json::array();
   for (const std::optional<Statistics>& statistics : measurement.statistics_by_seed)
@@ -120,7 +120,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
 
 }  // namespace
 
-// One measurement a line: short, and readable where two results are compared.
+// One measurement per line: short, and readable in a diff of two results.
 std::string json_of(const Comparison& comparison, std::span<const std::string> command) {
   std::string text = fmt::format(
       "{{\n\"schema\": \"broadside.results/2\",\n\"date\": {},\n\"machine\": {},\n\"build\": {},\n",

@@ -8,10 +8,10 @@
 
 namespace broadside::lab {
 
-/// One object by the schema "broadside.results/2": today's date, this machine and build, the command, whether
-/// the comparison was stopped before its end, how much of a processor the run had, and a flat list of
-/// measurements with every sample; null where something is not known. docs/benchmarking.md and docs/schemas/
-/// say what each field is. Hashes are hexadecimal texts, since a JSON number does not hold 64 bits.
+/// An object by the schema "broadside.results/2": today's date, this machine and build, the command, whether
+/// the comparison was stopped early, the share of a processor that the run had, and a flat list of
+/// measurements with every sample; null for unknown values. docs/benchmarking.md and docs/schemas/ describe
+/// each field. Hashes are hexadecimal texts, because a JSON number cannot hold 64 bits.
 std::string json_of(const Comparison& comparison, std::span<const std::string> command);
 
 }  // namespace broadside::lab

@@ -1,4 +1,4 @@
-// Where, when and from what a measurement came: the machine, the date and the build, also as JSON.
+// The conditions of a measurement: the machine, the date and the build, also as JSON.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace broadside::lab {
 
-/// The machine that this program runs on; empty or 0 where the system does not tell.
+/// The machine that this program runs on; fields are empty or 0 if the system does not report them.
 struct Machine {
   std::string cpu;
   double clock_mhz = 0;
@@ -26,28 +26,28 @@ Machine this_machine();
 /// How this program was built.
 struct Build {
   std::string version;
-  std::string revision;  ///< of the sources when they were configured; empty if these were in no repository
+  std::string revision;  ///< of the sources at configure time; empty if they were not in a repository
   std::string compiler;
   std::string type;   ///< "Release", ...
-  std::string flags;  ///< the compiler's, but for the warnings
+  std::string flags;  ///< the compiler's, without those for warnings
 };
 Build this_build();
 
 /// The date in UTC: "2026-11-21".
 std::string today();
 
-/// The value, or null where there is none; of a text, where it is empty.
+/// JSON null for a missing value or an empty string.
 template <typename Value>
 nlohmann::ordered_json or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
 }
 nlohmann::ordered_json or_null(const std::string& text);
 
-/// As an object each; null for what is not known.
+/// An object; null for unknown values.
 nlohmann::ordered_json json_of(const Machine& machine);
 nlohmann::ordered_json json_of(const Build& build);
 
-/// The text of a value, on one line; bytes that are no UTF-8 (a path need not be, JSON must) are replaced.
+/// The JSON on one line. Replaces bytes that are not UTF-8, which a path may contain but JSON must not.
 std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace broadside::lab

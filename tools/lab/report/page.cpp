@@ -1,4 +1,4 @@
-// The page: the template, and between its halves the results.
+// Makes the page: the template, with the results between its halves.
 #include "lab/report/page.hpp"
 
 #include <stdexcept>
@@ -12,8 +12,8 @@
 namespace broadside::lab {
 namespace {
 
-/// JSON in which nothing can end the script element that holds it, or begin another: "<" stands only in
-/// texts, where it may be written as an escape.
+/// Appends JSON so that nothing in it can end the enclosing script element or begin another: "<" occurs only
+/// in strings, where it can be written as an escape.
 void append_safe(std::string& page, std::string_view json) {
   for (const char character : json) {
     if (character == '<')

@@ -1,4 +1,4 @@
-// The scenes of a report, drawn.
+// Draws the scenes of a report.
 #include "lab/report/scene_drawings.hpp"
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 namespace broadside::lab {
 namespace {
 
-constexpr std::size_t max_bytes = 1'200'000;
+constexpr std::size_t max_json_bytes = 1'200'000;
 
-/// A scene in 3D is seen from three sides.
+/// A scene in 3D has three views.
 std::size_t boxes_drawn(int dimension) { return dimension == 2 ? max_drawn : max_drawn / 2; }
 
 bool is_empty(const DrawingLayer& layer) {
@@ -47,14 +47,14 @@ std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& fi
   });
   std::string text;
   for (const SceneToDraw& scene : scenes) {
-    if (text.size() > max_bytes) break;
+    if (text.size() > max_json_bytes) break;
     try {
       Drawing drawing =
           draw_scene(find(scene.scene), scene.dimension, scene.boxes, shown, boxes_drawn(scene.dimension));
       for (DrawingView& view : drawing.views) std::erase_if(view.layers, is_empty);
       text += (text.empty() ? "[" : ",\n") + json_text(json_of(drawing));
     } catch (const std::exception&) {
-      // A picture is no reason to lose what was measured.
+      // A picture that fails must not lose the measurements.
       continue;
     }
   }

@@ -1,4 +1,4 @@
-// The scenes of a report, drawn with what our own algorithms and the paper's lay over them.
+// Draws the scenes of a report, with the structures of Broadside's algorithms and the paper's.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,20 @@
 
 namespace broadside::lab {
 
-/// A scene that is to be drawn.
+/// A scene to draw.
 struct SceneToDraw {
-  std::string scene;  ///< as a spec
+  std::string scene;  ///< a spec
   int dimension = 2;
-  std::size_t boxes = 0;  ///< that it is said to have
+  std::size_t boxes = 0;  ///< the number to state
 };
 
-/// The scenes of a comparison, each once in a dimension, with the most boxes that it had.
+/// The scenes of a comparison, each once per dimension, with the maximum number of boxes it was measured
+/// with.
 std::vector<SceneToDraw> scenes_of(const Comparison& comparison);
 
-/// A list of scenes as JSON, as lab/report/drawing.hpp draws them, in some milliseconds each. Layers are
-/// those of the entries that are our own or the paper's and lay something over the boxes. Scenes that
-/// cannot be made are left out; so are those that come when the list has grown to some 1.2 MB, that pages
-/// stay small.
+/// A list of scenes as JSON, as made by lab/report/drawing.hpp, in a few milliseconds each. Layers are those
+/// of Broadside's or the paper's entries that have an outline. Leaves out scenes that cannot be made, and
+/// those that come after the list has grown to about 1.2 MB, so that pages stay small.
 std::string drawings_of(std::span<const SceneToDraw> scenes, const FindScene& find,
                         std::span<const Entry> entries);
 

@@ -1,4 +1,4 @@
-// What all cases of a comparison come to.
+// Summarises all cases of a comparison.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -19,7 +19,7 @@
 namespace broadside::lab {
 namespace {
 
-/// "1.04 (1.03 to 1.05)": of many cases, a third digit means something.
+/// "1.04 (1.03 to 1.05)": a mean over many cases has three meaningful digits.
 std::string mean_text(const MeanRatio& ratio) {
   return fmt::format("{:.3g} ({:.3g} to {:.3g})", ratio.mean, ratio.interval.low, ratio.interval.high);
 }
@@ -35,7 +35,7 @@ struct Ratios {
     names.push_back(name_of(result.of));
   }
 
-  /// The case whose ratio is the greatest, or the least.
+  /// The case with the maximum or the minimum ratio.
   template <typename Order>
   std::size_t extreme(Order order) const {
     const auto found = std::ranges::max_element(pairs, order, &RatiosBySeed::median);
@@ -43,8 +43,8 @@ struct Ratios {
   }
 };
 
-/// How far auto is from the best of our own algorithms, over all cases, as a line; empty where it is not in
-/// the comparison with another one.
+/// A line with auto's time relative to the best of our own algorithms, over all cases; empty unless both are
+/// in the comparison.
 std::string auto_text(const Comparison& comparison) {
   Ratios ratios;
   for (const CaseResult& result : comparison.cases) ratios.add(result, auto_of(result), best_own_of(result));
@@ -56,8 +56,8 @@ std::string auto_text(const Comparison& comparison) {
       fmt::format("{:.3g}", ratios.pairs[worst].median()), ratios.names[worst]);
 }
 
-/// How many times as fast as the fastest of a kind, which is called `rival`, `name` is, which `entry_of`
-/// picks in each case, as a line; empty where no case has both.
+/// A line that says how many times as fast as the fastest of a kind (called `rival`) the algorithm `name` is,
+/// which `entry_of` selects in each case; empty if no case has both.
 template <typename EntryOf>
 std::string lead_text(const Comparison& comparison, AlgorithmKind kind, std::string_view rival,
                       std::string_view name, const EntryOf& entry_of) {
@@ -96,7 +96,7 @@ std::vector<Standing> standings(const Comparison& comparison) {
   return all;
 }
 
-/// How many were left out and why, as a line; empty where none was.
+/// A line with the number of skipped measurements and the reasons; empty if there are none.
 std::string left_out_text(const Comparison& comparison) {
   std::size_t skipped = 0;
   std::size_t over_budget = 0;

@@ -18,7 +18,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Lines are printed one by one, as cases end: their columns have widths of their own.
+/// Lines are printed one by one, when cases end, so their columns have fixed widths.
 std::string line(std::string_view name, std::string_view own, std::string_view chosen, std::string_view peer,
                  std::string_view lead, std::string_view verified) {
   return fmt::format("{:<48}  {:<25}  {:<19}  {:<30}  {:<19}  {}\n", name, own, chosen, peer, lead, verified);
@@ -69,7 +69,7 @@ std::string heading(const CaseResult& result) {
   return text + "\n";
 }
 
-/// How many times as fast as the fastest peer our best is, as a line; empty where one of the two is missing.
+/// A line with our best's speed relative to the fastest peer; empty if one of the two is missing.
 std::string lead_text(const CaseResult& result) {
   const Measurement* const own = best_own_of(result);
   const Measurement* const peer = fastest_of_kind(result, AlgorithmKind::peer);
@@ -78,7 +78,7 @@ std::string lead_text(const CaseResult& result) {
                      ratio_text(peer->to_best_own->median, peer->to_best_own->interval), peer->algorithm);
 }
 
-/// What algorithms that choose have chosen, a line each.
+/// The choices of algorithms that choose, one line each.
 std::string explanations_of(const CaseResult& result) {
   std::string text;
   for (const Measurement& measurement : result.measurements) {
@@ -100,13 +100,13 @@ std::string verdict(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
-/// The fastest one's time; 0 where nothing was timed.
+/// The time of the fastest algorithm; 0 without a timed one.
 double min_time(const CaseResult& result) {
   const Measurement* const fastest = fastest_of(result);
   return fastest == nullptr ? 0 : time_of(*fastest);
 }
 
-/// What the rows of a case's table share.
+/// Values shared by the rows of a case's table.
 struct Scale {
   explicit Scale(const CaseResult& result)
       : fastest(min_time(result)),
@@ -121,7 +121,7 @@ struct Scale {
     return measurement.estimated_ms ? "~" + unit.text(time_of(measurement)) + " est." : "-" + no_mark;
   }
 
-  /// The ratio to the fastest and, in a cell of its own, its interval.
+  /// The ratio to the fastest and, in its own cell, the interval.
   std::string ratio(const Measurement& measurement) const {
     if (measurement.to_fastest) return ratio_text(measurement.to_fastest->median);
     const double ratio = fastest > 0 ? time_of(measurement) / fastest : INFINITY;
@@ -146,7 +146,7 @@ struct Scale {
   double fastest;
   Unit unit;
   double boxes;
-  std::string no_mark{};  // as wide as " est.", where there is one
+  std::string no_mark{};  // as wide as " est.", if one occurs
 };
 
 std::string still_rows(const CaseResult& result) {
@@ -155,7 +155,7 @@ std::string still_rows(const CaseResult& result) {
   const auto range = [&](const std::vector<double>& samples) {
     return scale.unit.text(std::ranges::min(samples)) + ".." + scale.unit.text(std::ranges::max(samples));
   };
-  // Where there is no floor, there is no column for it.
+  // Without a lower bound there is no column for it.
   AlignedColumns columns(floor > 0 ? "<>><>>>>><<" : "<>><>>>><<");
   const auto add = [&](std::vector<std::string> row, const std::string& over_floor) {
     if (floor > 0) row.insert(row.begin() + 4, over_floor);
@@ -210,7 +210,7 @@ std::string moving_rows(const CaseResult& result) {
 
 std::string interval_text(const std::optional<Interval>& interval) {
   if (!interval) return "-";
-  // A wide interval that holds 1 does not say that the two are level, only that nothing is known.
+  // A wide interval that contains 1 does not show that the two are level, only that nothing is known.
   constexpr double wide = 1.5;
   if (interval->includes(1) && interval->high <= wide && interval->low >= 1 / wide) return "level";
   return ratio_text(interval->low) + " to " + ratio_text(interval->high);

@@ -1,4 +1,5 @@
-// Boxes that come, move, jump and go: random histories that do everything a history may do.
+// Random histories in which boxes are added, move, jump and are removed: everything that a history may
+// contain.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -95,7 +96,7 @@ class ChurnMaker {
     return box;
   }
 
-  /// Puts some of the bounds at infinity, or at the end of the floats.
+  /// Sets some of the bounds to infinity, or to the largest float.
   void make_huge(Box<D>& box) {
     const float end = random_.chance(0.7) ? infinity : largest;
     for (int axis = 0; axis < D; ++axis) {
@@ -107,7 +108,7 @@ class ChurnMaker {
   Churn churn_;
   std::size_t side_;  // of the world
   Random random_;
-  std::vector<Box<D>> boxes_;  // as they are now
+  std::vector<Box<D>> boxes_;  // the current ones
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Scenes of real boxes, from the files that tools/setup/setup fetches.
+// Scenes of real boxes, from the files that tools/setup/setup downloads.
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -9,7 +9,7 @@
 namespace broadside::lab::generated {
 namespace {
 
-/// Where tools/setup/setup puts the file of this name, or the folder $BROADSIDE_DATA has it.
+/// The path of a data file: in the folder $BROADSIDE_DATA, or where tools/setup/setup puts it.
 std::filesystem::path data_file(const std::string& name) {
   const char* const folder = std::getenv("BROADSIDE_DATA");
   return std::filesystem::path(folder != nullptr ? folder : BROADSIDE_DATA_FOLDER) / name;
@@ -21,8 +21,8 @@ std::string missing_data(const std::filesystem::path& file) {
   return std::filesystem::exists(file, ignored) ? "" : file.string() + " is missing; run tools/setup/setup";
 }
 
-/// A map, described: `part` is the part of the format with a box a `feature`. The lines around features, each
-/// once where two share it, are in a file of their own.
+/// A map scene. `part` is the format's kind of element with a box per `feature`. The lines around features,
+/// each once if two features share it, are in a separate file.
 Scene map_scene(Scene scene, const std::string& map, const std::string& lines, const std::string& part,
                 const std::string& feature) {
   const std::filesystem::path map_file = data_file(map);
@@ -48,7 +48,8 @@ Scene map_scene(Scene scene, const std::string& map, const std::string& lines, c
 
 }  // namespace
 
-// The triangles of the Stanford bunny: a surface, where boxes are many in space but few on a line through it.
+// The triangles of the Stanford bunny: a surface, so there are many boxes in space but few on a line through
+// it.
 Scene bunny() {
   Scene scene{.name = "bunny",
               .summary = "the triangles of the Stanford bunny; seen along the z axis in 2D",
@@ -67,7 +68,7 @@ Scene bunny() {
   return scene;
 }
 
-// Maps: neighbours that share borders, and coasts, whose lines have segments of every length.
+// Maps: neighbours with common borders, and coasts, whose lines have segments of every length.
 Scene counties() {
   return map_scene({.name = "counties",
                     .summary = "the counties of the United States, in degrees",

@@ -1,5 +1,5 @@
-// The worst that the worst-case hunt (bench/worst) found: inputs of its families with the values that were
-// slowest, each for a reason of its own.
+// The worst inputs that the worst-case hunt (bench/worst) found: its families with the slowest values, each
+// slow for a different reason.
 #include <array>
 #include <string>
 
@@ -9,11 +9,11 @@
 namespace broadside::lab::generated {
 namespace {
 
-/// A scene that is an input of the hunt in floats.
+/// A scene made from an input of the hunt, in float.
 struct HuntedScene {
   const char* name;
   const char* summary;
-  const char* input;  // what the hunt calls it
+  const char* input;  // the hunt's name for it
   bool fixed_seed = false;
 };
 

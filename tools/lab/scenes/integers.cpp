@@ -1,11 +1,11 @@
-// Scenes with integer coordinates: equal under every compiler, and full of exact ties.
+// Scenes with integer coordinates: the same with every compiler, and with many exact ties.
 #include "lab/scenes/registry.hpp"
 #include "lab/scenes/scatter.hpp"
 
 namespace broadside::lab::generated {
 namespace {
 
-/// Boxes on random integers, points among them: the same boxes whatever the compiler, for golden hashes.
+/// Boxes at random integers, some of them points: the same boxes with every compiler, for golden hashes.
 template <int D>
 std::vector<Box<D>> make_integers(const Settings&, std::size_t count, std::uint64_t seed) {
   constexpr std::uint64_t longest = 8;
@@ -21,7 +21,7 @@ std::vector<Box<D>> make_integers(const Settings&, std::size_t count, std::uint6
   return boxes;
 }
 
-/// The least side of a lattice that has room for `count` boxes.
+/// The minimum side of a lattice with room for `count` boxes.
 template <int D>
 std::uint64_t lattice_side(std::size_t count) {
   const auto room = [](std::uint64_t side) { return D == 2 ? side * side : side * side * side; };
@@ -60,7 +60,7 @@ class PublishedRandom {
 };
 
 /// The scene of Pierre Terdiman's "Box pruning revisited" (codercorner.com), number for number, so that its
-/// published pair count checks us: 11,811 pairs at n = 10,000 in 3D.
+/// published pair count verifies the library: 11,811 pairs at n = 10,000 in 3D.
 template <int D>
 std::vector<Box<D>> make_terdiman(const Settings&, std::size_t count, std::uint64_t) {
   PublishedRandom random;

@@ -1,5 +1,5 @@
 // The uniform boxes of SwiftSpatial (Jiang et al., SIGMOD 2025, arXiv 2309.16520), as its data_gen.py makes
-// them: squares of side 1 in a world 10,000 wide, by NumPy's legacy generator, written with two decimals.
+// them: squares of side 1 in a world 10,000 wide, from NumPy's legacy generator, written with two decimals.
 #include "lab/scenes/join_table.hpp"
 
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace broadside::lab {
 namespace {
 
-/// As numpy.random.rand() after numpy.random.seed(): the Mersenne twister, and 53 bits of two of its numbers.
+/// The numbers of numpy.random.rand() after numpy.random.seed(): the Mersenne twister, with 53 bits from two
+/// of its numbers.
 class LegacyNumpy {
  public:
   explicit LegacyNumpy(std::uint32_t seed) : twister_(seed) {}
@@ -25,8 +26,8 @@ class LegacyNumpy {
   std::mt19937 twister_;
 };
 
-/// What is read back after `coordinate` was written with two decimals, as by printf's %.2f: the decimal
-/// nearest to its exact value. The product's rounding error, which fma gives, decides where it is close.
+/// The number read back after `coordinate` was written with two decimals, as by printf's %.2f: the decimal
+/// nearest to its exact value. In close cases, the product's rounding error, computed by fma, decides.
 double with_two_decimals(double coordinate) {
   const double product = coordinate * 100;
   const double error = std::fma(coordinate, 100.0, -product);

@@ -13,8 +13,9 @@ namespace broadside::lab {
 inline constexpr std::uint32_t join_table_left = 123;
 inline constexpr std::uint32_t join_table_right = 456;
 
-/// The first `count` boxes of the set that is drawn from `seed`: those of SwiftSpatial's `data_gen.py`, bit
-/// by bit. Of both sets, 1,000,000 boxes each, 40,428 pairs overlap, and of 10,000,000 each, 4,040,818.
+/// The first `count` boxes of the set generated from `seed`: those of SwiftSpatial's `data_gen.py`, bit for
+/// bit. Between the two sets, 40,428 pairs overlap with 1,000,000 boxes in each set, and 4,040,818 with
+/// 10,000,000.
 std::vector<DoubleBox2> join_table_set(std::size_t count, std::uint32_t seed);
 
 }  // namespace broadside::lab

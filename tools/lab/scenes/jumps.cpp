@@ -1,4 +1,4 @@
-// Motion with a jolt: boxes that drift, and now and then a frame in which every one is put elsewhere.
+// Motion with jolts: boxes drift, and in an occasional frame every box jumps elsewhere.
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -29,7 +29,7 @@ History<D> make_jumps(const Settings& settings, const SceneRequest& request) {
     Step<D> step{boxes.size(), {}, {}};
     if (frame % every == 0) {
       drifting.reset();
-      // Another seed's boxes, which no other seed of a few starts from.
+      // The boxes of another seed, far from the small seeds that users choose.
       step.boxes = uniform_boxes<D>(request, request.seed + (frame << 32));
       for (std::size_t i = 0; i < boxes.size(); ++i) step.changed.push_back(BoxId(i));
     } else {

@@ -1,4 +1,4 @@
-// Still boxes set moving, and turned back at the bounds they had when they were still.
+// Sets still boxes moving, within the bounds that they had at rest.
 #include "lab/scenes/motion.hpp"
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace broadside::lab {
 
-/// How far a box has gone on one axis from where it was in the first frame, and how far it may go.
+/// A box's displacement on one axis since the first frame, and its limits.
 struct AxisMotion {
   double offset = 0;
-  double speed = 0;  // a frame
-  double min;      // <= 0
-  double max;       // >= 0
+  double speed = 0;  // per frame
+  double min;        // <= 0
+  double max;        // >= 0
 
   void advance() {
     if (min == max) return;
@@ -34,7 +34,7 @@ struct AxisMotion {
   }
 };
 
-/// A box that moves, from its place in the first frame.
+/// A moving box, relative to its place in the first frame.
 template <int D, typename Real>
 struct MovingBox {
   BoxId id;
@@ -73,7 +73,7 @@ double mean_extent(const Box<D, Real>& box) {
   return sum / D;
 }
 
-/// A direction times a length, in whole numbers, at least one of them not 0.
+/// A direction times a length, as integers that are not all 0.
 template <int D>
 void make_whole(std::array<double, D>& velocity) {
   const auto steepest =
@@ -140,7 +140,7 @@ MovingBoxes<D, Real>::MovingBoxes(std::span<const Box<D, Real>> boxes, const Sce
   check_range("moving", request.moving, 1);
   check_range("teleport", request.teleport, 1);
   check_range("drift", request.drift, std::numeric_limits<double>::max());
-  // Not the stream that the boxes came from: their places must not say where they go.
+  // A different stream from that of the boxes, so that their positions and directions are independent.
   state_ = std::make_unique<State>(
       State{request, whole_steps, boxes.size(), Random(request.seed ^ 0x6d6f74696f6e0000U), {}, {}});
   state_->movers = draw_movers<D, Real>(boxes, request, whole_steps, state_->random);

@@ -1,4 +1,4 @@
-// Motion: still boxes set moving, and random histories that do everything a history may do.
+// Motion: still boxes set moving, and random histories that contain everything a history may contain.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace broadside::lab {
 
-/// Boxes set moving, one step at a time: for motion that is too long to be kept.
+/// Still boxes set moving, one step at a time: for motion that is too long to keep in memory.
 ///
-/// A fraction request.moving of the boxes, drawn once, are movers. Each goes in a direction of its own,
-/// request.drift times its mean extent a frame (the mean of all boxes where it is a point), and turns back at
-/// the bounds of `boxes`, so that none ever leaves them; in each frame the fraction request.teleport of the
-/// movers, drawn anew, jumps anywhere within the bounds instead. Sizes stay as they are but for rounding.
-/// Boxes with an infinite extent, and absent ones, do not move.
+/// A fraction request.moving of the boxes, chosen once, are movers. Each moves in its own direction by
+/// request.drift times its mean extent per frame (the mean of all boxes if it is a point), and is reflected
+/// at the bounds of `boxes`, so that it never leaves them. In each frame, a random fraction request.teleport
+/// of the movers jumps anywhere within the bounds instead. Sizes are constant apart from rounding. Infinite
+/// and absent boxes do not move.
 ///
-/// With `whole_steps`, a mover goes a whole number a frame on each axis, at least 1 on one, so that integers
-/// remain integers. Memory O(movers), a step costs O(movers).
+/// With `whole_steps`, a mover moves by an integer per frame on each axis, at least 1 on one of them, so that
+/// integers remain integers. Memory: O(movers). A step costs O(movers).
 template <int D, typename Real = float>
 class MovingBoxes {
  public:
-  /// Throws InvalidSpec if a fraction is not from 0 to 1, or the drift is negative or not finite.
+  /// Throws InvalidSpec if a fraction is not from 0 to 1, or if the drift is negative or not finite.
   MovingBoxes(std::span<const Box<D, Real>> boxes, const SceneRequest& request, bool whole_steps);
   ~MovingBoxes();
   MovingBoxes(const MovingBoxes&) = delete;
   MovingBoxes& operator=(const MovingBoxes&) = delete;
 
-  /// The step to the next frame: the movers that are elsewhere than before.
+  /// The step to the next frame: the movers whose bounds changed.
   Step<D, Real> next();
 
  private:
@@ -38,22 +38,22 @@ class MovingBoxes {
   std::unique_ptr<State> state_;
 };
 
-/// The first request.frames steps of MovingBoxes, kept. Cost O(frames x movers) in time and memory.
+/// The first request.frames steps of MovingBoxes, in memory. Cost: O(frames x movers) time and memory.
 template <int D, typename Real = float>
 History<D, Real> set_moving(std::vector<Box<D, Real>> boxes, const SceneRequest& request, bool whole_steps);
 
-/// What a random history is to contain.
+/// The contents of a random history.
 struct Churn {
-  std::size_t boxes = 60;      ///< about how many boxes there are
+  std::size_t boxes = 60;      ///< approximate number of boxes
   std::size_t frames = 30;     ///< steps after the first frame
   std::uint64_t seed = 1;      ///< the same seed gives the same history on every machine
-  bool infinite_boxes = true;  ///< whether some boxes are infinite, and some as large as a float can be
+  bool infinite_boxes = true;  ///< whether some boxes are infinite, and some as large as floats allow
 };
 
-/// A history for tests of trackers. From frame to frame boxes are added, moved, removed and teleported;
-/// places are used again, some in the very frame in which their box is removed; the array grows and shrinks;
-/// some frames change nothing, some everything, and some list a box that stays as it was. Coordinates are
-/// small integers, so ties abound; among the boxes are points, duplicates and -0.0.
+/// A history for tests of trackers. From frame to frame, boxes are added, moved, removed and teleported;
+/// places are reused, some in the frame in which their box is removed; the array grows and shrinks; some
+/// frames change nothing, some everything, and some list an unchanged box. Coordinates are small integers, so
+/// ties are frequent; there are points, duplicates and -0.0.
 template <int D>
 History<D> random_history(const Churn& churn);
 

@@ -1,6 +1,6 @@
-// A pile at rest, as an engine that lets no body sleep sees it: boxes stacked to a pyramid that sways a
-// little and trembles, so that all bounds change in each frame and hardly a pair does. Modelled on steps 60
-// to 160 of the pyramid of 100 rows that comes with Box2D v3.
+// A pile at rest, as in an engine whose bodies never sleep: boxes stacked to a pyramid that sways and
+// trembles slightly, so that all bounds change in each frame but hardly any pair does. Modelled on steps 60
+// to 160 of the pyramid of 100 rows in Box2D v3's samples.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,18 +12,18 @@
 namespace broadside::lab::generated {
 namespace {
 
-// In boxes, whose bounds have a skin, so that those of neighbours overlap.
+// In units of a box; bounds have a skin, so those of neighbours overlap.
 constexpr double next_beside = 1.0033;
 constexpr double next_above = 0.9914;
 constexpr double min_extent = 1.04;
 constexpr double max_extent = 1.056;
 constexpr double tremble = 1e-4;  // to either side
 
-/// One in this many boxes ends where its neighbour begins, so that trembling parts and joins them.
+/// One in this many boxes ends where its neighbour begins, so that trembling separates and joins them.
 constexpr std::uint64_t boxes_touching = 500;
 
-/// Nearly a sine of this many turns, between -1 and 1, from arithmetic that is exact everywhere. At most, it
-/// changes by 8 a turn.
+/// Approximates a sine of this many turns, between -1 and 1, with arithmetic that is exact on every machine.
+/// Its slope is at most 8 per turn.
 double wave(double turns) {
   const double phase = turns - std::floor(turns);
   return phase < 0.5 ? 16 * phase * (0.5 - phase) : -16 * (phase - 0.5) * (1 - phase);
@@ -44,7 +44,7 @@ class Pile {
     }
   }
 
-  /// The boxes of a frame; those of each frame are asked for once, in order.
+  /// The boxes of a frame; call once for each frame, in order.
   std::vector<Box<D>> boxes(std::size_t frame) {
     std::vector<Box<D>> boxes(rest_.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -63,10 +63,10 @@ class Pile {
   struct Resting {
     std::array<double, D> min;
     std::array<double, D> max;
-    double height;  // over that of the pile
+    double height;  // relative to the pile's height
   };
 
-  /// How many boxes a pile of this many rows has.
+  /// The number of boxes in a pile of this many rows.
   static std::size_t capacity(std::size_t rows) {
     return D == 2 ? rows * (rows + 1) / 2 : rows * (rows + 1) * (2 * rows + 1) / 6;
   }
@@ -81,7 +81,7 @@ class Pile {
     rest_.push_back(ground);
   }
 
-  /// A row of boxes in 2D, a layer in 3D, as far as there are boxes left.
+  /// Adds a row of boxes in 2D, a layer in 3D, while there are boxes left.
   void add_row(std::size_t row, std::size_t count) {
     const std::size_t side = rows_ - row;
     const std::size_t boxes = std::min(D == 2 ? side : side * side, count - rest_.size());
@@ -104,8 +104,8 @@ class Pile {
     }
   }
 
-  /// How far a box is from its place: the pile bends sideways in the middle and breathes towards its top, and
-  /// the motion travels up through it.
+  /// A box's displacement: the pile bends sideways in the middle and breathes towards its top, and the motion
+  /// travels upwards.
   double sway(std::size_t axis, double height, std::size_t frame) const {
     constexpr std::array<double, 3> periods = {48, 36, 54};
     const double bend = 4 * height * (1 - height);
@@ -118,7 +118,7 @@ class Pile {
   Random random_;
   std::array<double, D> phases_{};
   std::size_t rows_ = 0;
-  std::vector<Resting> rest_;  // the ground, and then row by row
+  std::vector<Resting> rest_;  // the ground, then row by row
 };
 
 template <int D>

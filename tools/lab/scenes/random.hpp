@@ -1,5 +1,6 @@
-// Random numbers that are the same on every machine and under every compiler: Vigna's splitmix64, and exact
-// arithmetic on top of it, because the standard library's distributions and libm differ from one to the next.
+// Random numbers that are the same on every machine and with every compiler: Vigna's splitmix64, and exact
+// arithmetic, because the distributions of the standard library and the functions of libm differ between
+// implementations.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace broadside::lab {
 
-/// A stream of random numbers, fixed by its seed.
+/// A stream of random numbers, determined by its seed.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -31,20 +32,21 @@ class Random {
   /// Uniform in [low, high).
   double between(double low, double high) noexcept { return low + (high - low) * fraction(); }
 
-  /// A whole number in [0, count), for 0 < count <= 2^32.
+  /// An integer in [0, count), for 0 < count <= 2^32.
   std::uint64_t below(std::uint64_t count) noexcept { return (bits() >> 32) * count >> 32; }
 
   /// True with the given probability.
   bool chance(double probability) noexcept { return fraction() < probability; }
 
-  /// Mean 0, standard deviation 1, nearly normal: the sum of twelve uniform numbers needs no logarithm.
+  /// Approximately normal with mean 0 and standard deviation 1: the sum of twelve uniform numbers, which
+  /// needs no logarithm.
   double gaussian() noexcept {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += fraction();
     return sum;
   }
 
-  /// A vector of length 1 in any direction.
+  /// A vector of length 1 in a random direction.
   template <int D>
   std::array<double, D> direction() noexcept {
     for (;;) {
@@ -54,14 +56,15 @@ class Random {
         component = between(-1, 1);
         square += component * component;
       }
-      // Only points of the ball: the corners of the cube would be favoured. Not its middle: it rounds badly.
+      // Accepts only points of the ball, because the corners of the cube would bias directions; rejects its
+      // centre, where rounding is poor.
       if (square > 1 || square < 0.01) continue;
       for (double& component : vector) component /= std::sqrt(square);
       return vector;
     }
   }
 
-  /// Puts the first `count` of `values` in a random order, drawn from all of them.
+  /// Moves a random choice of `count` of the values to the front, in random order.
   template <typename T>
   void shuffle(std::vector<T>& values, std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i) std::swap(values[i], values[i + below(values.size() - i)]);

@@ -1,4 +1,4 @@
-// The descriptions in which the files of this folder end, for the list of scenes.
+// The scene descriptions that the files of this folder define, for the list of scenes.
 #pragma once
 
 #include <vector>

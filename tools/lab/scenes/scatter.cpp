@@ -1,4 +1,4 @@
-// Boxes of given sizes, spread so that each touches a given number of others on average.
+// Boxes of given sizes, scattered so that each touches a given number of others on average.
 #include "lab/scenes/scatter.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace broadside::lab {
 namespace {
 
-/// The chance that two boxes of these sizes touch, centred uniformly in a cube of this side.
+/// The probability that two boxes of these sizes touch, if centred uniformly in a cube of this side.
 template <int D>
 double chance_of_touching(const Size<D>& a, const Size<D>& b, double side, int first_axis) {
   double chance = 1;
@@ -17,7 +17,7 @@ double chance_of_touching(const Size<D>& a, const Size<D>& b, double side, int f
   return chance;
 }
 
-/// The same for two boxes among `sizes`, which are in no order: next ones make as good a sample as any.
+/// The same for a random pair of `sizes`. These are in random order, so consecutive ones are a fair sample.
 template <int D>
 double mean_chance(std::span<const Size<D>> sizes, double side, int first_axis) {
   constexpr std::size_t enough = 1 << 16;
@@ -66,8 +66,8 @@ double world_side(std::span<const Size<D>> sizes, double neighbours, int first_a
   if (sizes.size() < 2) return 0;
   const double wanted = neighbours / static_cast<double>(sizes.size() - 1);
   if (wanted >= 1) return 0;
-  // In a wide world the chance goes with side^-axes, so one step nearly arrives; where boxes fill the world
-  // the steps fall short but never overshoot.
+  // In a wide world the probability is proportional to side^-axes, so one step nearly arrives; if boxes fill
+  // the world, steps are too short but never overshoot.
   const double inverse_axes = 1.0 / (D - first_axis);
   double side = 1;
   for (int i = 0; i < 50; ++i) {
@@ -81,8 +81,7 @@ double world_side(std::span<const Size<D>> sizes, double neighbours, int first_a
 template <int D>
 std::uint64_t integer_side(std::size_t count, std::uint64_t longest_side) {
   constexpr std::uint64_t neighbours = 4;
-  // Two such intervals, longest_side / 2 long on average, touch at longest_side + 1 of the places they may
-  // have.
+  // Two such intervals, longest_side / 2 long on average, touch at longest_side + 1 of the possible places.
   const auto volume = [](std::uint64_t side) { return D == 2 ? side * side : side * side * side; };
   std::uint64_t side = 1;
   while (volume(side) * neighbours < count * volume(longest_side + 1)) ++side;

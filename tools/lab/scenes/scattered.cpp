@@ -1,4 +1,4 @@
-// Scenes of boxes scattered at random, each with another spread of sizes or places.
+// Scenes of boxes scattered at random, with different distributions of sizes and places.
 #include <algorithm>
 
 #include "lab/scenes/registry.hpp"
@@ -7,7 +7,7 @@
 namespace broadside::lab::generated {
 namespace {
 
-/// Boxes of about one size, anywhere alike: the case that most broad phases are made for.
+/// Boxes of similar size, uniformly distributed: the case that most broad phases are made for.
 template <int D>
 std::vector<Box<D>> make_uniform(const Settings& settings, std::size_t count, std::uint64_t seed) {
   Random random(seed);
@@ -16,7 +16,8 @@ std::vector<Box<D>> make_uniform(const Settings& settings, std::size_t count, st
   return scatter<D>(sizes, settings.number("neighbours"), random);
 }
 
-/// A size from 1 to `ratio` with density size^-exponent, by the inverse of the distribution at `fraction`.
+/// A size from 1 to `ratio` with density size^-exponent: the inverse of the distribution function at
+/// `fraction`.
 double draw(double exponent, double ratio, double fraction) {
   if (std::abs(exponent - 1) < 1e-6) return power(ratio, fraction);
   const double last = power(ratio, 1 - exponent);
@@ -38,7 +39,7 @@ std::vector<Box<D>> make_power_law(const Settings& settings, std::size_t count, 
   return scatter<D>(sizes, settings.number("neighbours"), random);
 }
 
-/// A few huge boxes among many small ones: what grids with one cell size fear.
+/// A few huge boxes among many small ones. The worst case for a grid with one cell size.
 template <int D>
 std::vector<Box<D>> make_mixed(const Settings& settings, std::size_t count, std::uint64_t seed) {
   constexpr std::size_t one_in = 100;
@@ -53,15 +54,16 @@ std::vector<Box<D>> make_mixed(const Settings& settings, std::size_t count, std:
   return scatter<D>(sizes, settings.number("neighbours"), random);
 }
 
-/// Boxes in clusters with empty space between: what a structure that divides space evenly fears.
+/// Boxes in clusters with empty space between them. The worst case for a structure that divides space evenly.
 template <int D>
 std::vector<Box<D>> make_clustered(const Settings& settings, std::size_t count, std::uint64_t seed) {
   const auto clusters = static_cast<std::uint64_t>(settings.integer("clusters"));
   const double spread = settings.number("spread");
   const double neighbours = settings.number("neighbours");
 
-  // Two centres of one cluster lie within r << deviation of each other, on one axis, with a chance of
-  // r / (deviation sqrt(pi)); of two clusters, 2 r / world. The mean r of two boxes is 1.
+  // On one axis, two centres of the same cluster are within r << deviation of each other with probability r /
+  // (deviation sqrt(pi)), and centres of two clusters with probability 2 r / world. The mean r of two boxes
+  // is 1.
   const double others = count < 2 ? 1 : static_cast<double>(count - 1);
   const double in_one = 1 / static_cast<double>(clusters);
   const double root_of_pi = 1.7724538509055160;
@@ -84,7 +86,7 @@ std::vector<Box<D>> make_clustered(const Settings& settings, std::size_t count, 
   return boxes;
 }
 
-/// Long thin boxes along the axes, as roads, walls and wires are.
+/// Long thin boxes along the axes, like roads, walls and wires.
 template <int D>
 std::vector<Box<D>> make_thin(const Settings& settings, std::size_t count, std::uint64_t seed) {
   const double aspect = settings.number("aspect");
@@ -97,8 +99,8 @@ std::vector<Box<D>> make_thin(const Settings& settings, std::size_t count, std::
   return scatter<D>(sizes, settings.number("neighbours"), random);
 }
 
-/// A few boxes as long as the world among many small ones, as walls, rivers and power lines are: what a plan
-/// that gives each part of space its boxes fears.
+/// A few boxes as long as the world among many small ones, like walls, rivers and power lines. The worst case
+/// for a partition that copies a box into each part it touches.
 template <int D>
 std::vector<Box<D>> make_walls(const Settings& settings, std::size_t count, std::uint64_t seed) {
   const auto one_in = std::min<std::size_t>(static_cast<std::size_t>(settings.integer("one_in")), count);
@@ -122,7 +124,7 @@ std::vector<Box<D>> make_walls(const Settings& settings, std::size_t count, std:
   return boxes;
 }
 
-/// Boxes with one and the same interval on the x axis: a sweep along x prunes nothing.
+/// Boxes with the same interval on the x axis: a sweep along x prunes nothing.
 template <int D>
 std::vector<Box<D>> make_one_line(const Settings& settings, std::size_t count, std::uint64_t seed) {
   Random random(seed);
@@ -142,7 +144,7 @@ std::vector<Box<D>> make_one_line(const Settings& settings, std::size_t count, s
   return boxes;
 }
 
-/// Boxes that all share a point, so that every two overlap: the worst case of every algorithm.
+/// Boxes that share a point, so that every two overlap: the worst case for every algorithm.
 template <int D>
 std::vector<Box<D>> make_one_point(const Settings&, std::size_t count, std::uint64_t seed) {
   Random random(seed);

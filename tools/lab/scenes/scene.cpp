@@ -1,4 +1,4 @@
-// The one list of scenes, and how a scene found by name becomes a history.
+// The list of scenes, and how a scene found by name becomes a history.
 #include "lab/scenes/scene.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Every scene that the lab knows; those missing from this build last.
+/// Every scene that the lab knows; those missing from this build come last.
 struct SceneList {
   std::vector<Scene> scenes = {
       generated::uniform(),   generated::power_law(),  generated::mixed(),   generated::clustered(),
@@ -31,13 +31,13 @@ struct SceneList {
       generated::thin(),      generated::terdiman(),   generated::churn(),   generated::jumps(),
       generated::pile(),      generated::join_table(), generated::walls(),
   };
-  std::size_t there = 0;  // how many are not missing
+  std::size_t there = 0;  // number of scenes that are not missing
 
   SceneList() {
     for (const std::vector<Scene>& more : {generated::hard(), recordings::box2d(), recordings::bullet()})
       scenes.insert(scenes.end(), more.begin(), more.end());
     scenes.insert(scenes.end(), {generated::bunny(), generated::counties(), generated::coastlines()});
-    // Not std::ranges' version: clang 14 cannot compile what it returns.
+    // Not the std::ranges version: clang 14 cannot compile its result type.
     const auto missing = std::stable_partition(scenes.begin(), scenes.end(),
                                                [](const Scene& scene) { return scene.missing.empty(); });
     there = static_cast<std::size_t>(missing - scenes.begin());
@@ -81,7 +81,7 @@ std::span<const Scene> missing_scenes() { return std::span(scene_list().scenes).
 NamedScene find_scene(std::string_view text) { return find_scene(text, {}); }
 
 NamedScene find_scene(std::string_view text, const ReadOptions& files) {
-  // A file's name may have a colon in it.
+  // A file's name may contain a colon.
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(text, ignored);
   Spec spec = is_file ? Spec{std::string(text), {}} : Spec(text);

@@ -1,4 +1,4 @@
-// Playback: a recording with pairs, frame by frame.
+// Playback: steps through a recording with pairs, frame by frame.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace broadside::lab {
 
-/// Plays a recording that holds pairs; begins in its first frame.
+/// Steps through a recording with pairs; starts at its first frame.
 template <int D, typename Real>
 class Playback {
  public:
@@ -21,7 +21,7 @@ class Playback {
   const std::vector<Box<D, Real>>& boxes() const noexcept { return boxes_; }
   const RecordedFrame& pairs() const noexcept { return pairs_; }
 
-  /// Goes on to the next frame; false where there is none.
+  /// Moves on to the next frame; false if there is none.
   bool next() {
     if (frame_ == recording_.history.steps.size()) return false;
     const Step<D, Real>& step = recording_.history.steps[frame_++];

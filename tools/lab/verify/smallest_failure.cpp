@@ -1,4 +1,4 @@
-// The smallest history of boxes on which an algorithm fails.
+// Finds the smallest history of boxes on which an algorithm fails.
 #include <exception>
 #include <new>
 #include <utility>
@@ -16,7 +16,7 @@
 namespace broadside::lab {
 namespace {
 
-/// The most boxes whose expected pairs are the definition's while a failure is made smaller.
+/// While a failure is minimised, the expected pairs of at most this many boxes come from brute force.
 constexpr std::size_t max_boxes_made_smaller_by_definition = 2'000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The smallest recording in which an engine's pair is wrong.
+// Finds the smallest recording in which an engine's pair is wrong.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -9,7 +9,7 @@
 namespace broadside::lab {
 namespace {
 
-/// What two boxes are in a frame, and what is reported of them.
+/// Two boxes in a frame, and the pairs reported of them.
 template <int D, typename Real>
 struct Moment {
   std::array<Box<D, Real>, 2> boxes = {absent_box<D, Real>(), absent_box<D, Real>()};
@@ -28,7 +28,7 @@ struct Moment {
     is_ignored = std::ranges::binary_search(playback.pairs().ignored(), pair);
   }
 
-  /// What has changed since the frame before, where the boxes are in slots 0 and 1.
+  /// The changes since the previous frame, with the boxes in slots 0 and 1.
   RecordedPairs since(const Moment& before, double margin) const {
     constexpr Pair pair{BoxId{0}, BoxId{1}};
     RecordedPairs changes{.margin = margin};

@@ -1,4 +1,4 @@
-// The law, checked: pairs and events against the definition, as sets, each pair exactly once.
+// Compares pairs and events with a brute-force reference.
 #include "lab/verify/verify.hpp"
 
 #include <algorithm>
@@ -18,9 +18,8 @@ std::string text_of(const Box<D, Real>& box) {
   return fmt::format("[({}), ({})]", fmt::join(box.min, ", "), fmt::join(box.max, ", "));
 }
 
-/// Boxes to be tested by the definition: every test is made, several by one instruction. The bounds lie in an
-/// array each and a block of tests is one loop without a branch, which compilers turn into SIMD. Only blocks
-/// in which a test holds are looked at box by box. No code of the library takes part but overlap().
+/// Boxes as a structure of arrays, tested by brute force in SIMD-friendly blocks. Uses nothing of the library
+/// but overlap().
 template <int D, typename Real>
 class AllTests {
  public:
@@ -33,8 +32,8 @@ class AllTests {
     }
   }
 
-  /// Calls `visit` with each place from `begin` on whose box overlaps the one at `place`, ascending; the
-  /// place itself counts as any other.
+  /// Calls `visit` with each place from `begin` on whose box overlaps the one at `place`, ascending; includes
+  /// `place` itself.
   template <typename Visit>
   void for_each_overlap(std::size_t place, std::size_t begin, const Visit& visit) const {
     const Box<D, Real>& box = boxes_[place];
@@ -87,7 +86,7 @@ std::vector<Pair> reference_pairs_of(BoxSpan<D, Real> boxes, std::span<const std
   std::vector<Pair> pairs;
   for (const std::size_t i : places) {
     tests.for_each_overlap(i, 0, [&](std::size_t j) {
-      // A pair of two listed boxes is met twice.
+      // A pair of two listed boxes is found twice.
       if (j != i && !(is_listed[j] && j < i)) pairs.push_back({BoxId(std::min(i, j)), BoxId(std::max(i, j))});
     });
   }

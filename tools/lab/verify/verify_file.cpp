@@ -1,4 +1,4 @@
-// The law on somebody's own file.
+// The equivalence test on a user's file.
 #include "lab/verify/verify_file.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Counterexample write(const History<D, Real>& smallest, const Entry& entry, const
   Counterexample written{entry.spec.text(), path, places_of(smallest), smallest.steps.size() + 1, {}, {}};
   written.command = fmt::format("verify {} --algorithms {}", path.string(), written.algorithm);
   ReadOptions options;
-  // What the file does not say of itself.
+  // Options that the file does not contain.
   const auto add = [&](std::string_view option) { written.command += fmt::format(" {}", option); };
   BoxFile again = open_file(path);
   if (precision_of_frames(again.frames) != precision_of<Real>) {
@@ -124,7 +124,7 @@ bool Verification::all_verified() const {
 }
 
 Verification verify_file(const Catalogue& catalogue, BoxFile file, const VerifyOptions& options) {
-  // What is wrong with the options is known before anything is read.
+  // Checks the options before reading anything.
   catalogue.select(options.algorithms);
   if (has_recorded_pairs(file.frames) && !options.counterexample.empty()) {
     const Format& format = writable_format(options.counterexample);

@@ -1,4 +1,4 @@
-// The law on a history of boxes: every algorithm in every frame.
+// The equivalence test on a history of boxes: every algorithm in every frame.
 #include "lab/verify/verify_history.hpp"
 
 #include <algorithm>
@@ -19,24 +19,24 @@
 namespace broadside::lab {
 namespace {
 
-/// What the definition may take over all frames, in tests of two boxes: some seconds.
+/// The maximum number of brute-force tests over all frames: takes a few seconds.
 constexpr double max_tests_by_definition = 4e9;
 
-/// The pairs that are expected of some entries in the frame that is being looked at.
+/// The pairs that some entries should report in the current frame.
 struct Expectation {
   Reference reference;
   std::vector<Pair> before{};  // sorted
   std::vector<Pair> now{};
-  EntryVerdict fault{};  // of the reference itself; without an algorithm as long as there is none
+  EntryVerdict fault{};  // of the reference itself; without an algorithm if there is none
 };
 
 template <int D, typename Real>
 struct HistoryParticipant {
   const Entry* entry;
-  std::size_t verdict;  // its place in the list
+  std::size_t verdict;  // its index in the list of verdicts
   Expectation* expected;
   Finder<D, Real> finder;
-  std::optional<Tracker<D, Real>> tracker{};  // none for a single frame
+  std::optional<Tracker<D, Real>> tracker{};  // empty for a single frame
   double spent_ms = 0;
   bool done = false;
 };
@@ -66,7 +66,7 @@ class HistoryCheck {
   }
 
  private:
-  /// Finds the fullest frame, and what may be beyond limits.
+  /// Finds the fullest frame, and the extremes that may be beyond limits.
   void look_through() {
     std::vector<Box<D, Real>> boxes = history_.boxes;
     fullest_ = boxes;
@@ -96,7 +96,7 @@ class HistoryCheck {
     result_.verdicts.push_back(std::move(verdict));
   }
 
-  /// Why the budget does not do for one search of the fullest frame; empty if it does.
+  /// Why the budget does not suffice for one search of the fullest frame; empty if it does.
   std::string too_slow(const Entry& entry) {
     const std::string name = entry.spec.text();
     const auto seconds_for = [&](std::size_t count) {
@@ -114,7 +114,7 @@ class HistoryCheck {
         reason = fmt::format("{}; budget {:g} s", text(*estimate), options_.budget_seconds);
       return {};
     });
-    // What it throws on some boxes, it is to throw where it can be looked into.
+    // An algorithm that throws on some boxes should do so in the check that reports it.
     return fault.empty() ? reason : "";
   }
 
@@ -159,7 +159,7 @@ class HistoryCheck {
     }
   }
 
-  /// Compares a sample with the definition where the expected pairs are not its own.
+  /// Compares a sample with brute force if the expected pairs are not from brute force.
   void check_reference(Expectation& expected, std::span<const Box<D, Real>> boxes, std::size_t frame) {
     if (expected.reference.is_definition()) return;
     const std::size_t every = std::max<std::size_t>(history_.steps.size() / sampled_frames, 1);
@@ -168,7 +168,7 @@ class HistoryCheck {
     if (divergence) blame_reference(expected, *std::move(divergence), boxes, frame);
   }
 
-  /// Notes that a reference is wrong.
+  /// Records that a reference is wrong.
   void blame_reference(Expectation& expected, PairDivergence divergence, std::span<const Box<D, Real>> boxes,
                        std::size_t frame) {
     const std::string& name = expected.reference.algorithm()->name;
@@ -179,7 +179,7 @@ class HistoryCheck {
                       .frames = frame + 1};
   }
 
-  /// Adds the fault of a reference, unless it has failed as an entry already.
+  /// Adds the fault of a reference, unless it has already failed as an entry.
   void add_fault(const EntryVerdict& fault) {
     const auto same = [&](const EntryVerdict& other) {
       return other.algorithm == fault.algorithm && other.outcome == Outcome::failed;
@@ -188,7 +188,7 @@ class HistoryCheck {
       result_.verdicts.push_back(fault);
   }
 
-  /// The fault in one frame of a participant.
+  /// The fault of a participant in one frame.
   std::string check(HistoryParticipant<D, Real>& participant, std::span<const Box<D, Real>> boxes,
                     std::size_t frame) {
     const std::string name = participant.entry->spec.text();
@@ -220,7 +220,7 @@ class HistoryCheck {
     return divergence ? divergence->text : "";
   }
 
-  /// Whether, by the definition, the participant is right and what was expected of it wrong.
+  /// Whether, by brute force, the participant is right and its expected result wrong.
   static bool is_right_about(const PairDivergence& divergence, std::span<const Box<D, Real>> boxes) {
     const std::size_t first = index(divergence.pair.first);
     const std::size_t second = index(divergence.pair.second);
@@ -231,7 +231,7 @@ class HistoryCheck {
     return is_pair == (divergence.kind == PairDivergence::Kind::extra);
   }
 
-  /// The divergence as seen from the other side.
+  /// The divergence from the reference's point of view.
   static PairDivergence swapped(const PairDivergence& divergence) {
     return *compare_pairs(divergence.kind == PairDivergence::Kind::extra ? std::vector<Pair>()
                                                                          : std::vector<Pair>{divergence.pair},

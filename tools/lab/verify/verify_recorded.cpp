@@ -1,4 +1,4 @@
-// The pairs that an engine's own broad phase reported, checked against the boxes of each frame.
+// Checks the pairs that an engine's own broad phase reported against the boxes of each frame.
 #include "lab/verify/verify_recorded.hpp"
 
 #include <algorithm>
@@ -24,11 +24,11 @@ namespace {
 
 using Kind = RecordedFault::Kind;
 
-/// How many faults are told one by one.
+/// The maximum number of faults described individually.
 constexpr std::size_t max_told = 20;
 
-/// The box enlarged by the margin, in the precision of the file and rounded outward: the rounding of an
-/// engine that enlarges boxes makes no pair stale.
+/// The box enlarged by the margin, in the file's precision and rounded outward: so the rounding of an engine
+/// that enlarges boxes makes no pair stale.
 template <int D, typename Real>
 Box<D, Real> enlarged_outward(const Box<D, Real>& box, double margin) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -42,7 +42,7 @@ Box<D, Real> enlarged_outward(const Box<D, Real>& box, double margin) {
   return result;
 }
 
-/// How far apart two boxes are along the axis on which that is furthest: "0.25 apart along y".
+/// The maximum gap between two boxes over the axes: "0.25 apart along y".
 template <int D, typename Real>
 std::string distance_text(const Box<D, Real>& a, const Box<D, Real>& b) {
   double furthest = -std::numeric_limits<double>::infinity();
@@ -185,7 +185,7 @@ class RecordedCheck {
   /// "never reported before", or "last reported in frame 4".
   std::string last_report(const RecordedFault& fault) const {
     for (std::size_t frame = fault.first_frame + 1; frame-- > 0;) {
-      // What ended in a frame was still reported in the one before.
+      // A pair that ended in a frame was still reported in the previous one.
       if (std::ranges::binary_search(recording_.pairs[frame].ended, fault.pair))
         return fmt::format("last reported in frame {}", frame - 1);
     }
@@ -209,7 +209,7 @@ class RecordedCheck {
     return text;
   }
 
-  /// The verdict where the algorithm that finds the overlapping boxes is itself wrong.
+  /// The verdict if the algorithm that finds the overlapping boxes is itself wrong.
   RecordedVerdict unusable(RecordedVerdict result, PairDivergence divergence,
                            const Playback<D, Real>& playback) const {
     result.verdict.outcome = Outcome::skipped;
@@ -230,8 +230,8 @@ class RecordedCheck {
   std::array<std::uint64_t, 3> counts_{};
   std::uint64_t frames_at_fault_ = 0;
   std::size_t last_frame_at_fault_ = 0;
-  std::vector<BoxId> common_;     // boxes that every fault names
-  bool has_other_pairs_ = false;  // than that of the first fault
+  std::vector<BoxId> common_;     // boxes common to all faults
+  bool has_other_pairs_ = false;  // other than that of the first fault
   std::string first_text_;
   std::string stopped_;
 };

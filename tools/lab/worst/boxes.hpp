@@ -1,4 +1,4 @@
-// What the families of hard inputs are made of: small functions on boxes of doubles.
+// Building blocks of the families of hard inputs: small functions on boxes of doubles.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace broadside::lab {
 template <int D>
 using Point = std::array<double, D>;
 
-/// The box from `min` on.
+/// The box with lower corner `min`.
 template <int D>
 Box<D, double> box_at(const Point<D>& min, const Size<D>& size) {
   Box<D, double> box;
@@ -25,7 +25,7 @@ Box<D, double> box_at(const Point<D>& min, const Size<D>& size) {
   return box;
 }
 
-/// All extents alike.
+/// A cube of this side.
 template <int D>
 Size<D> cube(double side) {
   Size<D> size;
@@ -33,7 +33,7 @@ Size<D> cube(double side) {
   return size;
 }
 
-/// Anywhere in the unit cube.
+/// A random point of the unit cube.
 template <int D>
 Point<D> anywhere(Random& random) {
   Point<D> point;
@@ -41,14 +41,13 @@ Point<D> anywhere(Random& random) {
   return point;
 }
 
-/// The side of cubes such as touch `neighbours` others on average where `count` are scattered over the unit
-/// cube.
+/// The side of cubes that touch `neighbours` others on average if `count` are scattered over the unit cube.
 template <int D>
 double side_for(double neighbours, std::size_t count) {
   return power(neighbours / static_cast<double>(std::max<std::size_t>(count, 1)), 1.0 / D) / 2;
 }
 
-/// Cubes of about one size, scattered over the unit cube.
+/// Cubes of about the same size, scattered over the unit cube.
 template <int D>
 DoubleBoxes<D> even_boxes(std::size_t count, double neighbours, Random& random) {
   DoubleBoxes<D> boxes;
@@ -83,7 +82,7 @@ inline DrawnTunable number(std::string name, std::string summary, std::string de
            .max = max}};
 }
 
-/// A number of any order of magnitude from `least` to `most`.
+/// A number from `min` to `max`, drawn with all orders of magnitude equally likely.
 inline DrawnTunable magnitude(std::string name, std::string summary, std::string default_value, double min,
                               double max) {
   DrawnTunable drawn = number(std::move(name), std::move(summary), std::move(default_value), min, max);
@@ -98,7 +97,7 @@ inline DrawnTunable count(std::string name, std::string summary, std::string def
   return drawn;
 }
 
-/// The first choice is the standard one.
+/// The first choice is the default.
 inline DrawnTunable choice(std::string name, std::string summary, std::vector<std::string> choices) {
   return {{.name = std::move(name),
            .summary = std::move(summary),

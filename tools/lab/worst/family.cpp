@@ -1,4 +1,4 @@
-// The one list of families, and values drawn for their tunables.
+// The list of families, and values drawn for their tunables.
 #include "lab/worst/family.hpp"
 
 #include <algorithm>

@@ -26,10 +26,10 @@ using MakeDoubleBoxes = std::function<DoubleBoxes<D>(const Settings&, std::size_
 /// A tunable, and how the hunt draws a value for it.
 struct DrawnTunable {
   Tunable tunable;
-  bool logarithmic = false;  ///< every order of magnitude is drawn alike
+  bool logarithmic = false;  ///< all orders of magnitude are equally likely
 };
 
-/// A family of inputs, described. Its boxes lie about the unit cube; scale and order are for make_input().
+/// A family of inputs. Its boxes are about the unit cube; make_input() applies scale and order.
 struct InputFamily {
   std::string name;
   std::string summary;  ///< one line
@@ -37,19 +37,20 @@ struct InputFamily {
   MakeDoubleBoxes<2> boxes_2d;
   MakeDoubleBoxes<3> boxes_3d;
   bool fixed_order = false;  ///< the order of the boxes matters
-  bool two_sets = false;     ///< few pairs between two halves, about n^2 within each: for find_across() alone
+  bool two_sets = false;     ///< few pairs between the two halves, about n^2 within each: for find_across()
+                             ///< only
 };
 
 /// All families, in a fixed order. Thread-safe.
 std::span<const InputFamily> input_families();
 
-/// The family of this name. Throws InvalidSpec naming those there are.
+/// The family of this name. Throws InvalidSpec, which lists the families.
 const InputFamily& find_family(std::string_view name);
 
-/// Values for the family's own tunables.
+/// Draws values for the family's own tunables.
 Spec draw_family(const InputFamily& family, Random& random);
 
-/// The family's boxes with the values in `spec`. Throws InvalidSpec if one is wrong.
+/// The family's boxes with the values in `spec`. Throws InvalidSpec if a value is invalid.
 template <int D>
 DoubleBoxes<D> make_family(const Spec& spec, std::size_t boxes, Random& random);
 

@@ -1,4 +1,4 @@
-// The inputs that the worst-case hunt takes unless others are asked for.
+// The inputs that the worst-case hunt uses unless others are requested.
 #include <array>
 #include <utility>
 
@@ -7,7 +7,7 @@
 namespace broadside::lab {
 namespace {
 
-/// Slow once, each for a reason of its own; float and find() where nothing else is said.
+/// Slow in the past, each for a different reason; float and find() unless stated otherwise.
 constexpr std::array known = {
     // Doubles beyond the range of floats.
     "even:neighbours=4:dimension=3:real=double:exponent=60",
@@ -21,7 +21,7 @@ constexpr std::array known = {
     "plates:neighbours=1:regions=2:axes=alternate:dimension=3:call=track:moving=0.01",
     "lines:neighbours=1:dimension=3:call=track:moving=0.01:order=shuffled",
     "lines:neighbours=1:axes=1:dimension=3:call=track:moving=0.01:order=shuffled",
-    // Samples that are fooled.
+    // Samples that mislead.
     "fooled:hidden=plates:dimension=2:seed=2",
     "fooled:hidden=plates:dimension=3:seed=3",
     "fooled:hidden=lines:dimension=3:seed=4",
@@ -35,7 +35,7 @@ constexpr std::array known = {
     "lines:neighbours=1:layout=lattice:dimension=3:real=double:order=shuffled",
     "clusters:levels=6:branches=6:shrink=100:dimension=2:real=double",
     "clusters:levels=12:branches=3:shrink=20:dimension=2:real=double:order=shuffled",
-    // What single algorithms cannot do.
+    // Inputs that are hard for a single algorithm.
     "magnitudes:of=sizes:decades=36:dimension=3:order=shuffled",
     "magnitudes:of=places:decades=36:dimension=2:order=shuffled",
     "plates:neighbours=1:regions=60:dimension=2:order=shuffled",

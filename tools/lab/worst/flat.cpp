@@ -7,7 +7,7 @@
 namespace broadside::lab::worst {
 namespace {
 
-/// Regions side by side, each full of parallel plates.
+/// Regions side by side, each filled with parallel plates.
 struct Plates {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
@@ -39,7 +39,7 @@ struct Plates {
   }
 };
 
-/// Wide flat boxes above one another, small ones standing on them.
+/// Wide flat boxes above one another, with small ones standing on them.
 struct Shelves {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
@@ -67,7 +67,8 @@ struct Shelves {
   }
 };
 
-/// How many others a line of this length and width touches, lines along the first `axes` axes in equal parts.
+/// How many others a line of this length and width touches, if lines run along each of the first `axes` axes
+/// in equal parts.
 template <int D>
 double touched(double length, double width, int axes, double count) {
   double sum = 0;
@@ -105,7 +106,8 @@ struct Lines {
       size[along] = length;
       min[along] *= 1 - length;
       for (int axis = 0; lattice && axis < D; ++axis) {
-        // Each axis has a lattice of its own, between the others' places: else all of them would cross.
+        // Each axis has its own lattice, between the places of the others, because otherwise all lines would
+        // cross.
         if (axis != along) min[axis] = (std::floor(min[axis] * side) + along / 3.0) / side;
       }
       boxes.push_back(box_at<D>(min, size));

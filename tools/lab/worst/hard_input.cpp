@@ -1,4 +1,4 @@
-// One input of the worst-case hunt: read, written, drawn and made.
+// An input of the worst-case hunt: parses, prints, draws and makes it.
 #include "lab/worst/hard_input.hpp"
 
 #include <algorithm>
@@ -60,8 +60,8 @@ HardCall call_of(std::string_view name) {
 
 template <typename Real>
 Real rounded(double value) {
-  constexpr double largest = std::numeric_limits<Real>::max();
-  return static_cast<Real>(std::clamp(value, -largest, largest));
+  constexpr double limit = std::numeric_limits<Real>::max();
+  return static_cast<Real>(std::clamp(value, -limit, limit));
 }
 
 template <typename T>
@@ -109,7 +109,7 @@ HardInput parse_input(std::string_view text) {
     (is_common(value.first) ? common : input.family).values.push_back(value);
   const Settings settings(common, common_tunables());
   Random unused(1);
-  make_family<2>(input.family, 0, unused);  // checks the family's own values
+  make_family<2>(input.family, 0, unused);  // checks the values of the family's own tunables
   input.dimension = settings.text("dimension") == "2" ? 2 : 3;
   input.in_double = settings.text("real") == "double";
   input.call = call_of(settings.text("call"));
@@ -143,7 +143,7 @@ HardInput draw_input(Random& random, std::size_t boxes, std::size_t movers) {
   input.drift = one_of(drifts, random);
   const std::array<double, 4> jumps = {0, 0, 0.02, 0.5};
   input.teleport = one_of(jumps, random);
-  // Within floats, large boxes squared and small ones both fit.
+  // The squares of the largest and the smallest boxes both fit into a float.
   const double exponent_limit = input.in_double ? max_exponent : 30;
   if (random.chance(0.25)) input.exponent = std::round(random.between(-exponent_limit, exponent_limit));
   if (random.chance(0.15)) input.offset = power(10, std::round(random.between(0, input.in_double ? 9 : 2)));
@@ -159,7 +159,7 @@ History<D, Real> make_input(const HardInput& input, std::size_t boxes, std::size
   Random random(input.seed);
   DoubleBoxes<D> made = make_family<D>(input.family, boxes, random);
   arrange(made, input.order, random);
-  // No power of two, so that doubles are none that a float holds.
+  // Not a power of two, so that floats cannot represent the doubles.
   const double scale = power(10, input.exponent) * (input.in_double ? 3.14159265358979324 : 1);
   std::vector<Box<D, Real>> result(made.size());
   for (std::size_t i = 0; i < made.size(); ++i) {

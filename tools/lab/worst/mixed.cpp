@@ -1,4 +1,4 @@
-// Families made of other families: samples that are fooled, mixtures, and crowds of two sets.
+// Families made of other families: misled samples, mixtures, and crowds of two sets.
 #include <algorithm>
 
 #include "lab/worst/boxes.hpp"
@@ -7,7 +7,7 @@
 namespace broadside::lab::worst {
 namespace {
 
-/// Whether a library that samples an array of `count` may look here: at steps of the golden ratio, at even
+/// The places of an array of `count` at which a library may sample: at steps of the golden ratio, at even
 /// steps, or at the ends.
 std::vector<bool> sampled_places(const std::string& places, std::size_t count, std::size_t samples) {
   std::vector<bool> sampled(count);
@@ -32,7 +32,7 @@ std::vector<bool> sampled_places(const std::string& places, std::size_t count, s
   return sampled;
 }
 
-/// Harmless boxes where a sample may look, others elsewhere.
+/// Harmless boxes at the places of a sample, others elsewhere.
 struct Fooled {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
@@ -42,7 +42,7 @@ struct Fooled {
     const auto shown = static_cast<std::size_t>(std::ranges::count(sampled, true));
     const Spec hidden = hidden_spec(settings.text("hidden"), random);
     const DoubleBoxes<D> others = make_family<D>(hidden, count - shown, random);
-    // As large as if there were only such boxes.
+    // As large as if all boxes were of this kind.
     const double side = side_for<D>(1, count);
     const double away = settings.text("where") == "beside" ? 2 : 0;
     DoubleBoxes<D> boxes;
@@ -84,7 +84,7 @@ struct Mixture {
   }
 };
 
-/// Two sets whose boxes overlap within a set and hardly with the other.
+/// Two sets whose boxes overlap within each set, but hardly with the other set.
 struct Crowds {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {

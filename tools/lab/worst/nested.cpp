@@ -1,4 +1,4 @@
-// Families of boxes within boxes, and clusters within clusters.
+// Families of boxes within boxes, and of clusters within clusters.
 #include <algorithm>
 
 #include "lab/worst/boxes.hpp"
@@ -7,7 +7,7 @@
 namespace broadside::lab::worst {
 namespace {
 
-/// Groups of boxes, each box inside the one before.
+/// Groups of boxes, each box inside the previous one.
 struct Dolls {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
@@ -64,7 +64,7 @@ struct Clusters {
   }
 };
 
-/// Cantor's dust: of each interval the two ends are kept, again and again.
+/// Cantor dust: keeps the two ends of each interval, repeatedly.
 struct Dust {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {

@@ -1,4 +1,4 @@
-// Families of even boxes, and of boxes whose sizes or places differ by orders of magnitude.
+// Families of uniform boxes, and of boxes whose sizes or places differ by orders of magnitude.
 #include <algorithm>
 
 #include "lab/worst/boxes.hpp"
@@ -20,7 +20,7 @@ struct Even {
   }
 };
 
-/// Sizes, places or both by a power law.
+/// Sizes, places or both follow a power law.
 struct Magnitudes {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
@@ -28,7 +28,7 @@ struct Magnitudes {
                                           : places<D>(settings, count, random);
   }
 
-  /// In a cube in which they touch as many others as wanted.
+  /// In a cube in which they touch the wanted number of others.
   template <int D>
   static DoubleBoxes<D> sizes(const Settings& settings, std::size_t count, Random& random) {
     const double decades = settings.number("decades");
@@ -37,7 +37,7 @@ struct Magnitudes {
     for (Size<D>& size : all) {
       size = modest_size<D>(random);
       const double fraction = random.fraction();
-      // The hundredth part is larger than 10^-(decades / 10) of the largest.
+      // A hundredth of the boxes is larger than 10^-(decades / 10) of the largest.
       const double scale = power(10, -decades * (rare ? 1 - power(fraction + 1e-9, 40) : fraction));
       for (double& extent : size) extent *= scale;
     }
@@ -50,13 +50,14 @@ struct Magnitudes {
     return boxes;
   }
 
-  /// Each coordinate of any order of magnitude, each box as large as its distance from the axes allows.
+  /// The logarithm of each coordinate is uniform, and each box is as large as its distance from the axes
+  /// allows.
   template <int D>
   static DoubleBoxes<D> places(const Settings& settings, std::size_t count, Random& random) {
     const double decades = settings.number("decades");
     const bool both_sides = settings.text("sides") == "both";
     const bool together = settings.text("of") == "distances";
-    const double natural = 2.302585 * decades;  // the logarithm of the whole range
+    const double natural = 2.302585 * decades;  // the natural logarithm of the whole range
     const int free_axes = together ? 1 : D;
     const double part = std::min(
         0.5, natural *
@@ -69,7 +70,7 @@ struct Magnitudes {
       Size<D> size;
       const double distance = power(10, -decades * random.fraction());
       for (int axis = 0; axis < D; ++axis) {
-        // Numbers from 1 to 2 on the other axes, so that all boxes of one distance are near each other.
+        // Numbers from 1 to 2 on the other axes, so that all boxes at the same distance are near each other.
         const double value = !together   ? power(10, -decades * random.fraction())
                              : axis == 0 ? distance
                                          : distance * random.between(1, 2);
@@ -82,12 +83,12 @@ struct Magnitudes {
   }
 };
 
-/// Heaps of boxes in one place each, even boxes around them.
+/// Heaps of boxes, each at one place, surrounded by uniform boxes.
 struct Heaps {
   template <int D>
   static DoubleBoxes<D> make(const Settings& settings, std::size_t count, Random& random) {
     const auto heaps = static_cast<double>(settings.integer("heaps"));
-    // All pairs in the heaps together: at most 5 a box.
+    // All heaps together have at most 5 pairs per box.
     const double max_in_heap = std::sqrt(10 * static_cast<double>(count) / heaps);
     const auto in_heap = static_cast<std::size_t>(settings.number("part") * max_in_heap);
     const auto in_heaps = std::min(count, in_heap * static_cast<std::size_t>(heaps));

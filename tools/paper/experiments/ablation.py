@@ -1,4 +1,4 @@
-"""Our own claim: how much of what our fastest searches gain they gain by SIMD."""
+"""Our own claim: how much of the speedup of our fastest searches comes from SIMD."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ BOXES = 100_000
 SCENES = ("uniform", "clustered")
 DIMENSIONS = (2, 3)
 
-# The same structures, written plainly and compiled without SIMD, and what can be left out of each. The first two
-# say how boxes lie in memory and how hits are written, which is where SIMD may need what plain code does not.
+# The same structures, written plainly and compiled without SIMD, and the parts that can be left out of each. The first
+# two are the memory layout of boxes and the way hits are written, where SIMD may need what plain code does not.
 LAYOUT = {"arrays": "an array of boxes", "branch_free": "a branch at each test"}
 SWITCHES = {
     "grid": {**LAYOUT, "buckets": "sorting by comparisons in each cell", "carry": "a copy in each cell",
@@ -32,7 +32,7 @@ def plain(search: str, *left_out: str) -> str:
 
 
 def plain_forms(search: str) -> list[str]:
-    """The same structure, in each way to lay out boxes and to write hits."""
+    """The same structure with each memory layout and each way to write hits."""
     return [plain(search), plain(search, "arrays"), plain(search, "branch_free"), plain(search, *LAYOUT)]
 
 
@@ -62,13 +62,13 @@ def cases() -> list[Case]:
 
 
 def share(results: Results, case: str, search: str, plainly: str) -> Estimate:
-    """Of the whole gain: gains multiply, so that their shares are of logarithms."""
+    """As a share of the whole speedup: factors multiply, so shares are of logarithms."""
     return results.between(lambda run: log(run.ratio(case, plainly, search)) /
                            log(run.ratio(case, nothing(search), search)))
 
 
 def judge(results: Results, rules: Rules) -> Sequence[Finding]:
-    """By the fastest scalar code there is: what it leaves out besides SIMD would be taken for SIMD's gain."""
+    """Judges by the fastest scalar code: anything else it lacks besides SIMD would be counted as SIMD's gain."""
     shares, beside = {}, {}
     for place in PLACES:
         search, case = place[0], case_of(*place)

@@ -11,7 +11,7 @@ from ..results import Results
 from ..rules import Rules
 from ..statistics import Estimate
 
-COUNTS = (1_000, 2_000, 4_000, 8_000, 16_000, 32_000)  # below, what a call costs beside its tests would show
+COUNTS = (1_000, 2_000, 4_000, 8_000, 16_000, 32_000)  # with fewer boxes, the fixed cost of a call would show
 LISTING, OURS = "paper_brute_force", "brute_force"
 
 
@@ -20,7 +20,7 @@ def case_of(boxes: int) -> str:
 
 
 def cases() -> list[Case]:
-    # The listing takes most of a second at the most boxes; four calls are one on each input.
+    # The listing takes most of a second for the largest number of boxes; four calls are one on each input.
     return [Case(case_of(boxes), "uniform", [LISTING, OURS], boxes=boxes, take=["time", "counts"],
                  effort={"min_rounds": 4}) for boxes in COUNTS]
 

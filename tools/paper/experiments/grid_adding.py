@@ -49,7 +49,7 @@ def cases() -> list[Case]:
 
 
 def adding(results: Results, case: str, across: Sequence[float], parts: Sequence[str] = PARTS) -> Estimate:
-    """The share of the time that goes into adding, the least with any of these cells."""
+    """The share of the time spent adding references: the minimum over these cell sizes."""
     return results.between(lambda run: min(
         run.ratio(case, spec(one), spec(one), ["adding"], parts) for one in across))
 

@@ -1,4 +1,4 @@
-"""Section III: the size of a grid's cells is a balance, and whether it has to be tuned."""
+"""Section III: the size of a grid's cells is a trade-off; must it be tuned?"""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ..statistics import Estimate, geometric_mean
 LENGTHS = {"uniform": (1.0, 1.0), "clustered": (1.0, 1.0), "mixed": (2.0, 2.0), "power_law": (2.8, 2.9),
            "thin": (25.4, 17.4)}
 
-# Cells in mean lengths of a box, up to the one that holds the world of every scene.
+# Cell sizes in mean lengths of a box, up to one that contains the world of every scene.
 SIZES = tuple(2.0**power for power in range(-3, 10))
 
-# As many boxes as the grid can test in one cell: the draft's tests all of them in pairs.
+# As many boxes as the grid can test in one cell, where the draft's grid tests all pairs.
 GRIDS = {("paper_grid", 2): 10_000, ("grid", 2): 40_000, ("grid", 3): 40_000}
 
 
@@ -42,13 +42,13 @@ def cases() -> list[Case]:
 
 
 def over_best(results: Results, grid: str, dimension: int, scene: str, one: str) -> Estimate:
-    """The time of a spec over that of the best size on this scene."""
+    """The ratio of a spec's time to that of the best cell size on this scene."""
     case = case_of(grid, dimension, scene)
     return results.ratio(case, one, results.fastest(case, specs(grid, dimension, scene)))
 
 
 def mean_over_best(results: Results, grid: str, dimension: int, size: float | None) -> Estimate:
-    """Likewise of one size on all scenes, or of the size that the grid chooses: the mean over the scenes."""
+    """Likewise for one cell size on all scenes, or for the size that the grid chooses: the mean over the scenes."""
     ways = {}
     for scene in LENGTHS:
         case = case_of(grid, dimension, scene)
@@ -62,7 +62,7 @@ def mean_over_best(results: Results, grid: str, dimension: int, size: float | No
 
 
 def untuned(results: Results, grid: str, dimension: int) -> Estimate:
-    """The one size that does best on all scenes."""
+    """The single cell size with the best mean over all scenes."""
     everywhere = [size for size in SIZES
                   if all(results.timed(case_of(grid, dimension, scene), [spec(grid, dimension, scene, size)])
                          for scene in LENGTHS)]

@@ -1,4 +1,4 @@
-"""Section III: a matrix of cells fills the memory, and larger cells no longer keep collections small."""
+"""Section III: a matrix of cells exhausts the memory, and larger cells no longer keep collections small."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from ..statistics import Estimate
 
 BOXES = 8_000
 CLUSTERS = 16
-DEVIATION = 6.0  # of a cluster's boxes from its middle, in lengths of a box: a box overlaps about 4 others
+DEVIATION = 6.0  # of the boxes of a cluster from its centre, in lengths of a box: a box overlaps about 4 others
 CELL = 2.0       # in lengths of a box
 
-# Lengths of a world, in those of a box; the largest has 1.6 GB of cells.
+# Lengths of a world, in lengths of a box; the largest has 1.6 GB of cells.
 WORLDS = tuple(2**power for power in range(9, 15))
 SMALLEST, LARGEST = WORLDS[0], WORLDS[-1]
 # Cells in the middle one of these worlds, down to as many as the largest world has.
 MIDDLE = 1024
 CELLS = tuple(CELL * MIDDLE / world for world in WORLDS if world >= MIDDLE)
 
-# Most of a search's time goes into cells here, which an estimate from fewer boxes takes for time of boxes.
+# Cells take most of a search's time here; an estimate from fewer boxes would attribute it to boxes.
 UNHURRIED = {"budget_seconds": 1000}
 
-ACROSS = 256  # cells across a world whose cells are as large as its size asks for
+ACROSS = 256  # number of cells across a world whose cells grow with its size
 OTHERS = ("grid", "bvh")
 
 
 def clusters(world: int, dimension: int = 2) -> Boxes:
-    """As many boxes in every world, in clusters that lie ever further apart."""
+    """The same number of boxes in every world, in clusters that are ever further apart."""
     def make(random: numpy.random.Generator) -> numpy.ndarray:
         middles = random.uniform(4 * DEVIATION, world - 4 * DEVIATION, (CLUSTERS, dimension))
         centres = middles[random.integers(CLUSTERS, size=BOXES)]
@@ -75,7 +75,7 @@ def bytes_of_a_cell(run: Run) -> float:
 
 
 def grown(results: Results, algorithm: str, what: str, dimension: int = 2) -> Estimate:
-    """Tests a box, or the time, in the largest world over that in the smallest."""
+    """Tests per box, or the time, in the largest world over that in the smallest."""
     def of(run: Run, world: int) -> float:
         case = large_case(world, dimension)
         one = spec(world, world / ACROSS) if algorithm == "paper_grid" else algorithm

@@ -1,4 +1,4 @@
-"""Section VI-B: where most objects move, rebuilding all cells of a grid is faster than reinserting."""
+"""Section VI-B: if most objects move, rebuilding all cells of a grid is faster than reinserting."""
 
 from __future__ import annotations
 

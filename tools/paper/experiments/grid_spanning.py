@@ -1,4 +1,4 @@
-"""Section III: with cells of unit size, an object has its width times its height of references."""
+"""Section III: with cells of unit size, the number of an object's references is its width times its height."""
 
 from __future__ import annotations
 

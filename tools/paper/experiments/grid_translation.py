@@ -24,13 +24,13 @@ STEPS = {1: CELLS, 0.1: CELLS[::3]}
 STEP_NAMES = {1: "steps of a cell", 0.1: "steps of a tenth of a cell"}
 SPANNING = 2_500
 
-# Boxes in a single cell, of 1 x 1. A step along a direction is so long that it leaves the cell on one axis at least.
+# Boxes of 1 x 1 within a single cell. A step along a direction is long enough to leave the cell on at least one axis.
 SINGLE = 10_000
 SINGLE_CELL = 256
 IN_A_CELL = (1, 4, 16)
 MOVING = (0.05, 0.2, 1)
 
-ENDS = 100_000  # of boxes, for the rule of the offset
+ENDS = 100_000  # number of box ends, for the rule of the offset
 
 
 def spec(update: str, cell: float) -> str:
@@ -50,7 +50,7 @@ def single(moving: float, in_a_cell: int) -> str:
 
 
 def squares(count: int, world: float) -> Boxes:
-    """Of 1 x 1, anywhere in a world of this length."""
+    """Boxes of 1 x 1, anywhere in a world of this length."""
     def make(random: numpy.random.Generator) -> numpy.ndarray:
         minima = random.uniform(0, world, (count, 2))
         return numpy.hstack([minima, minima + 1])
@@ -75,11 +75,11 @@ def cells_of_a_box(results: Results, cell: float) -> Estimate:
 
 
 def rule_is_right(results: Results, step: float, is_down: bool, is_signed: bool = False) -> Estimate:
-    """The share of the ends of boxes that move this way of which the draft's rule tells rightly whether they leave
-    their cell: if the change of position is greater than the position modulo the size of a cell."""
+    """The share of box ends with this motion for which the draft's rule predicts correctly whether they leave their
+    cell: they do if the change of position is greater than the position modulo the cell size."""
     def of_run(run: int) -> float:
         random = numpy.random.default_rng([run, ENDS])
-        position = random.uniform(0, 1, ENDS)  # in its cell
+        position = random.uniform(0, 1, ENDS)  # within its cell
         change = step * numpy.cos(random.uniform(0, math.pi / 2, ENDS)) * (-1 if is_down else 1)
         says = (change if is_signed else abs(change)) > position
         return float(numpy.mean(says == (numpy.floor(position + change) != 0)))

@@ -29,7 +29,7 @@ def our_case(boxes: int, dimension: int) -> str:
 
 
 def cases() -> list[Case]:
-    # A dozen rounds decide nothing that the runs do not.
+    # More than a dozen rounds would not decide anything beyond the runs.
     effort = {"share_seconds": 0.05, "min_rounds": 4}
     listed = [Case(case_of(boxes, scene), scene, [LISTING, *OTHERS], boxes=boxes, take=["time", "counts"],
                    effort=effort) for scene in SCENES for boxes in COUNTS]
@@ -44,18 +44,18 @@ def place(spec: str, scene: str) -> str:
 
 
 def growth_below(results: Results, spec: str, scene: str) -> Estimate:
-    """The exponent of tests over those of brute force: how far below its exponent they grow."""
+    """The difference between the exponent of brute force's tests and that of this algorithm's."""
     return results.growth(COUNTS, lambda run, boxes: run.count(case_of(boxes, scene), spec, "tests")
                           / run.count(case_of(boxes, scene), LISTING, "tests"))
 
 
 def most_time(results: Results, spec: str, scene: str) -> Estimate:
-    """The greatest time over brute force's at the last numbers of boxes."""
+    """The maximum of its time over brute force's at the largest numbers of boxes."""
     return results.between(lambda run: max(run.ratio(case_of(boxes, scene), spec, LISTING) for boxes in LAST))
 
 
 def overtakes_at(results: Results, ways: dict[int, str], spec: str, other: str) -> Estimate:
-    """The number of boxes from which on one takes less time than the other, in cases by their number of boxes."""
+    """The number of boxes from which one takes less time than the other, in cases by their number of boxes."""
     return results.between(lambda run: crossing(list(ways), [run.ratio(case, other, spec)
                                                              for case in ways.values()]), "boxes")
 

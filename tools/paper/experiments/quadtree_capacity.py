@@ -11,13 +11,13 @@ from ..results import Results, Run
 from ..rules import Rules
 from ..statistics import Estimate
 
-NEIGHBOURS = (1, 4, 16, 64, 256)  # others that a box overlaps: ever more boxes in a world of one size
+NEIGHBOURS = (1, 4, 16, 64, 256)  # number of others that a box overlaps: more and more boxes in a world of one size
 BOXES = 10_000
-SMALL = (2, 4, 8)                 # the draft names no capacity
+SMALL = (2, 4, 8)                 # the draft specifies no capacity
 CAPACITIES = tuple(2**power for power in range(1, 11))
 OWN_CAPACITIES = tuple(2**power for power in range(3, 12))
 CELLS = tuple(f"paper_grid:cell={size:g}:limit=none" for size in (0.5, 1, 2, 4))
-FILLING = (1_000, 10_000, 100_000)  # boxes in one world, in which each of a thousand has half a neighbour
+FILLING = (1_000, 10_000, 100_000)  # numbers of boxes in one world, in which each of a thousand has half a neighbour
 
 
 def spec(capacity: int, tree: str = "paper_quadtree") -> str:
@@ -114,7 +114,7 @@ def beside_times(results: Results) -> dict[str, Estimate]:
 
 
 def tests_over_others(results: Results) -> dict[str, Estimate]:
-    """With leaves of 8: over those of all pairs, and over those of the grid with the cells that take least time."""
+    """With leaves of 8: tests over those of all pairs, and over those of the grid with its fastest cell size."""
     def tests(run: Run, case: str, one: str) -> float:
         return run.count(case, one, "tests")
 

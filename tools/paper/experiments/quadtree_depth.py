@@ -1,4 +1,4 @@
-"""Section VI-D: how many nodes a box that is inserted from the root of a quadtree comes by."""
+"""Section VI-D: how many nodes an insertion from the root of a quadtree visits."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ..rules import Rules
 from ..statistics import Estimate
 
 COUNTS = (1_000, 4_000, 16_000, 64_000, 256_000)
-SPREAD = {0.1: "boxes mostly in one leaf", 4: "boxes in several leaves"}  # by the others that a box overlaps
-FAR = 10_000  # worlds between one box and the others: there the tree is deep for a distance
+SPREAD = {0.1: "boxes mostly in one leaf", 4: "boxes in several leaves"}  # by the number of others that a box overlaps
+FAR = 10_000  # distance of one box from the others, in worlds: the tree is deep for such a distance
 FAR_CASE = f"{COUNTS[0]:,} boxes, one of them far away"
 ROOT = "paper_quadtree:update=root"
 MOTION = {"frames": 3, "moving": 0.1, "drift": 20, "take": ["phases"]}  # out of their leaves
@@ -47,7 +47,7 @@ def nodes(results: Results, case: str) -> Estimate:
 
 
 def over_logarithm(results: Results, neighbours: float) -> Estimate:
-    """Nodes that a mover visits over the logarithm of n: with the most boxes over that with the fewest."""
+    """Nodes visited per mover over the logarithm of n: with the most boxes over that with the fewest."""
     def work(run: Run, boxes: int) -> float:
         return run.per_mover(case_of(boxes, neighbours), ROOT, "visited") / math.log2(boxes)
 
@@ -55,7 +55,7 @@ def over_logarithm(results: Results, neighbours: float) -> Estimate:
 
 
 def share(results: Results, case: str) -> Estimate:
-    """Nodes visited, of all nodes visited and entries taken out or put in."""
+    """Nodes visited, as a share of all nodes visited and entries removed or inserted."""
     def of(run: Run) -> float:
         visited, moved = (run.per_mover(case, ROOT, what) for what in ("visited", "moved"))
         return visited / (visited + moved)

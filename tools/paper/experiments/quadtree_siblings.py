@@ -1,4 +1,4 @@
-"""Section VI-D: a box that moves in a quadtree is inserted from the root, or from near where it was."""
+"""Section VI-D: a box that moves in a quadtree is inserted from the root, or from near its previous place."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ..statistics import Estimate, crossing
 
 BOXES, MORE = 8_000, 64_000
 CAPACITIES = (8, 2)
-NEIGHBOURS = (0.05, 0.5, 2, 8, 32, 128)  # others that a box overlaps: boxes are ever larger against leaves
-STEP = 0.2                 # of a mover, in its sizes; where boxes are in the fewest leaves, far enough to take
-STEPS = {0.05: 5, 0.5: 2}  # many of them out of these
+NEIGHBOURS = (0.05, 0.5, 2, 8, 32, 128)  # others that a box overlaps; the more, the larger boxes are against leaves
+STEP = 0.2                 # of a mover, in its sizes
+STEPS = {0.05: 5, 0.5: 2}  # longer if boxes are in few leaves, so that many movers leave these
 DRIFTS = (0.02, 2, 10)
 WAYS = {"root": "from the root", "relative": "from the node that holds it", "siblings": "by siblings",
         "cousins": "by siblings and cousins"}
@@ -46,12 +46,12 @@ def cases() -> list[Case]:
 
 
 def leaves(run: Run, at: At) -> float:
-    """That a box is in."""
+    """The number of leaves that a box is in."""
     return run.count(case_of(at), spec("root", at[0]), "references")
 
 
 def mending(run: Run, at: At, way: str, other: str) -> float:
-    """The time of mending one way over that of another."""
+    """The ratio of one way's mending time to another's."""
     return run.ratio(case_of(at), spec(way, at[0]), spec(other, at[0]), ["mending"])
 
 
@@ -60,7 +60,7 @@ def over(results: Results, at: At, way: str, other: str) -> Estimate:
 
 
 def nodes(results: Results, at: At, one: str, other: str) -> Estimate:
-    """Nodes visited one way over those visited another."""
+    """The ratio of the nodes visited in one way to those visited in another."""
     return results.between(lambda run: run.per_mover(case_of(at), spec(one, at[0]), "visited")
                            / run.per_mover(case_of(at), spec(other, at[0]), "visited"))
 

@@ -1,4 +1,4 @@
-"""Section V: boxes of a unit size suit a quadtree; large ones multiply with its levels, and fill it."""
+"""Section V: boxes of unit size suit a quadtree; large ones multiply with its levels, and fill it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ..results import Results, Run
 from ..rules import Rules
 from ..statistics import Estimate
 
-SIDE = 32                        # of the world in which one box is followed; a small box stands in each unit square
-LEAVES = (8, 4, 2, 1)            # sides of leaves: a level each
+SIDE = 32                        # of the world in which one box is followed; each unit square contains a small box
+LEAVES = (8, 4, 2, 1)            # sides of leaves, one per level
 SINGLE = (0.25, 1.0, 4.0, 16.0)  # lengths of the box that is followed
 LARGE_SIDE = 100
 LARGE = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)  # lengths of one box in a hundred
@@ -23,7 +23,8 @@ OTHERS = ("quadtree", "grid", "paper_grid")
 
 
 def small_boxes(side: int, random: numpy.random.Generator) -> numpy.ndarray:
-    """Half a unit long, one in each unit square, none on a square's border: leaves depend on the capacity alone."""
+    """Half a unit long, one in each unit square, none on a square's border, so that leaves depend only on the
+    capacity."""
     squares = numpy.stack(numpy.meshgrid(numpy.arange(side), numpy.arange(side)), axis=-1).reshape(-1, 2)
     minima = squares + random.uniform(0.01, 0.49, squares.shape)
     return numpy.hstack([minima, minima + 0.5])
@@ -56,7 +57,7 @@ def large_case(size: float) -> str:
 
 
 def leaves_of(side: int) -> str:
-    """The tree whose leaves have this side: each holds two boxes for each unit square."""
+    """The tree with leaves of this side: each holds two boxes for each unit square."""
     return f"{TREE}:capacity={2 * side**2}:left=0:top=0:width={SIDE}:height={SIDE}"
 
 
@@ -69,7 +70,7 @@ def cases() -> list[Case]:
 
 
 def leaves(run: Run, size: float, side: int) -> numpy.ndarray:
-    """In how many leaves of this side the box is, on each input: each of the small ones is in one."""
+    """The number of leaves of this side that the box is in, on each input; each small box is in one leaf."""
     measured = run.measurement(single_case(size), leaves_of(side))
     return numpy.array(measured["references_by_seed"]) - (measured["boxes"] - 1)
 
@@ -79,7 +80,7 @@ def over_level_above(results: Results, size: float, side: int) -> Estimate:
 
 
 def grown(results: Results, spec: str, figure) -> Estimate:
-    """A figure of a case with the largest boxes over that with small ones alone."""
+    """The ratio of a figure with the largest boxes to that with small boxes only."""
     return results.between(
         lambda run: figure(run, large_case(LARGE[-1]), spec) / figure(run, large_case(LARGE[0]), spec))
 

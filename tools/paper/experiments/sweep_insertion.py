@@ -1,4 +1,4 @@
-"""Section VI-C: insertion sort is linear where the order is nearly kept, and improves on a heap."""
+"""Section VI-C: insertion sort is linear if the order is nearly kept, and improves on a heap."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from ..statistics import Estimate, crossing
 COUNTS = (1_000, 2_000, 4_000, 8_000, 16_000, 32_000)
 BOXES = 10_000
 FRAMES = 6
-FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2, "history_seconds": 60}  # where counts decide
+FEW_ROUNDS = {"min_rounds": 2, "max_rounds": 2, "history_seconds": 60}  # for cases in which counts decide
 MENDED = ("insertion", "heap", "binary", "rebuild")
 
-# How far all boxes go in a frame, in their own sizes; None: they jump anywhere.
+# How far all boxes move in a frame, in their own sizes; None: they jump anywhere.
 DRIFTS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, None)
 
 
@@ -28,15 +28,15 @@ def spec(update: str) -> str:
 
 
 def corridor(boxes: int) -> Boxes:
-    """Boxes along the x axis: each length of it holds as many, however many boxes there are."""
+    """Boxes along the x axis: the density along it is constant, whatever the number of boxes."""
     def make(random: numpy.random.Generator) -> numpy.ndarray:
         minima = numpy.column_stack([random.uniform(0, boxes / 2, boxes), random.uniform(0, 1, boxes)])
         return numpy.hstack([minima, minima + random.uniform(0.5, 1.5, (boxes, 2))])
     return Boxes(f"corridor-{boxes}", make, inputs=2)
 
 
-# Where boxes go a tenth of their size. In a corridor they stay relatively in order, however many there are; in the
-# others a sweep's axis passes ever more of them.
+# Boxes move by a tenth of their size. In a corridor they stay relatively in order, whatever their number; in the other
+# worlds, each passes more and more others on the sweep axis.
 IN_ORDER = "a corridor"
 WORLDS = (IN_ORDER, "a plane", "space")
 
@@ -65,18 +65,18 @@ def cases() -> list[Case]:
 
 
 def passed(results: Results, drift: float | None) -> Estimate:
-    """How many others a box passes in a frame: the inversions of the order, for each box."""
+    """The number of others that a box passes in a frame: the inversions of the order, per box."""
     return results.per_mover(motion_case(drift), spec("insertion"), "moved")
 
 
 def growth(results: Results, world: str, what: Sequence[str]) -> Estimate:
-    """The exponent of what is counted in a frame in which all boxes move."""
+    """The exponent of a count in a frame in which all boxes move."""
     return results.growth(COUNTS, lambda run, boxes: boxes * sum(
         run.per_mover(growth_case(world, boxes), spec("insertion"), one) for one in what))
 
 
 def judge(results: Results, rules: Rules) -> Sequence[Finding]:
-    # Insertion sort looks at each entry and moves some: what grows is both, and neither hides the other.
+    # Insertion sort visits each entry and moves some: adds both counts, so that neither growth is hidden.
     work = {world: growth(results, world, ("visited", "moved")) for world in WORLDS}
     beside = {f"work in {world}": at for world, at in work.items() if world != IN_ORDER}
     for world in WORLDS:

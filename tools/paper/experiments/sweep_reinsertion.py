@@ -1,4 +1,4 @@
-"""Section VI-C: a few boxes are put into the order by binary search, and the heap."""
+"""Section VI-C: inserts a few boxes into the order by binary search, and uses the heap."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOVERS = 256
 BOXES = 10_000
 JUMPING = (1, 10, 100, 1_000, 10_000)  # of these
 
-# The worst case is that boxes jump.
+# In the worst case, boxes jump.
 FAR = "anywhere"
 GOING = {FAR: 1.0, "a fifth of their size": 0.0}  # the fraction that jumps; the others drift
 
@@ -52,13 +52,13 @@ def cases() -> list[Case]:
 
 
 def work(run: Run, going: str, boxes: int) -> float:
-    """Comparisons and places moved, for each box that is put into its place."""
+    """Comparisons and moved entries per box that is inserted at its place."""
     case = growth_case(going, boxes)
     return run.per_mover(case, BINARY, "visited") + run.per_mover(case, BINARY, "moved")
 
 
 def comparisons(run: Run, going: str, boxes: int) -> float:
-    """Of one search: there is one for the old place and one for the new."""
+    """Per binary search: one finds the old place and one the new place."""
     return run.per_mover(growth_case(going, boxes), BINARY, "visited") / 2
 
 
@@ -67,7 +67,7 @@ def time(run: Run, going: str, boxes: int) -> float:
 
 
 def growth_beyond(results: Results, going: str, of: Callable[[Run, str, int], float]) -> Estimate:
-    """By how much more than lg n something grows, from the fewest boxes to the most."""
+    """The growth of an amount relative to lg n, from the fewest boxes to the most."""
     def beyond(run: Run) -> float:
         fewest, most = COUNTS[0], COUNTS[-1]
         return of(run, going, most) / of(run, going, fewest) / (log2(most) / log2(fewest))

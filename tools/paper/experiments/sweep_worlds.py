@@ -1,4 +1,4 @@
-"""Section IV: a sweep needs no bounds of the world; and what the choice of its axis costs."""
+"""Section IV: a sweep needs no bounds of the world; the cost of the choice of its axis."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..rules import Rules
 from ..statistics import Estimate, geometric_mean
 
 BOXES = 10_000
-SIDE = 100.0  # of the world with bounds: a box overlaps about 4 others
+SIDE = 100.0  # of the bounded world: a box overlaps about 4 others
 SWEEP = "paper_sweep_and_prune"
 BOUNDED = ("paper_grid", "paper_quadtree")  # listings that divide the world
 COMPACT, COVERED = "a world with bounds", "four boxes over all"
@@ -35,7 +35,7 @@ def spread(random: numpy.random.Generator) -> numpy.ndarray:
 
 
 def with_others(places: Sequence[int], least: float, most: float):
-    """The compact world with these boxes replaced by ones from `least` to `most`."""
+    """The compact world, with these boxes replaced by boxes from `least` to `most`."""
     def make(random: numpy.random.Generator) -> numpy.ndarray:
         boxes = compact(random)
         boxes[list(places)] = [least, least, most, most]
@@ -45,7 +45,7 @@ def with_others(places: Sequence[int], least: float, most: float):
 
 SOME = range(BOXES // 5, BOXES, BOXES // 5)
 
-# Each world, and the one with bounds that it is compared with.
+# Each world, and the bounded world that it is compared with.
 WORLDS = {
     COMPACT: (compact, None),
     "a world a thousand times as wide": (spread, COMPACT),
@@ -59,7 +59,7 @@ BOUNDLESS = {world: bounded for world, (_, bounded) in WORLDS.items() if bounded
 
 
 def towers(dimension: int) -> Boxes:
-    """Boxes that stand on one ground: along the last axis all begin at the same place."""
+    """Boxes on common ground: on the last axis, all have the same minimum."""
     def make(random: numpy.random.Generator) -> numpy.ndarray:
         sizes = random.uniform(0.5, 1.5, (BOXES, dimension))
         sizes[:, -1] *= 20
@@ -70,7 +70,8 @@ def towers(dimension: int) -> Boxes:
     return Boxes(f"towers-{dimension}", make, inputs=2)
 
 
-# Statement 6b, a definition: the draft takes the x axis. What an axis costs is asked of our sweep, which takes any.
+# Statement 6b, a definition: the draft sweeps along the x axis. The cost of an axis is measured with our sweep, which
+# takes any.
 SCENES = [(scene, 2) for scene in ("uniform", "one_line", "thin", "clustered", "power_law", "towers")]
 SCENES += [(scene, 3) for scene in ("uniform", "one_line", "thin", "towers")]
 CHOSEN, STRIPES = "sweep_and_prune:axes=1", "sweep_and_prune"
@@ -85,7 +86,7 @@ def axis_case(scene: str, dimension: int) -> str:
 
 
 def cases() -> list[Case]:
-    effort = {"min_rounds": 4}  # of what is slow
+    effort = {"min_rounds": 4}  # for slow cases
     worlds = [Case(world, Boxes(f"world-{place}", make), [SWEEP, "sweep_and_prune", *BOUNDED],
                    take=["time", "counts", "memory"], effort=effort)
               for place, (world, (make, _)) in enumerate(WORLDS.items())]
@@ -96,7 +97,7 @@ def cases() -> list[Case]:
 
 
 def over_bounded(results: Results, world: str, spec: str, what: str) -> Estimate:
-    """Tests, memory or time over those in the world with bounds."""
+    """The ratio of tests, memory or time to those in the bounded world."""
     def figure(run, case: str) -> float:
         if what == "tests":
             return run.count(case, spec, "tests")

@@ -1,4 +1,5 @@
-"""Section VI-A: only what changed is mended: what it saves, how it is known, and by searching for each object."""
+"""Section VI-A: updates only what changed: how much this saves, how changes are detected, and the cost of searching
+for each object."""
 
 from __future__ import annotations
 
@@ -13,19 +14,20 @@ from ..results import WHOLE, Results
 from ..rules import Rules
 from ..statistics import Estimate, crossing
 
-# A box overlaps one other, so that what can be saved, building, is a good part of a frame; and sixteen others.
+# With one overlapping neighbour per box, building, the part that can be saved, is a good part of a frame; and with
+# sixteen.
 SCENE, DENSE = "uniform:neighbours=1", "uniform:neighbours=16"
 FRAMES = 6
 MENDING = ("mending",)
 
-# Ways to mend each structure. The first one finds a box by its previous state.
+# Ways to update each structure. The first one finds a box by its previous state.
 WAYS = {"paper_grid": ("reinsert", "translate"),
         "paper_sweep_and_prune": ("binary", "insertion", "heap"),
         "paper_quadtree": ("root", "relative", "cousins")}
 STRUCTURES = {"paper_grid": "grid", "paper_sweep_and_prune": "sweep", "paper_quadtree": "quadtree"}
 OURS = ("grid", "bvh", "auto")
 
-# VI-A: the structure is searched for each box that moved, one after the other.
+# VI-A: searches the structure for each moved box, one after the other.
 SEARCH = "search_delete_reinsert"
 
 # How many of how many boxes move.
@@ -33,7 +35,7 @@ BOXES = 10_000
 MOVERS = (1, 3, 10, 30, 100, 300, 1_000, 3_000, 10_000)
 FEWEST, FEW = 10, 100    # one in a thousand, and one in a hundred
 SEARCHED = (1, 3, 10, 30, 100)
-FEWER_BOXES = 1_000      # the same movers among fewer
+FEWER_BOXES = 1_000      # the same number of movers among fewer boxes
 DENSE_CASE = f"{FEWEST} of {BOXES} boxes move among many overlaps"
 
 KNOWN = {"by a flag alone": lambda structure: spec(structure, SEARCH),
@@ -46,7 +48,7 @@ def spec(structure: str, update: str, detect: str = "") -> str:
 
 
 def anew(one: str) -> str:
-    """The spec by which the structure of another one is built anew in each frame."""
+    """The spec that rebuilds a spec's structure in each frame."""
     return spec(one.partition(":")[0], "rebuild")
 
 
@@ -79,32 +81,33 @@ def cases() -> list[Case]:
 
 
 def over_rebuilding(results: Results, case: str, one: str, part: Sequence[str] = MENDING) -> Estimate:
-    """Mending over building anew, or whole frames likewise."""
+    """The time of updating over that of rebuilding; likewise for whole frames."""
     return results.ratio(case, one, anew(one), part, WHOLE if part == WHOLE else MENDING)
 
 
 def best(results: Results, structure: str, movers: int, part: Sequence[str]) -> str:
-    """The way that mends the fastest, or whose frame is the fastest. A heap mends its order when it is searched."""
+    """The way with the fastest update, or with the fastest frame. A heap restores its order only when it is searched.
+    """
     mended = [one for one in ways(structure, movers) if part == WHOLE or not one.endswith("heap")]
     return results.fastest(case_of(movers), mended, part)
 
 
 def even(results: Results, numbers: Sequence[int], boxes: int, way: Callable[[int], str],
          part: Sequence[str]) -> Estimate:
-    """The number of movers from which on mending takes longer than building anew."""
+    """The number of movers from which updating takes longer than rebuilding."""
     ways_of = {movers: way(movers) for movers in numbers}
     return results.between(lambda run: crossing(numbers, [
         run.ratio(case_of(movers, boxes), one, anew(one), part) for movers, one in ways_of.items()]), "movers")
 
 
 def reached(figures_by_name: Mapping[str, Estimate]) -> dict[str, Estimate]:
-    """Without crossings beyond what was measured."""
+    """Without crossings outside the measured range."""
     return {name: at for name, at in figures_by_name.items() if isfinite(at.value)}
 
 
 def judge_mending(number: str, part: Sequence[str], results: Results, rules: Rules,
                   beside: Mapping[str, Estimate]) -> Finding:
-    """By what happens where the fewest move; how far it goes stands beside."""
+    """Decides by the result with the fewest movers; reports beside it how far this extends."""
     shown = {}
     for structure, name in STRUCTURES.items():
         shown[f"no longer faster in the {name} from"] = even(
@@ -129,7 +132,8 @@ def judge_detection(results: Results, rules: Rules) -> Finding:
 
 
 def judge_searching(results: Results, rules: Rules) -> Finding:
-    """By a flag alone a box is searched in the whole structure; by its previous state, where it was."""
+    """With only a flag, a box is searched for in the whole structure; with its previous state, at its previous place.
+    """
     places, shown, held = {}, {}, []
     for words, way in KNOWN.items():
         for movers in (FEWEST, FEW):

@@ -1,4 +1,5 @@
-"""Our own claim: no single algorithm is the fastest everywhere, and to choose by a sample loses less than any."""
+"""Our own claim: no single algorithm is the fastest everywhere, and choosing by a sample loses less than any single
+one."""
 
 from __future__ import annotations
 
@@ -20,13 +21,13 @@ CHOICE = "auto"
 FRAMES = 4
 EFFORT = {"share_seconds": 0.03, "min_rounds": 4}
 
-# Of more boxes brute force takes far too long, which needs no clock.
+# With more boxes, brute force obviously takes far too long.
 MOST_BY_BRUTE_FORCE = 2_000
 
 
 @dataclass(frozen=True)
 class Field:
-    """One place of a map: so many boxes, and one thing that makes boxes easy or hard."""
+    """One place of a map: a number of boxes, and one property that makes boxes easy or hard."""
 
     map: str
     scene: str
@@ -71,13 +72,13 @@ def cases() -> list[Case]:
 
 
 def fastest(results: Results) -> dict[Field, str]:
-    """The single algorithm with the least time in each field, the same for all runs."""
+    """The single algorithm with the minimum time in each field, the same for all runs."""
     return {field: results.fastest(field.case, field.single) for field in fields()}
 
 
 def mean(results: Results, ratios: Sequence[tuple[Field, str, str]],
          of: Callable[[Sequence[float]], float] = geometric_mean) -> Estimate:
-    """Of the times of one algorithm over those of another, in each of some fields."""
+    """The mean ratio of one algorithm's times to another's over some fields."""
     return results.between(lambda run: of([run.ratio(field.case, one, other) for field, one, other in ratios]))
 
 
@@ -130,7 +131,7 @@ def draw(results: Results, rules: Rules) -> Iterator[figures.Figure]:
 
 
 def winners_map(first: dict[Field, str]) -> figures.Figure:
-    """Which algorithm is the fastest, over the number of boxes and one other thing."""
+    """The fastest algorithm, over the number of boxes and one other property."""
     drawing, (*maps, key) = figures.new(columns=4, height=2.2)
     for axes, (name, dimension) in zip(maps, [("overlaps of a box", 2), ("overlaps of a box", 3), (MOTION, 2)]):
         for number, winner in enumerate(SINGLE):

@@ -1,4 +1,4 @@
-// Algorithm 1 of paper.md, mended: the listing that the others call on each of their collections.
+// Algorithm 1 of paper.md, corrected: the other listings call it on each of their collections.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace broadside::paper {
 
-/// Algorithm 1, "Brute Force". Calls test_collide(E[i], E[j]) for every two different elements of the
-/// collection `e`, once, and tells the checkpoint. Cost: n (n - 1) / 2 tests.
+/// Algorithm 1, "Brute Force". Calls test_collide(E[i], E[j]) once for every two different elements of the
+/// collection `e`, and counts the tests in the checkpoint. Cost: n (n - 1) / 2 tests.
 template <typename TestCollide>
 void algorithm_1_brute_force(std::span<const BoxId> e, Checkpoint& checkpoint, TestCollide&& test_collide) {
   for (std::size_t i = 0; i < e.size(); ++i) {        // Erratum 1a

@@ -1,5 +1,5 @@
-// Brute force as section II of paper.md has it: Algorithm 1 over all boxes. What was mended, and why, is in
-// docs/paper/errata.md.
+// Brute force as in section II of paper.md: Algorithm 1 over all boxes. docs/paper/errata.md lists the
+// corrections and their reasons.
 #include <vector>
 
 #include "broadside/searcher.hpp"

@@ -1,4 +1,4 @@
-// What the followers of section VI have in common.
+// Common parts of the followers of section VI.
 #include "paper/listings/coherent_follower.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ std::optional<Statistics> CoherentFollower<D>::follow(const Change<D>& change, P
     return statistics;
   };
   checkpoint_.emplace(change.workers.checkpoint);
-  if (change.rebuild) {  // the events start from the frame before, and nothing of it was kept
+  if (change.rebuild) {  // events are relative to the previous frame, whose pairs were not kept
     build_anew(change.before);
     search_into(pairs_);
   }

@@ -1,6 +1,6 @@
-// CoherentFollower, section VI of paper.md: a structure is kept from frame to frame and mended where boxes
-// changed, then searched as its listing does. The events of a frame are the difference to the pairs of the
-// frame before.
+// CoherentFollower, section VI of paper.md: keeps a structure from frame to frame and updates it where boxes
+// changed, then searches it as in its listing. The events of a frame are the difference from the previous
+// frame's pairs.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@
 
 namespace broadside::paper {
 
-/// VI-A: how a follower knows which boxes changed: each has a flag, or each is compared with its previous
+/// VI-A: how a follower detects changed boxes: by a flag for each box, or by comparing each with its previous
 /// state.
 enum class Detection { flag, compare };
 
 /// The tunable `detect`.
 Tunable detect_tunable();
 
-/// A follower over one structure. Derived classes say how it is built, mended and searched.
+/// A follower over one structure. Derived classes build, update and search it.
 ///
-/// The structure is built anew where `update` says so, after a failed frame, where the boxes have become
-/// more than twice as many as it was built for, and where mend() asks for it.
+/// The structure is rebuilt if `update` says so, after a failed frame, if the number of boxes has more than
+/// doubled since it was built, and if mend() asks for it.
 template <int D>
 class CoherentFollower : public Follower<D>, public Phased {
  public:
@@ -36,26 +36,26 @@ class CoherentFollower : public Follower<D>, public Phased {
  protected:
   explicit CoherentFollower(const Settings& settings);
 
-  /// The previous state of each box, absent ones among them. A box that mend() has dealt with is to be
-  /// brought up to date by it.
+  /// The previous state of each box, including absent ones. mend() must update the entry of each box that it
+  /// has processed.
   std::vector<Box<D>>& boxes() noexcept { return boxes_; }
   const std::vector<Box<D>>& boxes() const noexcept { return boxes_; }
 
-  /// How many boxes of this frame are present.
+  /// The number of present boxes in this frame.
   std::size_t present() const noexcept { return present_; }
 
-  /// To be told of tests, and of the entries that mending looks at or moves.
+  /// Counts tests, and the entries that mending visits or moves.
   Checkpoint& checkpoint() noexcept { return *checkpoint_; }
 
  private:
-  /// Makes the structure of boxes() as the listing does.
+  /// Builds the structure of boxes() as in the listing.
   virtual void build() = 0;
 
-  /// Brings the structure and boxes() from the previous state of the movers, ascending, to `now`. False if it
-  /// has to be built anew instead; all that it has changed until then does not matter.
+  /// Updates the structure and boxes() from the previous state of the movers, ascending, to `now`. False if
+  /// the structure must be rebuilt instead; changes made until then do not matter.
   virtual bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) = 0;
 
-  /// The listing's search. Returns what it counted.
+  /// The listing's search. Returns its counts.
   virtual Statistics search(PairSink& pairs) = 0;
 
   /// The bytes of the structure.
@@ -67,10 +67,10 @@ class CoherentFollower : public Follower<D>, public Phased {
   Detection detection_;
   std::vector<Box<D>> boxes_;
   std::vector<BoxId> movers_;
-  std::vector<Pair> pairs_;  // those that overlapped in the frame before
+  std::vector<Pair> pairs_;  // pairs that overlapped in the previous frame
   std::vector<Pair> found_;
   std::size_t present_ = 0;
-  std::size_t built_for_ = 0;             // boxes present when the structure was built
+  std::size_t built_for_ = 0;             // number of boxes present when the structure was built
   std::optional<Checkpoint> checkpoint_;  // of this frame
 };
 

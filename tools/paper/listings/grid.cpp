@@ -40,7 +40,7 @@ class Grid final : public ListingSearcher<2> {
   GridListing grid_;
 };
 
-/// Where a cell begins and ends on an axis. One at the world's border goes on without end where boxes do.
+/// Where a cell begins and ends on an axis. A cell at the world's border extends to infinity if boxes do.
 std::pair<float, float> ends(const GridListing& listing, std::span<const Box2> boxes, std::size_t cell,
                              std::size_t count, int axis) {
   const double origin = axis == 0 ? listing.world().left : listing.world().top;
@@ -54,10 +54,10 @@ std::pair<float, float> ends(const GridListing& listing, std::span<const Box2> b
   return {before ? -infinity : begin, beyond ? infinity : end};
 }
 
-/// Beyond this many cells, an outline has only the cells that hold a box.
+/// With more cells than this, an outline has only the cells that contain a box.
 constexpr std::size_t max_drawn = 1 << 16;
 
-/// Every cell or, of very many, the ones that hold a box.
+/// Every cell or, if there are very many, those that contain a box.
 Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Settings& settings) {
   GridListing listing(settings);
   listing.initialize(boxes);
@@ -76,7 +76,7 @@ Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Setti
       outline.levels[0].push_back({{left, top}, {right, bottom}});
     }
   }
-  // As a stream would write it, but for the rounding mode.
+  // As a stream would format it, but independent of the rounding mode.
   std::array<char, 32> size;
   const auto end =
       std::to_chars(size.data(), size.data() + size.size(), listing.size(), std::chars_format::general, 3);

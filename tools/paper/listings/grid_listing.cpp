@@ -1,4 +1,4 @@
-// Algorithms 2 to 4 of paper.md, mended.
+// Algorithms 2 to 4 of paper.md, corrected.
 #include "paper/listings/grid_listing.hpp"
 
 #include <algorithm>
@@ -11,11 +11,12 @@
 namespace broadside::paper {
 namespace {
 
-/// The most that any grid may hold, also one whose cell the user has set.
+/// The maximum for any grid, including one with a cell size set by the user.
 double max_cells(double boxes) { return std::clamp<double>(16 * boxes, 1 << 16, 1 << 22); }
 double max_references(double boxes) { return std::max<double>(64 * boxes, 1 << 18); }
 
-/// The most in a grid that chooses its cell: beyond that, cells and references cost more than they save.
+/// The maximum for a grid that chooses its cell size: beyond that, cells and references cost more than they
+/// save.
 double max_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22); }
 double max_auto_references(double boxes) { return 16 * boxes; }
 
@@ -23,7 +24,7 @@ double count_present(std::span<const Box2> boxes) {
   return static_cast<double>(std::ranges::count_if(boxes, [](const Box2& box) { return is_present(box); }));
 }
 
-/// Twice the mean finite extent; where the boxes have none, what gives each a cell of its own.
+/// Twice the mean finite extent; if boxes have none, the size that gives each its own cell.
 double choose_size(std::span<const Box2> boxes, const World& world) {
   double sum = 0;
   double count = 0;
@@ -97,8 +98,8 @@ void GridListing::algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, 
   }
 }
 
-/// The number of the cell, of `count` cells, in which `x` lies. Rises with x, and is defined for every x:
-/// what lies outside the world is in the cell at its border.
+/// The index of the cell, among `count` cells, that contains `x`. Monotonic in x and defined for every x:
+/// coordinates outside the world are in the cell at its border.
 std::size_t GridListing::cell_of(double x, double begin, double count) const {
   const double cell = std::floor((x - begin) / size_);                      // Errata 2b and 3e
   return static_cast<std::size_t>(std::clamp<double>(cell, 0, count - 1));  // Errata 3f and 3g
@@ -116,7 +117,7 @@ bool GridListing::may_hold(double references, std::size_t boxes) const {
   return references <= (cell_ == 0 ? max_auto_references(count) : max_references(count));
 }
 
-/// Whether the grid of this size has more cells, or would hold more references, than it may.
+/// Whether a grid of this size would exceed the limit on cells or references.
 bool GridListing::is_too_large(std::span<const Box2> boxes) const {
   if (!is_limited_) return false;
   const double count = count_present(boxes);

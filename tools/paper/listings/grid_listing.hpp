@@ -1,5 +1,5 @@
-// The grid ("spatial partitioning index") as section III of paper.md has it: Algorithms 2 to 4. What was
-// mended, and why, is in docs/paper/errata.md.
+// The grid ("spatial partitioning index") as in section III of paper.md: Algorithms 2 to 4.
+// docs/paper/errata.md lists the corrections and their reasons.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace broadside::paper {
 
-/// The cells that a box is in: columns and rows, the last ones included.
+/// The cells that a box is in: columns and rows, with the last ones included.
 struct CellRange {
   std::size_t first_column;
   std::size_t last_column;
@@ -29,13 +29,13 @@ class GridListing {
   /// `settings` must have the tunables of paper_grid.
   explicit GridListing(const Settings& settings);
 
-  /// Algorithm 2 for these boxes, absent ones left aside: empty cells.
+  /// Algorithm 2 for these boxes, ignoring absent ones: empty cells.
   void initialize(std::span<const Box2> boxes);
 
-  /// Algorithm 3, "Spanning Add Element", for all boxes that are present.
+  /// Algorithm 3, "Spanning Add Element", for all present boxes.
   void algorithm_3_spanning_add_element(std::span<const Box2> boxes);
 
-  /// Algorithm 4, "SPI". Adds its tests to `statistics`, and tells the checkpoint.
+  /// Algorithm 4, "SPI". Adds its tests to `statistics`, and counts them in the checkpoint.
   void algorithm_4_spi(std::span<const Box2> boxes, PairSink& pairs, Checkpoint& checkpoint,
                        Statistics& statistics);
 
@@ -56,8 +56,8 @@ class GridListing {
 
   std::size_t bytes() const noexcept;
 
-  /// Whether a grid over `boxes` boxes may hold as many references (errata 2c and 3i); always without a
-  /// limit.
+  /// Whether a grid over `boxes` boxes may hold this many references (errata 2c and 3i); always true without
+  /// a limit.
   bool may_hold(double references, std::size_t boxes) const;
 
  private:
@@ -66,7 +66,7 @@ class GridListing {
   bool is_too_large(std::span<const Box2> boxes) const;
 
   WorldSettings world_settings_;
-  double cell_;      // 0 if the boxes choose it
+  double cell_;      // 0: chosen by the boxes
   bool is_limited_;  // by errata 2c and 3i
   World world_{};
   double size_ = 1;

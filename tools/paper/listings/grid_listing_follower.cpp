@@ -1,5 +1,5 @@
-// Section VI-B of paper.md: the references of boxes that changed are put into other cells, then Algorithm 4
-// searches all cells. What was mended, and why, is in docs/paper/errata.md.
+// Section VI-B of paper.md: moves the references of changed boxes to other cells, then Algorithm 4 searches
+// all cells. docs/paper/errata.md lists the corrections and their reasons.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,11 +15,11 @@
 namespace broadside::paper {
 namespace {
 
-/// How a box that changed gets into its new cells.
+/// How a changed box gets into its new cells.
 enum class Reposition {
-  rebuild,                 ///< with all others: the grid is built anew
-  search_delete_reinsert,  ///< VI-A: all cells are searched for it, it is deleted, and hashed into its new
-                           ///< ones
+  rebuild,                 ///< with all others: the grid is rebuilt
+  search_delete_reinsert,  ///< VI-A: all cells are searched for it; it is deleted, and hashed into its new
+                           ///< cells
   search_once,             ///< erratum T10: one search of all cells for all movers
   reinsert,                ///< VI-B: "one hash to find an object and another hash to place it"
   translate                ///< VI-B: its references go to neighbouring cells
@@ -33,10 +33,10 @@ Reposition reposition_of(const Settings& settings) {
   return text == "translate" ? Reposition::translate : Reposition::rebuild;
 }
 
-/// Whether a coordinate that goes from `from` to `to` surely stays in its cell, by the paper's rule: the
-/// offset in the cell is the position modulo the cell's size, and the change is compared with it. Erratum T7:
-/// in the direction of the change. Where the arithmetic cannot tell a position from a border, it does not
-/// stay.
+/// Whether a coordinate that moves from `from` to `to` certainly stays in its cell, by the paper's rule:
+/// compares the change with the offset in the cell, which is the position modulo the cell's size. Erratum T7:
+/// in the direction of the change. If the arithmetic cannot distinguish a position from a border, the
+/// coordinate does not stay.
 bool stays(double from, double to, double begin, double size) {
   if (!std::isfinite(from) || !std::isfinite(to)) return from == to;
   const double position = from - begin;
@@ -98,7 +98,7 @@ class GridListingFollower final : public CoherentFollower<2> {
     return true;
   }
 
-  /// Searches all cells for one box: a flag does not say how many it is in.
+  /// Searches all cells for one box: a flag does not say how many cells it is in.
   void search_and_delete(BoxId id) {
     std::uint64_t looked_at = 0;
     for (std::vector<BoxId>& cell : grid_.cells()) {
@@ -121,8 +121,8 @@ class GridListingFollower final : public CoherentFollower<2> {
     }
   }
 
-  /// Likewise. Only the references in cells that the box leaves go to those it enters: to move one to a cell
-  /// that has a reference to the same box would change nothing.
+  /// Likewise. Only references in cells that the box leaves move to cells that it enters: moving one to a
+  /// cell that already has a reference to the box would change nothing.
   bool translate(BoxId id, const Box2& from, const Box2& to) {
     const World& world = grid_.world();
     const std::array<double, 2> begin = {world.left, world.top};
@@ -147,7 +147,7 @@ class GridListingFollower final : public CoherentFollower<2> {
     }
   }
 
-  /// Those of `cells` that are not among `others`.
+  /// The cells of `cells` that are not among `others`.
   template <typename Visit>
   static void for_cells_outside(const CellRange& cells, const CellRange& others, Visit visit) {
     for (std::size_t column = cells.first_column; column <= cells.last_column; ++column) {

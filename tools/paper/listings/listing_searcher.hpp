@@ -1,4 +1,4 @@
-// ListingSearcher: what the searchers over the paper's listings have in common.
+// ListingSearcher: common parts of the searchers over the paper's listings.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace broadside::paper {
 
-/// Gives a listing boxes of its own. It looks at each box many times, and the caller's array may be changed
-/// by another thread meanwhile: what a cell was computed from must be what is looked up later.
+/// Copies the boxes for a listing. It reads each box many times, and another thread may change the caller's
+/// array meanwhile, but the cell computed from a box must match the box looked up later.
 template <int D>
 class ListingSearcher : public Searcher<D>, public Phased {
  public:
@@ -30,8 +30,8 @@ class ListingSearcher : public Searcher<D>, public Phased {
   }
 
  private:
-  /// search() on boxes that do not change. Those that are invalid by now are absent. Tells `checkpoint` of
-  /// each test. Ends each phase but the last, which is searching. Returns what it counted.
+  /// search() on boxes that do not change; boxes that became invalid are absent. Counts each test in
+  /// `checkpoint`. Ends each phase but the last, which is searching. Returns its counts.
   virtual Statistics search_listed(std::span<const Box<D>> boxes, PairSink& pairs,
                                    Checkpoint& checkpoint) = 0;
 

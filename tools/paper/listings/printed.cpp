@@ -1,4 +1,4 @@
-// Algorithms 1 to 10 of paper.md exactly as printed; how to read them is said in the header.
+// Algorithms 1 to 10 of paper.md exactly as printed; the header explains how to read them.
 #include "paper/listings/printed.hpp"
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t max_steps = 1'000'000;
 constexpr std::size_t max_depth = 100;
 
-/// Whether "for i = 0 to n" has a round for i.
+/// Whether "for i = 0 to n" has an iteration for i.
 bool in_range(std::size_t i, double n, To to) {
   const auto at = static_cast<double>(i);
   return to == To::including ? at <= n : at < n;

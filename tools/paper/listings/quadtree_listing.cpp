@@ -1,4 +1,4 @@
-// Algorithms 7 to 10 of paper.md, mended.
+// Algorithms 7 to 10 of paper.md, corrected.
 #include "paper/listings/quadtree_listing.hpp"
 
 #include <algorithm>
@@ -9,10 +9,11 @@
 namespace broadside::paper {
 namespace {
 
-/// No tree is deeper: by then a node is 2^-48 of the world, below what a float can tell apart but near zero.
+/// The maximum depth of a tree: a node there is 2^-48 of the world, less than a float can resolve except near
+/// zero.
 constexpr int max_depth = 48;
 
-/// The references a box that the leaves may hold on average.
+/// The maximum average number of references per box in the leaves.
 constexpr double max_references_per_box = 16;
 
 }  // namespace
@@ -75,7 +76,7 @@ void QuadTreeNode::algorithm_8_split() {
     if (!tree_->leaves.empty()) std::erase(tree_->leaves[index(e_[i])], this);
     algorithm_9_spanning_add_element(e_[i]);
   }
-  tree_->visits = visits;  // entries are dealt out; nothing is on its way
+  tree_->visits = visits;  // entries are redistributed; no insertion is under way
   e_ = {};                 // Erratum 8b
 }
 
@@ -96,8 +97,8 @@ void QuadTreeNode::algorithm_9_spanning_add_element(BoxId id) {
   }
 }
 
-/// Whether subnodes may help. They cannot where all boxes share a point: some subnode gets every one of
-/// them, and no test is spared since every test finds a pair.
+/// Whether subnodes can help. They cannot if all boxes share a point: some subnode gets all of them, and no
+/// test is saved, because every test finds a pair.
 bool QuadTreeNode::can_split() const {
   if (depth_ == tree_->depth_max) return false;
   tree_->checkpoint->count(e_.size());

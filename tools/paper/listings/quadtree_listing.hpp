@@ -1,5 +1,5 @@
-// The quadtree as section V of paper.md has it: Algorithms 7 to 10. What was mended, and why, is in
-// docs/paper/errata.md.
+// The quadtree as in section V of paper.md: Algorithms 7 to 10. docs/paper/errata.md lists the corrections
+// and their reasons.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace broadside::paper {
 
-/// The points for which begin <= x < end on both axes; +inf lies in what ends at +inf.
+/// The points with begin <= x < end on both axes; +inf is in regions that end at +inf.
 struct HalfOpenRegion {
   std::array<double, 2> begin;
   std::array<double, 2> end;
@@ -27,7 +27,7 @@ struct HalfOpenRegion {
     return begin[0] <= x && begin[1] <= y && ends_after(x, 0) && ends_after(y, 1);
   }
 
-  /// Whether all of a present box is in it, and whether some of it is: then, and only then, Algorithm 9 takes
+  /// Whether all of a present box is in the region, and whether any of it is: exactly then, Algorithm 9 takes
   /// the box to a leaf with this region.
   bool holds(const Box2& e) const {
     return holds(e.min[0], e.min[1]) && ends_after(e.max[0], 0) && ends_after(e.max[1], 1);
@@ -36,7 +36,7 @@ struct HalfOpenRegion {
     return e.max[0] >= begin[0] && e.max[1] >= begin[1] && ends_after(e.min[0], 0) && ends_after(e.min[1], 1);
   }
 
-  /// Whether some of the box lies beyond the side (-1 or 1) along an axis, and whether all of it does.
+  /// Whether any of the box is beyond the side (-1 or 1) along an axis, and whether all of it is.
   bool is_crossed(const Box2& e, int axis, int side) const {
     return side < 0 ? e.min[axis] < begin[axis] : !ends_after(e.max[axis], axis);
   }
@@ -50,17 +50,17 @@ struct HalfOpenRegion {
 
 class QuadTreeNode;
 
-/// What all nodes of a tree share.
+/// State shared by all nodes of a tree.
 struct QuadTree {
   std::span<const Box2> boxes;
   std::size_t count_max = 0;
   int depth_max = 0;
-  Checkpoint* checkpoint = nullptr;  ///< is told of tests, and of boxes looked at on the way to them
-  std::size_t nodes = 0;             ///< that there are
-  std::uint64_t visits = 0;          ///< of nodes, on the ways of boxes to their leaves
-  std::uint64_t entries = 0;  ///< added, removed, or looked through for this; splits deal them out anew
+  Checkpoint* checkpoint = nullptr;  ///< counts tests, and boxes visited on the way to them
+  std::size_t nodes = 0;             ///< number of nodes
+  std::uint64_t visits = 0;          ///< nodes visited on the ways of boxes to their leaves
+  std::uint64_t entries = 0;         ///< added, removed, or examined for that; splits redistribute them
 
-  /// For each box the leaves that it is in, where section VI-D needs them; else empty.
+  /// For each box, the leaves that it is in, if section VI-D needs them; otherwise empty.
   std::vector<std::vector<QuadTreeNode*>> leaves{};
 };
 
@@ -82,27 +82,28 @@ class QuadTreeNode {
     algorithm_1_brute_force(e_, *tree_->checkpoint, [&](BoxId a, BoxId b) { test_collide(region_, a, b); });
   }
 
-  /// Algorithm 9 from here, for a box that may be in some of the leaves: it is added to the others.
+  /// Algorithm 9 from this node, for a box that may already be in some of the leaves: adds it to the others.
   void add_where_missing(BoxId e);
 
-  /// Takes a box out of this leaf, if it is there.
+  /// Removes a box from this leaf, if it is there.
   void remove(BoxId e);
 
-  /// Searches this node and all below it for a box, and takes it out of its leaves.
+  /// Searches this node and all below it for a box, and removes it from its leaves.
   void search_and_remove(BoxId e);
 
-  /// The node on the given side (-1 or 1) of this one along an axis, of its size or, where there is none, the
-  /// larger leaf; null at the border of the world. As Samet finds neighbours: a sibling by way of the parent,
-  /// a cousin by way of the least ancestor that has a child there, and the mirrored way down.
+  /// The node on the given side (-1 or 1) of this one along an axis, of the same size or, if there is none,
+  /// the larger leaf; null at the border of the world. Finds neighbours as Samet does: a sibling through the
+  /// parent, a cousin through the nearest ancestor with a child on that side, and the mirrored path down.
   QuadTreeNode* neighbour(int axis, int side);
 
-  /// Whether that is a sibling.
+  /// Whether that neighbour is a sibling.
   bool has_sibling(int axis, int side) const noexcept { return parent_ != nullptr && sides_[axis] != side; }
 
-  /// Splits a leaf that has become too full while its boxes moved in it.
+  /// Splits a leaf that has become too full while boxes moved.
   void split_if_full();
 
-  /// Appends the node's region and those below it to the levels. Returns how many of them are leaves.
+  /// Appends the regions of the node and its descendants to the levels. Returns the number of leaves among
+  /// them.
   std::size_t lay_out(std::vector<std::vector<Box2>>& levels) const;
 
   /// The entries in this node's leaves.
@@ -137,18 +138,18 @@ class QuadTreeNode {
   std::unique_ptr<QuadTreeNode> qiv_;
 };
 
-/// The entries of a present box in all leaves if every node down to `depth` is split; no tree of that depth
-/// has more.
+/// The number of entries of a present box in all leaves if every node down to `depth` is split; no tree of
+/// that depth has more.
 double references_at(int depth, const Box2& box, const World& world);
 
-/// The most references that the leaves may come to hold, whatever the order in which boxes are added (erratum
-/// 7c).
+/// The maximum number of references that the leaves may hold, whatever the order in which boxes are added
+/// (erratum 7c).
 double max_references_in_tree(std::size_t boxes);
 
-/// The greatest depth at which they cannot hold more. Absent boxes do not count.
+/// The maximum depth at which the leaves cannot hold more. Absent boxes do not count.
 int choose_depth(std::span<const Box2> boxes, const World& world);
 
-/// Traverse from `root`, and what it counted.
+/// Traverses from `root`, and returns the counts.
 Statistics search_tree(const QuadTree& tree, const QuadTreeNode& root, PairSink& pairs);
 
 }  // namespace broadside::paper

@@ -1,5 +1,5 @@
-// Section VI-D of paper.md: the references of boxes that changed are put into other leaves, then Algorithm 10
-// traverses the tree. What was mended in the text, and why, is in docs/paper/errata.md.
+// Section VI-D of paper.md: moves the references of changed boxes to other leaves, then Algorithm 10
+// traverses the tree. docs/paper/errata.md lists the corrections and their reasons.
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,14 +12,14 @@
 namespace broadside::paper {
 namespace {
 
-/// How the references of a box that changed get into other leaves.
+/// How the references of a changed box get into other leaves.
 enum class TreeReposition {
-  rebuild,                 ///< with all others: the tree is built anew
-  search_delete_reinsert,  ///< VI-A: all nodes are searched for it, it is deleted, and inserted at the root
+  rebuild,                 ///< with all others: the tree is rebuilt
+  search_delete_reinsert,  ///< VI-A: all nodes are searched for it; it is deleted, and inserted at the root
   root,                    ///< "reinserting at the root"; its leaves are known
-  relative,  ///< "insert based on relative position": at the least node above its leaf that holds it
-  siblings,  ///< "translate references across siblings"; where there is none, it is inserted at the root
-  cousins    ///< where there is none, "go to the cousin by traversing through the parent"
+  relative,  ///< "insert based on relative position": at the lowest node above its leaf that contains it
+  siblings,  ///< "translate references across siblings"; without a sibling, it is inserted at the root
+  cousins    ///< without a sibling, "go to the cousin by traversing through the parent"
 };
 
 TreeReposition tree_reposition_of(const Settings& settings) {
@@ -31,8 +31,8 @@ TreeReposition tree_reposition_of(const Settings& settings) {
   return text == "cousins" ? TreeReposition::cousins : TreeReposition::rebuild;
 }
 
-/// Whether the leaves just beyond a side of a region must hold the box already: its former place met them
-/// wherever its new one does.
+/// Whether the leaves just beyond a side of a region already have the box: wherever its new place meets them,
+/// its previous place did as well.
 bool has_crossed(const HalfOpenRegion& region, const Box2& from, const Box2& to, int axis, int side) {
   const int other = 1 - axis;
   return region.meets(from) && region.is_crossed(from, axis, side) &&
@@ -69,7 +69,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box2> now) override {
-    // Nothing joins subnodes that boxes have left (erratum T11).
+    // Subnodes that boxes have left are never merged (erratum T11).
     if (reposition_ == TreeReposition::rebuild || tree_.nodes > 2 * nodes_built_ + 16 * present() + 64)
       return false;
     tree_.visits = 0;
@@ -94,7 +94,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     return true;
   }
 
-  /// Whether each box has a list of its leaves, so that none has to be searched for.
+  /// Whether each box has a list of its leaves, so that they need not be searched for.
   bool knows_leaves() const {
     return reposition_ != TreeReposition::rebuild && reposition_ != TreeReposition::search_delete_reinsert;
   }
@@ -114,10 +114,10 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     node->algorithm_7_add_element(id);
   }
 
-  /// Each reference whose leaf the box has left goes across the side through which it has left. Then
-  /// references go across the sides of leaves that the box has come to reach over, since it may have grown
-  /// (erratum T12). False where that takes more than siblings and only these may be asked; what was done
-  /// until then does not harm.
+  /// Each reference whose leaf the box has left moves across the side through which it left. Then references
+  /// move across the sides of leaves over which the box now extends, because it may have grown (erratum T12).
+  /// False if this needs more than siblings but only siblings are allowed; changes made until then do no
+  /// harm.
   bool translate(BoxId id, const Box2& from, const Box2& to) {
     std::vector<QuadTreeNode*>& leaves = tree_.leaves[index(id)];
     before_ = leaves;
@@ -131,7 +131,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
       if (node == nullptr) return false;
       node->add_where_missing(id);
     }
-    for (std::size_t i = 0; i < leaves.size(); ++i) {  // leaves that are added follow
+    for (std::size_t i = 0; i < leaves.size(); ++i) {  // includes the leaves added meanwhile
       for (const int axis : {0, 1}) {
         for (const int side : {-1, 1}) {
           QuadTreeNode& leaf = *leaves[i];
@@ -146,8 +146,7 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     return true;
   }
 
-  /// From a node that the box does not meet towards the box, by neighbours, to one that it meets. Null as
-  /// beside() is.
+  /// Walks by neighbours from a node that the box does not meet to one that it meets. Null if beside() is.
   QuadTreeNode* walk(QuadTreeNode* node, const Box2& to) {
     for (;;) {
       const bool is_left_in_x = node->region().is_left(to, 0, -1) || node->region().is_left(to, 0, 1);
@@ -158,13 +157,13 @@ class QuadtreeListingFollower final : public CoherentFollower<2> {
     }
   }
 
-  /// The neighbour on that side, which is there; null if it may only be a sibling and is none.
+  /// The neighbour on that side, which must exist; null if only siblings are allowed and it is not one.
   QuadTreeNode* beside(QuadTreeNode& node, int axis, int side) {
     if (reposition_ == TreeReposition::siblings && !node.has_sibling(axis, side)) return nullptr;
     return node.neighbour(axis, side);
   }
 
-  /// The least node from `node` upwards that holds the box.
+  /// The lowest node from `node` upwards that contains the box.
   QuadTreeNode* holder(QuadTreeNode* node, const Box2& to) {
     for (; node->parent() != nullptr && !node->region().holds(to); node = node->parent()) ++tree_.visits;
     return node;

@@ -1,4 +1,4 @@
-// The mended listings as algorithms that the library knows by name.
+// Registers the corrected listings with the library, by name.
 #pragma once
 
 #include "broadside/algorithm.hpp"
@@ -10,7 +10,7 @@ Algorithm grid();
 Algorithm sweep_and_prune();
 Algorithm quadtree();
 
-/// Registers the four with the library, as paper_brute_force and so on. Further calls do nothing.
+/// Registers the four listings as paper_brute_force and so on. Further calls do nothing.
 void register_listings();
 
 }  // namespace broadside::paper

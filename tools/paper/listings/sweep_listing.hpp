@@ -1,5 +1,5 @@
-// Sweep and prune as section IV of paper.md has it: Algorithms 5 and 6, along the x axis. What was mended,
-// and why, is in docs/paper/errata.md.
+// Sweep and prune as in section IV of paper.md: Algorithms 5 and 6, along the x axis. docs/paper/errata.md
+// lists the corrections and their reasons.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace broadside::paper {
 
-/// A box in the order of the sweep: by its MINX, and of equal ones by id.
+/// A box in the order of the sweep: by its MINX, then by id.
 struct SweepEntry {
   float min_x;
   BoxId id;
@@ -27,7 +27,7 @@ struct SweepEntry {
 template <int D>
 class SweepListing {
  public:
-  /// The boxes that are present, in order (erratum 5b).
+  /// The present boxes, in order (erratum 5b).
   static void sort(std::span<const Box<D>> boxes, std::vector<SweepEntry>& e) {
     e.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -50,7 +50,7 @@ class SweepListing {
         if constexpr (kernels::is_observing) kernels::observe_test(active, e);
         if (overlap(boxes[index(active)], boxes[index(e)])) pairs.add(active, e);
       }
-      checkpoint.count(2 * f_.size());  // those looked at to be pruned, too
+      checkpoint.count(2 * f_.size());  // includes those examined for pruning
       f_.push_back(e);
     }
     return statistics;
@@ -61,7 +61,7 @@ class SweepListing {
   void algorithm_6_prune(std::span<const Box<D>> boxes, BoxId e) {
     for (std::size_t i = 0; i < f_.size();) {  // Erratum 6a
       if (boxes[index(f_[i])].max[0] < boxes[index(e)].min[0]) {
-        f_[i] = f_.back();  // Erratum 6b: what now stands at place i has not been looked at
+        f_[i] = f_.back();  // Erratum 6b: the box now at place i has not been examined
         f_.pop_back();
       } else {
         ++i;

@@ -1,5 +1,5 @@
-// Section VI-C of paper.md: the order of the sweep is kept and mended, then Algorithm 5 sweeps once. What was
-// mended in the text, and why, is in docs/paper/errata.md.
+// Section VI-C of paper.md: keeps and updates the order of the sweep, then Algorithm 5 sweeps once.
+// docs/paper/errata.md lists the corrections and their reasons.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -13,10 +13,10 @@
 namespace broadside::paper {
 namespace {
 
-/// How the order is mended where boxes changed.
+/// How the order is updated where boxes changed.
 enum class ReorderMethod {
   rebuild,                 ///< all boxes are sorted
-  search_delete_reinsert,  ///< VI-A: the order is gone through for each mover, and for its new place
+  search_delete_reinsert,  ///< VI-A: the order is searched for each mover, and for its new place
   heap,                    ///< "keep the objects in a heap and extract the minimum when needed"
   insertion,               ///< "insertion sort if objects in the collection are relatively in order"
   binary  ///< "inserting only a subset of k objects using an insertion sort with binary search"
@@ -30,7 +30,7 @@ ReorderMethod method_of(const Settings& settings) {
   return text == "binary" ? ReorderMethod::binary : ReorderMethod::rebuild;
 }
 
-/// For std::push_heap and its like, which take the greatest: the least first.
+/// For std::push_heap and the like, which extract the maximum: puts the minimum first.
 bool is_later(const SweepEntry& a, const SweepEntry& b) { return b < a; }
 
 template <int D>
@@ -43,7 +43,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
   void build() override {
     SweepListing<D>::sort(this->boxes(), e_);
     this->counts().moved += e_.size();
-    if (method_ == ReorderMethod::heap) note_places();  // what is sorted is a heap
+    if (method_ == ReorderMethod::heap) note_places();  // a sorted array is a heap
   }
 
   bool mend(std::span<const BoxId> movers, std::span<const Box<D>> now) override {
@@ -68,8 +68,8 @@ class SweepListingFollower final : public CoherentFollower<D> {
       return listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(),
                                         [next = e_.begin()]() mutable { return (next++)->id; });
     }
-    // Extracted entries follow the heap in reverse order. At the end these are all; in order, they are the
-    // next frame's heap.
+    // Extracted entries follow the heap in reverse order. At the end these are all entries; sorted, they are
+    // the next frame's heap.
     auto end = e_.end();
     const Statistics statistics =
         listing_.algorithm_5_sweep(this->boxes(), e_.size(), pairs, this->checkpoint(), [&] {
@@ -85,8 +85,8 @@ class SweepListingFollower final : public CoherentFollower<D> {
     return e_.capacity() * sizeof(SweepEntry) + changed_.capacity() + places_.capacity() * sizeof(places_[0]);
   }
 
-  /// Gives the movers' entries their new keys, wherever they stand: drops those of boxes that are gone, and
-  /// appends those of new ones.
+  /// Updates the keys of the movers' entries, at any place: removes entries of removed boxes, and appends
+  /// entries of new ones.
   void take_keys(std::span<const BoxId> movers, std::span<const Box<D>> now) {
     changed_.assign(now.size(), 0);
     for (const BoxId id : movers) {
@@ -119,7 +119,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
     for (std::size_t i = 0; i < e_.size(); ++i) places_[index(e_[i].id)] = static_cast<std::uint32_t>(i);
   }
 
-  /// Gives the box's entry its new key, and the place in the heap that goes with it; or adds or removes it.
+  /// Updates the key of the box's entry and its place in the heap; or adds or removes the entry.
   void update_heap(BoxId id, const Box<D>& now) {
     Box<D>& before = this->boxes()[index(id)];
     if (is_present(now)) {
@@ -137,7 +137,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
     before = now;
   }
 
-  /// Puts an entry into the heap at `place`, which is free, or above or below it.
+  /// Inserts an entry into the heap at `place`, which is free, or sifts it up or down from there.
   void sift(const SweepEntry& entry, std::size_t place) {
     const std::uint64_t moved_before = this->counts().moved;
     std::size_t at = place;
@@ -161,7 +161,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
     ++this->counts().moved;
   }
 
-  /// Takes the box from its place and puts it into the new one; those between the two give way (erratum T8).
+  /// Moves the box from its old place to the new one; entries between the two shift (erratum T8).
   void reinsert(BoxId id, const Box<D>& now) {
     const std::uint64_t moved_before = this->counts().moved;
     Box<D>& before = this->boxes()[index(id)];
@@ -189,7 +189,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
     this->checkpoint().count(this->counts().moved - moved_before);
   }
 
-  /// The entry itself. Where only a flag is known, its old key is not.
+  /// The entry itself. If only a flag is known, its old key is not.
   std::vector<SweepEntry>::iterator old_place_of(const SweepEntry& entry) {
     if (method_ == ReorderMethod::binary) return binary_search(entry);
     return first_from_begin([&](const SweepEntry& other) { return other.id == entry.id; });
@@ -220,7 +220,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
 
   ReorderMethod method_;
   SweepListing<D> listing_;
-  std::vector<SweepEntry> e_;  // sorted; of the heap method, a heap
+  std::vector<SweepEntry> e_;  // sorted; with the heap method, a heap
   std::vector<std::uint8_t> changed_;
   std::vector<std::uint32_t> places_;  // of each box in the heap, between searches
 };

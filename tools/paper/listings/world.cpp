@@ -33,8 +33,16 @@ std::pair<double, double> extent(std::span<const Box2> boxes, int axis, std::opt
 std::vector<Tunable> world_tunables() {
   constexpr double max_float = std::numeric_limits<float>::max();
   return {
-      {.name = "left", .summary = "least x of the world", .default_value = "auto", .min = -max_float, .max = max_float},
-      {.name = "top", .summary = "least y of the world", .default_value = "auto", .min = -max_float, .max = max_float},
+      {.name = "left",
+       .summary = "least x of the world",
+       .default_value = "auto",
+       .min = -max_float,
+       .max = max_float},
+      {.name = "top",
+       .summary = "least y of the world",
+       .default_value = "auto",
+       .min = -max_float,
+       .max = max_float},
       {.name = "width", .summary = "extent of the world in x", .default_value = "auto", .max = max_float},
       {.name = "height", .summary = "extent of the world in y", .default_value = "auto", .max = max_float},
   };

@@ -1,4 +1,4 @@
-// The world that the paper's grid and quadtree must know before they file a box: declared in a spec, or taken
+// The world that the paper's grid and quadtree must know before they add a box: given in a spec, or computed
 // from the boxes.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace broadside::paper {
 
-/// A rectangle; y grows downwards, as the paper has it. Width and height are above 0.
+/// A rectangle; y grows downwards, as in the paper. Width and height are positive.
 struct World {
   double left;
   double top;
@@ -22,14 +22,14 @@ struct World {
 /// The tunables left, top, width and height, each "auto" unless given.
 std::vector<Tunable> world_tunables();
 
-/// What a spec declares of the world; the boxes say the rest.
+/// The parts of the world that a spec gives; the boxes determine the rest.
 class WorldSettings {
  public:
   /// `settings` must have the tunables of world_tunables().
   explicit WorldSettings(const Settings& settings);
 
-  /// The world as declared; where nothing is, the bounds of the boxes' finite coordinates (1 wide or high
-  /// where these have no extent). Boxes may reach beyond it.
+  /// The world as given; otherwise the bounds of the boxes' finite coordinates (1 wide or high if these have
+  /// no extent). Boxes may extend beyond it.
   World around(std::span<const Box2> boxes) const;
 
  private:

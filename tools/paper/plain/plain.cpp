@@ -1,4 +1,4 @@
-// What the plain searches share, and the library's searches held to an instruction set.
+// Common parts of the plain searches, and the library's searches restricted to an instruction set.
 #include "paper/plain/plain.hpp"
 
 #include <limits>
@@ -97,7 +97,7 @@ Shape<D> shape_of(std::span<const Box<D>> boxes, bool sampled) {
   for (int axis = 0; axis < D; ++axis) {
     shape.extent[axis] = static_cast<float>(sums[axis] / std::max(count, 1.0));
     if (!sampled) continue;
-    const float more = shape.high[axis] / 16 - shape.low[axis] / 16;  // a sample misses the ends
+    const float more = shape.high[axis] / 16 - shape.low[axis] / 16;  // a sample misses the extremes
     shape.low[axis] -= more;
     shape.high[axis] += more;
   }

@@ -1,6 +1,6 @@
-// The library's two fastest searches written plainly, so that each thing that makes them fast can be left out
-// alone. For the paper's ablation: finite boxes only, and no care for the worst case. Compiled without the
-// compiler's own SIMD. None of them is one of the library's, and results name no instruction set for them.
+// The library's two fastest searches written plainly, so that each optimisation can be left out separately.
+// For the paper's ablation: finite boxes only, and no protection against worst cases. Compiled without the
+// compiler's own SIMD. None of them is part of the library, and results name no instruction set for them.
 #pragma once
 
 #include <algorithm>
@@ -16,31 +16,31 @@
 
 namespace broadside::plain {
 
-/// All that follow, in this order.
+/// All algorithms below, in this order.
 std::vector<Algorithm> algorithms();
 
-/// The algorithm of `grid`: cells on all axes but one, and a sweep along that one in each. Its tunables leave
-/// things out; SIMD it has none.
+/// The algorithm of `grid`: cells on all axes but one, and a sweep along that axis in each. Its tunables
+/// leave optimisations out; it has no SIMD.
 Algorithm plain_grid();
 
 /// The algorithm of `bvh`: boxes packed sixteen to a leaf, and the tree joined with itself. Likewise.
 Algorithm plain_bvh();
 
-/// The library's algorithm `search`, held to the instruction set `simd`: in the same rounds as others that
-/// are not.
+/// The library's algorithm `search`, restricted to the instruction set `simd`: in the same rounds as others
+/// without the restriction.
 Algorithm held_back();
 
-/// A tunable whose values are "yes", which is the standard, and "no".
+/// A tunable with the values "yes", the default, and "no".
 Tunable switch_tunable(std::string name, std::string summary);
 
-/// What boxes look like along each axis.
+/// Statistics of the boxes along each axis.
 template <int D>
 struct Shape {
   std::array<float, D> extent{};  ///< on average
   std::array<float, D> low{};
   std::array<float, D> high{};
 
-  /// The axis on which boxes are shortest, compared with the space that they are in.
+  /// The axis on which boxes are shortest, relative to the space that they are in.
   int best_axis() const;
 };
 
@@ -48,8 +48,8 @@ struct Shape {
 template <int D>
 Shape<D> shape_of(std::span<const Box<D>> boxes, bool sampled);
 
-/// Writes make(i) for each i of [begin, end) that is a hit to `to`, which has room for one more; returns how
-/// many. Where `branch_free`, in any case, and keeps it if it is a hit.
+/// Writes make(i) for each i of [begin, end) that is a hit to `to`, which has room for one more; returns the
+/// number of hits. With `branch_free`, writes every value, and advances only after a hit.
 template <typename Value, typename IsHit, typename Make>
 std::size_t write_hits(bool branch_free, std::size_t begin, std::size_t end, Value* to, const IsHit& is_hit,
                        const Make& make) {
@@ -67,7 +67,8 @@ std::size_t write_hits(bool branch_free, std::size_t begin, std::size_t end, Val
   return count;
 }
 
-/// Whether what stands at two places of `bounds` overlaps; these have min(place, axis) and max(place, axis).
+/// Whether the boxes at two places of `bounds` overlap; the bounds have min(place, axis) and max(place,
+/// axis).
 template <int D, typename Bounds, typename Others>
 bool overlap_at(bool branch_free, const Bounds& bounds, std::size_t i, const Others& others, std::size_t j) {
   bool hit = true;

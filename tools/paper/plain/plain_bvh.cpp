@@ -1,4 +1,4 @@
-// The algorithm of `bvh` written plainly, so that each thing that makes it fast can be left out alone.
+// The algorithm of `bvh` written plainly, so that each optimisation can be left out separately.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t fan_out = 16;
 constexpr std::size_t max_levels = 9;
 
-/// One level of the tree as boxes.
+/// One level of the tree as an array of boxes.
 template <int D>
 struct BoxLevel {
   std::vector<Box<D>> boxes;
@@ -59,7 +59,7 @@ struct PackedBox {
   BoxId id;
 };
 
-/// Sorts the boxes into slabs, rows and leaves of sixteen that lie together (sort-tile-recursive).
+/// Sorts the boxes into slabs, rows and leaves of sixteen neighbours (sort-tile-recursive).
 template <int D>
 class Tiler {
  public:
@@ -84,7 +84,7 @@ class Tiler {
       std::ranges::sort(boxes, {}, [axis](const PackedBox<D>& packed) { return packed.box.min[axis]; });
       return;
     }
-    // In one bucket the order does not matter: what is there is near each other.
+    // The order within a bucket does not matter: its boxes are near each other.
     const auto last = static_cast<float>(boxes.size() - 1);
     const float per_unit = static_cast<float>(boxes.size()) / length;
     const auto bucket_of = [&](const PackedBox<D>& packed) {
@@ -130,8 +130,8 @@ class PlainBvh final : public Searcher<D> {
   }
 
  private:
-  /// Level 0 holds the boxes; each level after it bounds sixteen of the one before. The last one has at most
-  /// sixteen.
+  /// Level 0 holds the boxes; each further level bounds sixteen entries of the previous one. The last level
+  /// has at most sixteen.
   void pack(std::span<const Box<D>> boxes) {
     packed_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) packed_[i] = {boxes[i], static_cast<BoxId>(i)};
@@ -169,8 +169,8 @@ class PlainBvh final : public Searcher<D> {
     return overlap_at<D>(branch_free_, levels_[level_a], a, levels_[level_b], b);
   }
 
-  /// Joins what lies below `node`, whose children stand on `level`, with what lies below the nodes of `list`:
-  /// those that touch it and do not stand before it.
+  /// Joins the subtree of `node`, whose children are on `level`, with the subtrees of the nodes of `list`:
+  /// the nodes that touch it and do not come before it.
   void join(std::size_t node, std::size_t level, const std::uint32_t* list, std::size_t count,
             std::uint32_t* touched, PairSink& pairs) {
     if (level == 0) return join_leaf(node, list, count, pairs);
@@ -203,7 +203,8 @@ class PlainBvh final : public Searcher<D> {
     }
   }
 
-  /// Looks for what the box at `place` overlaps behind it, below a node whose children stand on `level`.
+  /// Searches for boxes after `place` that overlap the box at `place`, below a node whose children are on
+  /// `level`.
   void query(std::size_t place, std::size_t level, std::size_t node, PairSink& pairs) {
     const std::size_t begin = node * fan_out;
     if (level == 0) return compare(place, std::max(begin, place + 1), begin + fan_out, pairs);

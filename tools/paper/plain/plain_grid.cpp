@@ -1,4 +1,4 @@
-// The algorithm of `grid` written plainly, so that each thing that makes it fast can be left out alone.
+// The algorithm of `grid` written plainly, so that each optimisation can be left out separately.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,17 +17,18 @@
 namespace broadside::plain {
 namespace {
 
-/// Cells of one width along an axis. What lies beyond the first or the last one counts as in it.
+/// Cells of one width along an axis. Coordinates beyond the first or last cell count as in it.
 struct Cells {
   int axis = 0;
   float low = 0;
   float per_unit = 0;
   std::size_t count = 1;
-  std::vector<float> borders{};  // the least coordinate of each cell but the first, and NaN
+  std::vector<float> borders{};  // the minimum coordinate of each cell but the first, and NaN
 
   Cells() : borders{std::numeric_limits<float>::quiet_NaN()} {}
 
-  Cells(int cut_axis, float begin, float end, float min_width, double max_cells) : axis(cut_axis), low(begin) {
+  Cells(int cut_axis, float begin, float end, float min_width, double max_cells)
+      : axis(cut_axis), low(begin) {
     const float length = end - begin;
     if (length > 0 && length <= std::numeric_limits<float>::max()) {
       const double fitting = min_width > 0 ? static_cast<double>(length) / min_width : max_cells;
@@ -131,7 +132,7 @@ class PlainGrid final : public Searcher<D> {
 
   void choose_cells(std::span<const Box<D>> boxes) {
     shape_ = shape_of(boxes, samples_);
-    // Without a sample the draft's choice: the first axis.
+    // Without a sample, the draft's choice: the first axis.
     swept_ = samples_ ? shape_.best_axis() : 0;
     const double max_cells = std::pow(static_cast<double>(boxes.size()), 1.0 / (D - 1));
     const auto cut = [&](int axis) {
@@ -141,7 +142,7 @@ class PlainGrid final : public Searcher<D> {
     columns_ = D == 3 ? cut((swept_ + 2) % D) : Cells();
   }
 
-  /// Calls `visit` with each cell that the box is put into, and its dedup_mask there.
+  /// Calls `visit` with each cell that the box belongs to, and its dedup_mask there.
   template <typename Visit>
   void for_each_cell(const Box<D>& box, const Visit& visit) const {
     const std::size_t row = rows_.of(box.min[rows_.axis]);
@@ -155,7 +156,7 @@ class PlainGrid final : public Searcher<D> {
     }
   }
 
-  /// Puts the boxes into their cells, by counting.
+  /// Puts the boxes into their cells, by counting sort.
   void insert(std::span<const Box<D>> boxes) {
     begin_.assign(rows_.count * columns_.count + 1, 0);
     for (const Box<D>& box : boxes)
@@ -170,7 +171,8 @@ class PlainGrid final : public Searcher<D> {
     }
   }
 
-  /// Sets cell_ to the boxes of a cell: those put there and those carried there. Carries on what goes on.
+  /// Sets cell_ to the boxes of a cell: those that begin there and those carried there. Carries on the boxes
+  /// that extend further.
   void gather(std::size_t cell) {
     const std::span<const Entry> inserted =
         std::span(entries_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
@@ -185,7 +187,7 @@ class PlainGrid final : public Searcher<D> {
     statistics_.references += cell_.size();
   }
 
-  /// Sets `to` to the boxes of cell_ that reach the border. Written in any case, and kept if they do.
+  /// Sets `to` to the boxes of cell_ that reach the border. Writes every box, and keeps it if it does.
   void carry(int axis, float border, std::uint32_t bit, std::vector<Entry>& to) {
     to.resize(cell_.size() + 1);
     std::size_t count = 0;
@@ -208,7 +210,8 @@ class PlainGrid final : public Searcher<D> {
     }
   }
 
-  /// Orders cell_ along the swept axis; returns by how much a box may begin before an earlier one.
+  /// Sorts cell_ along the swept axis; returns the maximum distance by which a box may begin before an
+  /// earlier one.
   float order() {
     const auto before = [this](const Entry& a, const Entry& b) {
       return a.box.min[swept_] < b.box.min[swept_];
@@ -216,7 +219,7 @@ class PlainGrid final : public Searcher<D> {
     const float low = shape_.low[swept_];
     const float high = shape_.high[swept_];
     const float length = high - low;
-    // The buckets at the ends hold what a sample has missed, and are wider than the others.
+    // The buckets at the ends hold boxes outside the sample's range, and are wider than the others.
     const auto is_between = [&](const Entry& entry) {
       return entry.box.min[swept_] >= low && entry.box.min[swept_] <= high;
     };
@@ -237,7 +240,7 @@ class PlainGrid final : public Searcher<D> {
     ordered_.resize(count);
     for (const Entry& entry : cell_) ordered_[starts_[bucket_of(entry)]++] = entry;
     std::swap(cell_, ordered_);
-    // A bucket's width, and what rounding adds.
+    // A bucket's width, plus rounding errors.
     return 1.01F / per_unit + 1e-6F * std::max(std::abs(low), std::abs(high));
   }
 
@@ -280,8 +283,8 @@ class PlainGrid final : public Searcher<D> {
   std::vector<std::size_t> begin_;
   std::vector<std::size_t> next_;
   std::vector<Entry> entries_;
-  std::vector<Entry> along_;            // what is carried to the next cell of the row
-  std::vector<std::vector<Entry>> up_;  // by column: what is carried to the next row
+  std::vector<Entry> along_;            // boxes carried to the next cell of the row
+  std::vector<std::vector<Entry>> up_;  // by column: boxes carried to the next row
   std::vector<Entry> cell_;
   std::vector<Entry> ordered_;
   std::vector<std::size_t> starts_;

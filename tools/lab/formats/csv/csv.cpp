@@ -1,4 +1,4 @@
-// Boxes as text: comma-separated values and their kin. The columns' names tell what they are.
+// Reads boxes from comma-separated values and similar text. The names of the columns determine their meaning.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,13 +29,13 @@ bool is_number(std::string_view field) {
   return parse_number(field, value);
 }
 
-/// Whether a line stands before the table: it is empty or a comment.
+/// Whether a line precedes the table: it is empty or a comment.
 bool is_before(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   return first == std::string_view::npos || line[first] == '#';
 }
 
-/// Whether fields are more likely a row, with a number or a geometry in it, than names of columns.
+/// Whether the fields are probably a row of data, with a number or a geometry, rather than column names.
 bool is_table_row(const Fields& fields) {
   return std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
          std::ranges::any_of(fields, [](std::string_view field) {
@@ -64,7 +64,7 @@ constexpr auto conventions = std::to_array<Convention>({
     {"cxcyczwhd", BoundsForm::centre_size, "cx,cy,cz,w,h,d"},
 });
 
-/// Opens a table: finds out what its columns are.
+/// Opens a table: resolves its columns.
 class CsvOpener {
  public:
   CsvOpener(std::unique_ptr<Input> input, const ReadOptions& options)
@@ -73,7 +73,7 @@ class CsvOpener {
   AnyFrameReader open() {
     const std::string_view comment = skip_comments();
     separator_ = separator_of(lines_.line());
-    // The blanks of a geometry that is alone in its line separate nothing.
+    // Blanks within a geometry that is alone in its line are not separators.
     if (separator_ == Separator::blanks && is_geometry_name(fields_of(lines_.line(), separator_).front()))
       separator_ = Separator::tab;
     fields_ = fields_of(lines_.line(), separator_);
@@ -106,8 +106,8 @@ class CsvOpener {
     }
   }
 
-  /// Takes the columns by the names in the first line or in a comment before it, as numpy.savetxt writes it,
-  /// or by their number. Whether the first line is of names.
+  /// Resolves the columns by the names in the first line or in a comment before it (numpy.savetxt writes
+  /// one), or by their number. Returns whether the first line holds names.
   bool find_columns(std::string_view comment) {
     std::string problem = resolve(fields_, columns_);
     if (problem.empty()) return true;
@@ -135,8 +135,8 @@ class CsvOpener {
     return false;
   }
 
-  /// Takes the columns that the user names, from left to right, or as a convention such as "xywh" says.
-  /// Whether the first line is of names.
+  /// Resolves the columns that the user names, from left to right, or by a convention such as "xywh". Returns
+  /// whether the first line holds names.
   bool take_columns(std::string_view list) {
     const auto* const convention = std::ranges::find(conventions, list, &Convention::name);
     const bool is_convention = convention != conventions.end();
@@ -152,7 +152,7 @@ class CsvOpener {
     columns_.geometry_form = form;
     if (!problem.empty())
       lines_.refuse(fmt::format("--columns names '{}': {}", list, problem), expected_columns);
-    // A row in which one of several numbers is wrong is not taken for names.
+    // A row with one invalid number among valid ones is not a line of names.
     Fields read;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (columns_.places[i] != BoxColumns::ignored) read.push_back(fields_[i]);
@@ -160,7 +160,7 @@ class CsvOpener {
     return !is_table_row(read);
   }
 
-  /// Takes the order of the numbers in a column of bounds off names such as "bbox=xywh".
+  /// Takes the order of the numbers in a column of bounds from names such as "bbox=xywh".
   BoundsForm take_form(std::string_view list, Fields& names) const {
     BoundsForm form = BoundsForm::min_max;
     for (std::string_view& name : names) {
@@ -172,7 +172,7 @@ class CsvOpener {
         lines_.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
       form = told->form;
     }
-    // In a file with names, one column is found by its name, and other columns of bounds are ignored.
+    // In a file with names, one column is found by its name; other columns of bounds are ignored.
     const std::string_view only = names.front();
     const bool has_form = list.find('=') != std::string_view::npos;
     if (!has_form || names.size() != 1 || std::ranges::find(fields_, only) == fields_.end()) return form;
@@ -186,7 +186,7 @@ class CsvOpener {
     return form;
   }
 
-  /// Takes the columns of bounds in a file with names as a convention says.
+  /// Resolves the columns of bounds in a file with names by a convention.
   bool take_convention(const Convention& convention) {
     Fields names = fields_;
     static constexpr std::array<std::string_view, 3> centres = {"cx", "cy", "cz"};
@@ -214,7 +214,7 @@ class CsvOpener {
     return static_cast<std::size_t>(std::ranges::find(columns_.places, place) - columns_.places.begin());
   }
 
-  /// Looks for the first geometry, which tells the dimension, and for the first row that shows in which
+  /// Looks for the first geometry, which determines the dimension, and for the first row that shows in which
   /// direction y grows.
   void look_into_rows() {
     CsvLines lines = lines_;
@@ -236,7 +236,7 @@ class CsvOpener {
     if (columns_.has_geometry) columns_.dimension = read_geometry_text(geometry_).dimension;
   }
 
-  /// How ambiguous columns were read; empty if the columns are not ambiguous.
+  /// How ambiguous columns were read; empty if no columns are ambiguous.
   std::string note_on_columns() const {
     const auto name_at = [this](int place) {
       const std::size_t column = column_of(place);
@@ -262,8 +262,8 @@ class CsvOpener {
     return {};
   }
 
-  /// Finds the column of ids, by its very name or another spelling of it, and lists the columns that nothing
-  /// is read from.
+  /// Finds the column of ids, first by its exact name, then in other spellings, and lists the columns that
+  /// are not read.
   std::shared_ptr<BoxLabels> find_labels() {
     auto labels = std::make_shared<BoxLabels>();
     const std::vector<std::string>& names = columns_.names;
@@ -291,7 +291,7 @@ class CsvOpener {
 
   std::unique_ptr<Input> input_;
   const ReadOptions& options_;
-  CsvLines lines_;  // first to the table's first line, and in the end before its first row
+  CsvLines lines_;  // at first before the table's first line, in the end before its first row
   CsvLines rows_;   // before the table's first line
   Separator separator_ = Separator::comma;
   Fields fields_;  // of the first line
@@ -300,7 +300,7 @@ class CsvOpener {
   std::string_view geometry_;  // the first one
 };
 
-/// Whether the first line that says something is that of a table.
+/// Whether the first line with content is that of a table.
 bool is_csv(std::string_view bytes, std::string_view extension) {
   if (extension == ".csv") return true;
   Input input("", bytes);
@@ -309,7 +309,7 @@ bool is_csv(std::string_view bytes, std::string_view extension) {
     if (!lines.next()) return false;
   } while (is_before(lines.line()));
   Fields fields = fields_of(lines.line(), separator_of(lines.line()));
-  // What was cut off may be half a number.
+  // The last field may be cut off within a number.
   if (lines.bytes_left() == 0 && bytes.size() == Input::beginning_bytes) fields.pop_back();
   if (fields.size() < 2) return false;
   return std::ranges::count_if(fields, is_column_name) >= 2 ||

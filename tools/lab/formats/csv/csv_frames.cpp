@@ -1,11 +1,11 @@
 // The frames of a table.
 //
-// With columns frame and box, frame 0 lists every box in order, and a later frame the boxes that change; a
-// box one beyond the last is new. Empty coordinates, or min = inf and max = -inf, stand for an absent box,
-// and a line with nothing but a frame for a frame in which nothing changes.
+// With columns frame and box, frame 0 lists every box in order, and each later frame lists the boxes that
+// change. A box numbered one above the last is new. Empty coordinates, or min = inf and max = -inf, mean an
+// absent box. A line with only a frame number is a frame without changes.
 //
-// With a column of ids instead of box, the rows may come in any order, and frames are the numbers that occur,
-// ascending. A box that a frame does not list is absent in it. Boxes are numbered as they first come, frame
+// With a column of ids instead of box, rows may come in any order; frames are the numbers that occur,
+// ascending. A box that a frame does not list is absent in it. Boxes are numbered as they first occur, frame
 // by frame.
 #include <algorithm>
 #include <cstdint>
@@ -32,7 +32,7 @@ Box<D, double> in_dimension(const DoubleBox3& box) {
   return result;
 }
 
-/// The one frame of a table without columns frame and box.
+/// The only frame of a table without columns frame and box.
 template <int D>
 class PlainCsv final : public FrameReader<D, double> {
  public:
@@ -46,7 +46,7 @@ class PlainCsv final : public FrameReader<D, double> {
       take(boxes);
       rows_.keep_id(boxes.size() - 1);
       if (boxes.size() != sample) continue;
-      // Lines that go on as they began; no more than there can be in the bytes that are there.
+      // Estimates from the lines so far; no more than the remaining bytes can hold.
       const std::size_t left = rows_.lines().bytes_left();
       const std::size_t bytes_per_row = (before - left) / sample;
       boxes.reserve(sample + left / bytes_per_row + left / bytes_per_row / 32);
@@ -75,7 +75,7 @@ class PlainCsv final : public FrameReader<D, double> {
   CsvRows rows_;
 };
 
-/// Reads a table whose rows say which box they are of, by its number or by the id of its track.
+/// Reads a table whose rows identify their box, by its number or by the id of its track.
 template <int D>
 class FramesReader {
  public:
@@ -93,7 +93,8 @@ class FramesReader {
         if (!is_alone) box = rows_.whole_number(BoxColumns::box);
       });
       if (!is_read) continue;
-      // What others are numbered by must be right even where invalid boxes are skipped.
+      // Frame and box numbers must be right even if invalid boxes are skipped, because later rows count from
+      // them.
       if (!has_tracks_) check_frame(frame);
       if (is_alone) {
         frames_[frame];
@@ -128,9 +129,9 @@ class FramesReader {
     return {number, rows_.lines().number(), in_dimension<D>(rows_.box())};
   }
 
-  /// The number of a box, which is new or known.
+  /// The number of a box, known or new.
   std::size_t numbered(std::size_t box) {
-    // Nothing may be left out: a single line must not be able to ask for any amount of memory.
+    // Numbers must be consecutive, because otherwise a single line could allocate any amount of memory.
     if (box > places_.size())
       rows_.refuse(
           BoxColumns::box,
@@ -144,7 +145,7 @@ class FramesReader {
     ListedRow row = listed_as(no_place);
     const bool is_present = !is_absent(row.box);
     if (is_present) row.number = track();
-    // Without a box, the row says no more than that there is the frame.
+    // Without a box, the row only says that the frame exists.
     std::vector<ListedRow>& listed = frames_[frame];
     if (is_present) listed.push_back(row);
   }
@@ -223,14 +224,14 @@ class FramesReader {
   std::map<double, std::vector<ListedRow>> frames_;
   std::unordered_map<std::string, std::size_t> numbers_;  // by track
   std::vector<std::string> names_;                        // of tracks
-  std::vector<std::string> ids_;                          // likewise, to be shown
+  std::vector<std::string> ids_;                          // likewise, as shown to the user
   std::vector<std::size_t> places_;                       // by number
   std::vector<Box<D, double>> boxes_;                     // by place, after the frames so far
-  std::vector<std::size_t> last_seen_;                    // likewise, the frame that last listed it
+  std::vector<std::size_t> last_seen_;                    // the frame that last listed the box at each place
   std::size_t seen_frames_ = 0;
 };
 
-/// Reads a table that lists the boxes of each frame without saying which is which.
+/// Reads a table that lists the boxes of each frame without identifying them.
 template <int D>
 AnyFrameReader read_detections(CsvRows& rows) {
   std::map<double, typename SeparateFrames<D>::Frame> frames;

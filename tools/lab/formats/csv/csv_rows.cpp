@@ -53,7 +53,7 @@ bool CsvRows::next() {
     if (!table_.lines.next()) return false;
     split(table_.lines.line(), table_.separator, fields_);
   } while (fields_.size() == 1 && fields_[0].text.empty());
-  // Here, since no row to be skipped may hide that the rows after it are counted wrong.
+  // Checked here: a skipped row must not hide that later rows are misaligned.
   if (has_open_quote(table_.lines.line(), fields_))
     table_.lines.refuse("a quoted field that goes on in the next line",
                         "each row on one line; to remove quotes that are text: tr -d '\"'");
@@ -62,7 +62,7 @@ bool CsvRows::next() {
 
 DoubleBox3 CsvRows::box() {
   DoubleBox3 box;
-  // g++ 12 drops a value that `box` had before, where checked_box() throws.
+  // g++ 12 loses the previous value of `box` if checked_box() throws.
   return holds([&] { box = checked_box(); }) ? box : absent_box<3, double>();
 }
 
@@ -180,7 +180,7 @@ void CsvRows::refuse_number(int place) const {
                       fault.expected + (place < BoxColumns::first ? "" : other_ways()));
 }
 
-/// As the function of that name. Once, not for each invalid row that is left out: it reads all rows.
+/// Computed once, not for each invalid row that is left out, because it reads all rows.
 const std::string& CsvRows::other_ways() const {
   if (!other_ways_)
     other_ways_ = columns().has_geometry ? other_forms(begin_, table_.separator, columns())

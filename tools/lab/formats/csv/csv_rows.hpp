@@ -18,34 +18,35 @@
 
 namespace broadside::lab::readers {
 
-/// A table whose columns are known.
+/// A table whose columns have been resolved.
 struct CsvTable {
   std::unique_ptr<Input> input;
-  CsvLines lines;  ///< from the first line that holds numbers
+  CsvLines lines;  ///< from the first line with numbers
   Separator separator;
   BoxColumns columns;
   std::shared_ptr<BoxLabels> labels;
   Quarantine quarantine;
-  std::vector<std::string> others{};  ///< other meanings of the columns, for other_ways()
-  std::string note{};                 ///< how ambiguous columns were read; empty if there are none
+  std::vector<std::string> others{};  ///< alternative meanings of the columns, for other_ways()
+  std::string note{};                 ///< how ambiguous columns were read; empty if no columns are ambiguous
 };
 
-/// The box that a row's numbers make.
+/// The box made of a row's numbers.
 struct RowBox {
   DoubleBox3 box = absent_box<3, double>();  ///< z repeats x in 2D; absent if all bounds are empty
-  int wrong_place = BoxColumns::ignored;     ///< of a value that is no number, or missing, if there is one
-  bool is_held = true;                       ///< false if it is a number that no double holds
+  int wrong_place = BoxColumns::ignored;     ///< the place of a value that is missing or not a number, if
+                                             ///< there is one
+  bool is_held = true;                       ///< false if a number is not exactly representable as a double
 };
 RowBox box_of(const std::vector<CsvField>& fields, const BoxColumns& columns);
 
-/// The `lists` for --columns that make all rows valid, as the end of an error's text; empty if there is none.
+/// Which of the `lists` for --columns make all rows valid, as the end of an error's text; empty if none do.
 /// Reads all rows.
 std::string other_ways(CsvLines lines, Separator separator, const std::vector<std::string>& lists);
 
-/// Likewise for bounds in one field: says so if all are valid as a corner and the size.
+/// Likewise for bounds in one field: whether all are valid as a corner and a size.
 std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns);
 
-/// The rows of a table, one after the other.
+/// Reads the rows of a table in sequence.
 class CsvRows {
  public:
   explicit CsvRows(CsvTable table) : table_(std::move(table)), begin_(table_.lines) {}
@@ -55,22 +56,22 @@ class CsvRows {
   std::shared_ptr<BoxLabels> labels() const { return table_.labels; }
   std::string warning() const;
 
-  /// Whether there was another row; what follows is then of that one. Blank lines are not rows.
+  /// Whether there was another row; the functions below then refer to it. Blank lines are not rows.
   bool next();
 
-  /// Whether `check()` finds nothing wrong that the row is to be left out for.
+  /// Whether `check()` passes; if it fails, the row is left out or refused.
   template <typename Check>
   bool holds(const Check& check) {
     return table_.quarantine.holds(check);
   }
 
-  /// The row's box, where z repeats x in 2D; absent where it is invalid and is to be left out.
+  /// The row's box; z repeats x in 2D. Absent if the box is invalid and left out.
   DoubleBox3 box();
 
-  /// Refuses the row if it has more or fewer fields than there are columns.
+  /// Refuses the row if the number of its fields differs from that of the columns.
   void check_count() const;
 
-  /// Whether the row says no more than the number of a frame.
+  /// Whether the row has only the number of a frame.
   bool is_frame_alone() const;
 
   /// The number in the column of frames or boxes.
@@ -82,13 +83,13 @@ class CsvRows {
 
   bool has_column(int place) const noexcept { return column_of(place) < columns().places.size(); }
 
-  /// Keeps the row's id, if it has one, as that of the box at `place`.
+  /// Stores the row's id, if it has one, as that of the box at `place`.
   void keep_id(std::size_t place);
 
-  /// Says that the rows up to here will not be looked at again.
+  /// Says that the rows up to here will not be read again.
   void release() { table_.input->release(table_.lines.passed_bytes()); }
 
-  /// Leaves out the rows but those of a slice; false where invalid rows are left out, which are counted.
+  /// Restricts reading to the rows of a slice; false if invalid rows are left out, because they are counted.
   bool take_slice(std::size_t slice, std::size_t slices);
 
   [[noreturn]] void refuse(int place, const std::string& expected) const;
@@ -103,15 +104,15 @@ class CsvRows {
   const std::string& other_ways() const;
 
   CsvTable table_;
-  CsvLines begin_;  // before any row was read
+  CsvLines begin_;  // before the first row
   std::vector<CsvField> fields_;
   mutable std::optional<std::string> other_ways_;
 };
 
-/// Finds out what a table's columns are, and opens it. Throws FileError.
+/// Resolves a table's columns and opens it. Throws FileError.
 AnyFrameReader open_csv(std::unique_ptr<Input> input, const ReadOptions& options);
 
-/// The boxes of a table, in double. Memory: all rows where there are several frames.
+/// The boxes of a table, in double. Memory: all rows, if there are several frames.
 AnyFrameReader read_csv(CsvTable table);
 
 }  // namespace broadside::lab::readers

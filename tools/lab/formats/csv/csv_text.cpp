@@ -1,4 +1,4 @@
-// Cuts tables into lines and fields.
+// Splits tables into lines and fields.
 #include "lab/formats/csv/csv_text.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto npos = std::string_view::npos;
 
-/// Whether a character may stand around a value.
+/// Whether a character may surround a value.
 bool is_padding(char c, Separator separator) {
   return c == ' ' || (c == '\t' && separator != Separator::tab);
 }
@@ -23,7 +23,8 @@ std::size_t skip_padding(std::string_view line, std::size_t at, Separator separa
   return at;
 }
 
-/// Where the quotes of the field that begins at a place close; npos if it is not all in quotes.
+/// The position of the quote that closes the field beginning at a place; npos if the field is not entirely
+/// quoted.
 std::size_t closing_quote(std::string_view line, std::size_t begin, Separator separator) {
   if (begin == line.size() || line[begin] != '"') return npos;
   std::size_t close = line.find('"', begin + 1);
@@ -106,7 +107,7 @@ bool has_open_quote(std::string_view line, const std::vector<CsvField>& fields) 
 }
 
 bool is_held(std::string_view text, double value) {
-  constexpr double exact = 9007199254740992;  // 2^53: up to there every whole number is held
+  constexpr double exact = 9007199254740992;  // 2^53: doubles represent all integers up to here
   if (value < exact && value > -exact) return true;
   if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
   if (text.find_first_not_of("0123456789") != npos) return true;
@@ -120,7 +121,7 @@ CsvLines::CsvLines(Input& input) : input_(&input), rest_(input.bytes()) {
     rest_.remove_prefix(byte_order_mark.size());
     passed_ = byte_order_mark.size();
   }
-  // Editors leave empty lines at the end; they say nothing.
+  // Editors leave empty lines at the end; they mean nothing.
   while (rest_.ends_with('\n') || rest_.ends_with('\r')) rest_.remove_suffix(1);
 }
 

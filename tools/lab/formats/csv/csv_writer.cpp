@@ -1,4 +1,4 @@
-// Writes boxes as a table: one line a box, or one line a box that changes in a frame.
+// Writes boxes as a table: one line per box, or one line per box that changes in a frame.
 #include "lab/formats/csv/csv_writer.hpp"
 
 #include <array>
@@ -38,7 +38,7 @@ class CsvWriter final : public FrameWriter<D, Real> {
       if (boxes_.empty()) write_frame_alone();
     }
     ++frame_;
-    // The boxes that change, those that go because the array ends before them, and those that come absent.
+    // The boxes that change, those removed because the array ends before them, and those added as absent.
     std::map<std::size_t, Box<D, Real>> rows;
     for (std::size_t i = 0; i < step.changed.size(); ++i) {
       if (index(step.changed[i]) < step.size) rows.insert_or_assign(index(step.changed[i]), step.boxes[i]);
@@ -120,10 +120,10 @@ class CsvWriter final : public FrameWriter<D, Real> {
   }
 
   std::ostream& stream_;
-  std::string text_;  // that is not yet written
+  std::string text_;  // not yet written
   const std::vector<std::string>* ids_ = nullptr;
   std::vector<Box<D, Real>> boxes_;
-  std::size_t places_ = 0;  // in the file, where the array never becomes shorter
+  std::size_t places_ = 0;  // in the file, where the array never shrinks
   std::size_t frame_ = 0;
 };
 

@@ -7,9 +7,9 @@
 
 namespace broadside::lab::readers {
 
-/// Begins a table in a stream. One frame becomes plain columns of bounds; with more, the columns frame and
-/// box are before them. Numbers are as short as makes a double of them that has the same value, floats too:
-/// so the boxes are the same in whichever precision they are read.
+/// Begins a table in a stream. A single frame becomes plain columns of bounds; with more frames, the columns
+/// frame and box precede them. Numbers are the shortest that read back as a double of the same value, floats
+/// too: so the boxes are the same in either precision.
 AnyFrameWriter write_csv(std::ostream& stream, int dimension, Precision precision);
 
 }  // namespace broadside::lab::readers

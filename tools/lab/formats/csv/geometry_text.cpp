@@ -1,4 +1,4 @@
-// The box of a geometry in one field.
+// Parses a geometry in one field, and computes its box.
 #include "lab/formats/csv/geometry_text.hpp"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ constexpr auto kinds = std::to_array<std::string_view>({"POINT", "LINESTRING", "
 constexpr std::string_view kind_list =
     "POINT, LINESTRING, POLYGON, MULTIPOINT, MULTILINESTRING, MULTIPOLYGON, GEOMETRYCOLLECTION or bounds";
 
-/// Lists in lists beyond this are refused: reading them takes the stack.
+/// More deeply nested lists are refused, because the parser is recursive.
 constexpr int max_nested = 40;
 
-/// Reads a text from left to right. Each read_...() is false once something is wrong, which `geometry` tells.
+/// A recursive-descent parser. Each read_...() returns false after an error, which `geometry` describes.
 class GeometryText {
  public:
   GeometryText(std::string_view text, BoundsForm form) : rest_(text), form_(form) {}
@@ -60,7 +60,7 @@ class GeometryText {
 
   void skip() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
 
-  /// Takes a character, with blanks before it, if it is next.
+  /// Consumes a character, with blanks before it, if it comes next.
   bool take(char c) {
     skip();
     if (!rest_.starts_with(c)) return false;
@@ -83,7 +83,7 @@ class GeometryText {
     return word;
   }
 
-  /// Takes a word if it is this one.
+  /// Consumes a word if it comes next.
   bool take_word(std::string_view wanted) {
     const std::string_view before = rest_;
     if (word() == wanted) return true;
@@ -91,7 +91,7 @@ class GeometryText {
     return false;
   }
 
-  /// Reads numbers up to a bracket or, unless they have commas between them, a comma.
+  /// Reads numbers up to a bracket or, unless commas separate them, up to a comma.
   bool read_numbers(bool has_commas) {
     numbers_.clear();
     do {
@@ -111,7 +111,7 @@ class GeometryText {
     return true;
   }
 
-  /// "[0, 0, 1, 1]": minima and maxima, or what `form_` says.
+  /// "[0, 0, 1, 1]": minima, then maxima, or in the order of `form_`.
   bool read_bounds() {
     const char close = take('[') ? ']' : take('(') ? ')' : '\0';
     return read_numbers(true) && (close == '\0' || expect(close)) && take_bounds();
@@ -142,7 +142,7 @@ class GeometryText {
   /// "POLYGON Z ((0 0 9, ...))".
   bool read_geometry(int nested) {
     std::string name = word();
-    std::size_t numbers = 0;  // of a point, if that is said
+    std::size_t numbers = 0;  // numbers per point, if the text says it
     for (const std::string_view suffix : {"ZM", "Z", "M"}) {
       const bool is_known = std::ranges::find(kinds, name) != kinds.end();
       if (numbers != 0 || (is_known ? !take_word(suffix) : !name.ends_with(suffix))) continue;

@@ -1,4 +1,4 @@
-// Finds other meanings of a table's columns in which all rows are valid.
+// Finds alternative meanings of a table's columns with which all rows are valid.
 #include <algorithm>
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// A value in a file of JSON that knows its place.
+// JsonPlace: a value in a JSON file, and its place.
 #include "lab/formats/json/json_place.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// JsonPlace: a value in a file of JSON that knows its place, so that an error can name it.
+// JsonPlace: a value in a JSON file, and its place, for error messages.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace broadside::lab {
 
-/// The value that `text` is. Throws FileError, with the byte and what was found and expected there, if it is
-/// no JSON. `name` is what errors call the file.
+/// Parses `text` as JSON. If it is not JSON, throws FileError with the byte, what was found there and what
+/// was expected. Errors call the file `name`.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
-/// Every function throws FileError, which names the place, what is there and what was expected, if the value
-/// is not of its kind. The value must outlive its places.
+/// If the value has the wrong type, every function throws FileError with the place, what was found and what
+/// was expected. The value must outlive its places.
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::ordered_json& value, std::string place)
@@ -25,7 +25,7 @@ class JsonPlace {
 
   [[noreturn]] void refuse(std::string_view expected) const;
 
-  /// What errors call it.
+  /// The place, for error messages.
   const std::string& name() const { return place_; }
 
   const nlohmann::ordered_json& json() const { return *value_; }
@@ -36,7 +36,7 @@ class JsonPlace {
   /// The field of an object.
   JsonPlace at(const char* name) const;
 
-  /// Throws unless it is an object with no fields but these.
+  /// Throws unless it is an object with only these fields.
   void check_fields(std::initializer_list<const char*> names) const;
 
   std::vector<JsonPlace> list() const;

@@ -1,4 +1,4 @@
-// JSON through the events of nlohmann::json, which checks all of it.
+// Builds JSON values from the events of nlohmann::json, which validates all of the text.
 #include "lab/formats/json/json_reader.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
-/// The bytes of a text; all copies tell one variable where the one is that goes on.
+/// An iterator over a text; all copies report their position to one shared variable.
 struct Cursor {
   // NOLINTBEGIN(readability-identifier-naming): names of the standard library
   using iterator_category = std::input_iterator_tag;
@@ -38,7 +38,7 @@ struct Cursor {
   bool operator==(const Cursor& other) const { return at == other.at; }
 };
 
-/// Builds the values that are wanted.
+/// Builds the selected values.
 class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   JsonBuilder(std::string_view text, const std::string& name, const JsonSelection& wanted)
@@ -79,7 +79,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  /// Deeper values are not kept: what works on them goes down by recursion.
+  /// Deeper values are not kept, because code that uses them is recursive.
   static constexpr std::size_t max_open = 100;
 
   static bool has(const std::vector<std::string>& names, const std::string& name) {
@@ -92,7 +92,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
            has(wanted_.lists, root_.names.back());
   }
 
-  /// Puts a value where it belongs; null if it is not wanted.
+  /// Stores a value in its container; null if it is not selected.
   JsonValue* place(JsonValue value) {
     if (open_.empty()) return &(root_ = std::move(value));
     JsonValue& parent = *open_.back();
@@ -138,7 +138,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  /// Hands the value that is now whole over if it is a list's element.
+  /// Hands over the completed value if it is a list's element.
   void hand_over() {
     if (!is_in_list()) return;
     if (wanted_.progress) wanted_.progress(static_cast<std::size_t>(at_ - begin_));
@@ -152,8 +152,8 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   const std::string& name_;
   const JsonSelection& wanted_;
   JsonValue root_;
-  std::vector<JsonValue*> open_;  // containers, each the last item of the one before
-  std::size_t skipped_ = 0;       // containers open that are not wanted
+  std::vector<JsonValue*> open_;  // open containers, each the last item of the one before
+  std::size_t skipped_ = 0;       // number of open containers that are not selected
   std::string key_;
 };
 

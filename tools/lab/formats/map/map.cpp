@@ -1,5 +1,5 @@
-// Maps: GeoJSON (RFC 7946), whole or a value on each line; and boxes in images, in the JSON of COCO and
-// LabelMe. All in doubles, exactly as in the file.
+// Reads maps: GeoJSON (RFC 7946), as one value or one value per line; and boxes in images, in the JSON of
+// COCO and LabelMe. Coordinates are doubles, exactly as in the file.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -23,20 +23,20 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
-constexpr std::string_view blanks = " \t\r\n\x1e";  // with the record separator of RFC 8142
+constexpr std::string_view blanks = " \t\r\n\x1e";  // including the record separator of RFC 8142
 
-// The lists of a text.
+// The root's lists.
 constexpr std::string_view features = "features";
 constexpr std::string_view geometries = "geometries";
 constexpr std::string_view annotations = "annotations";  // COCO's
 constexpr std::string_view shapes = "shapes";            // LabelMe's
 constexpr std::array element_lists = {features, geometries, annotations, shapes};
 
-/// A kind of geometry: an array of points or of lines, `depth` arrays deep.
+/// A kind of geometry: an array of points or of lines, nested `depth` arrays deep.
 struct GeometryKind {
   std::string_view name;
   int depth;        // arrays around a point
-  int piece_depth;  // of these, around what is in one piece
+  int piece_depth;  // arrays around one connected piece
   bool has_lines;
 };
 constexpr auto geometry_kinds = std::to_array<GeometryKind>({{"Point", 0, 0, false},
@@ -48,7 +48,7 @@ constexpr auto geometry_kinds = std::to_array<GeometryKind>({{"Point", 0, 0, fal
 constexpr std::string_view geometry_types =
     "Point, MultiPoint, LineString, MultiLineString, Polygon, MultiPolygon or GeometryCollection";
 
-/// Whether there is a JSON object on each line: where a first line ends one, the next begins one.
+/// Whether each line is a JSON object: the first line ends one, and the next line begins one.
 bool is_line_by_line(std::string_view bytes) {
   const std::size_t first = bytes.find_first_not_of(blanks);
   const std::size_t end = bytes.find('\n', std::min(first, bytes.size()));
@@ -58,7 +58,7 @@ bool is_line_by_line(std::string_view bytes) {
          bytes[next] == '{';
 }
 
-/// Gathers boxes while a map is read: points belong to lines, lines to pieces, pieces to features.
+/// Collects boxes while a map is read: points belong to lines, lines to pieces, pieces to features.
 class MapReader {
  public:
   MapReader(Input& input, const ReadOptions& options)
@@ -118,7 +118,7 @@ class MapReader {
                                                       std::move(labels), warning);
   }
 
-  /// A frame for each image, in the order in which the images first occur.
+  /// One frame for each image, in the order in which the images first occur.
   AnyFrameReader images(std::string warning) {
     if (images_.size() > 1)
       warning.insert(
@@ -128,10 +128,10 @@ class MapReader {
                                                std::move(warning));
   }
 
-  // What there is in a text.
+  // The content of a text.
 
-  /// Takes an element of one of the root's lists, unless its type, which mostly comes first, says that the
-  /// list is not a map's.
+  /// Takes an element of one of the root's lists, unless the root's type, which usually comes first, shows
+  /// that the list does not belong to a map.
   void take(const JsonValue& root, std::string_view list, const JsonValue& element) {
     if (const JsonValue* const type = root.find("type"); type != nullptr && list != list_of(type->text))
       return;
@@ -152,7 +152,7 @@ class MapReader {
     return type == "FeatureCollection" ? features : type == "GeometryCollection" ? geometries : "";
   }
 
-  /// What a text is besides the elements that were taken.
+  /// Reads the rest of the root, after the elements of its lists.
   void read_root(const JsonValue& root) {
     if (root.kind != Kind::object)
       refuse(root.shown(),
@@ -193,7 +193,7 @@ class MapReader {
            "GeoJSON, COCO's annotations or LabelMe's shapes; for other JSON, make a table with jq");
   }
 
-  /// Reads what is a feature, or leaves it out.
+  /// Reads a feature, or leaves it out if it is invalid.
   template <typename Read>
   void read_whole(const Read& read) {
     const std::size_t before = boxes_.size();
@@ -275,7 +275,7 @@ class MapReader {
     quarantine_.holds([&] { images_[frame].boxes.back() = box_of(annotation.find("bbox")); });
   }
 
-  /// "bbox": a corner and the size; without one, the box is absent.
+  /// "bbox": a corner and a size; without one, the box is absent.
   DoubleBox2 box_of(const JsonValue* bbox) const {
     if (bbox == nullptr || bbox->kind == Kind::null) return absent_box<2, double>();
     const std::vector<double>& numbers = numbers_of(*bbox, "the array x, y, width, height");
@@ -323,7 +323,7 @@ class MapReader {
     return value.numbers;
   }
 
-  /// The first two numbers of a position; others are an altitude, or somebody's own.
+  /// The first two numbers of a position; others are an altitude or application data.
   std::array<double, 2> position_of(const JsonValue& value) const {
     const std::vector<double>& numbers = numbers_of(value, "a position: an array of numbers");
     if (numbers.size() < 2)
@@ -347,7 +347,7 @@ class MapReader {
 
   // Boxes.
 
-  /// A point of the piece, which a segment joins to the one before if it is in a line.
+  /// Adds a point to the piece. In a line, a segment joins it to the previous point.
   void add(const std::array<double, 2>& place, bool is_in_line) {
     const DoubleBox2 point{place, place};
     piece_ = merged(point, piece_);
@@ -374,8 +374,8 @@ class MapReader {
   std::string id_name_;
 
   std::size_t begin_ = 0;       // of the text
-  std::string_view list_;       // the one whose elements were taken
-  std::uint64_t features_ = 0;  // begun, of all texts
+  std::string_view list_;       // the list whose elements were taken
+  std::uint64_t features_ = 0;  // begun so far, in all texts
   bool in_feature_ = false;
   bool has_ids_ = false;
 
@@ -395,8 +395,8 @@ class MapReader {
 // Much JSON is not a map, but no other format has these extensions: an error then says what a map lacks.
 const std::vector<std::string> extensions = {".geojson", ".json", ".geojsonl", ".ndjson"};
 
-/// Whether a file has the extension of one, or its bytes begin an object that says early on to be a map, or a
-/// geometry.
+/// Whether the file has the extension of a map, or its bytes begin an object whose first members identify it
+/// as a map or a geometry.
 bool is_map(std::string_view bytes, std::string_view extension) {
   if (std::ranges::find(extensions, extension) != extensions.end()) return true;
   const std::size_t first = bytes.find_first_not_of(" \t\r\n\x1e\xEF\xBB\xBF");

@@ -1,6 +1,6 @@
-// Meshes through assimp: STL, glTF and what else it reads.
+// Imports meshes through assimp: STL, glTF and its other formats.
 //
-// Its parsers are not ours. What they throw is caught; whether they survive every file cannot be promised.
+// assimp's parsers are third-party code. Their exceptions are caught, but they may crash on malformed files.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -27,9 +27,9 @@ namespace {
   throw FileError(fmt::format("{}: {}; expected {}", input.name(), found, expected));
 }
 
-/// Refuses a file for what assimp says of it.
+/// Refuses a file with assimp's reason.
 [[noreturn]] void refuse_import(const Input& input, std::string_view reason) {
-  // Its name for what it reads from memory, where nothing told it the kind.
+  // assimp's name for a file read from memory, if it was not told the format.
   if (reason.empty() || reason.find("$$$") != std::string_view::npos)
     refuse(input, "is a mesh of a kind that its first bytes do not tell, as STL in binary is",
            "a file with the extension of its kind");
@@ -37,7 +37,8 @@ namespace {
   refuse(input, fmt::format("cannot be read: {}", plainly(reason)));
 }
 
-/// assimp takes memory for all that an OFF file claims: its first numbers count vertices and faces.
+/// assimp allocates memory for the counts that an OFF file claims: its first numbers are those of vertices
+/// and faces.
 void check_off_counts(Input& input) {
   std::string_view rest = input.bytes();
   const std::size_t bytes = rest.size();
@@ -49,7 +50,7 @@ void check_off_counts(Input& input) {
     for (std::string_view word = next_word(line); counts < 2 && !word.empty(); word = next_word(line)) {
       std::uint64_t count = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-      if (end != word.data() + word.size()) continue;  // the word OFF, or one like it
+      if (end != word.data() + word.size()) continue;  // the word OFF, or a similar one
       if (error != std::errc() || count > bytes)
         refuse(input, fmt::format("claims {} vertices or faces and has {} bytes", word, bytes),
                "no more than there is room for");
@@ -58,7 +59,7 @@ void check_off_counts(Input& input) {
   }
 }
 
-/// assimp trusts the numbers of vertices that a file gives.
+/// assimp does not check the vertex indices in a file.
 void check_corners(const Input& input, const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
@@ -73,13 +74,13 @@ void check_corners(const Input& input, const aiScene& scene) {
   }
 }
 
-/// Puts the meshes of a scene into one, each where its node is.
+/// Merges the meshes of a scene into one, each transformed by its node.
 class SceneCollector {
  public:
   SceneCollector(const Input& input, const aiScene& scene) : input_(input), scene_(scene) {}
 
   IndexedMesh collect() {
-    // Not by recursion: a file decides how deep its nodes lie.
+    // Not recursive, because the file determines how deeply nodes are nested.
     std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes = {{scene_.mRootNode, aiMatrix4x4()}};
     while (!nodes.empty()) {
       const auto [node, parent] = nodes.back();
@@ -96,7 +97,7 @@ class SceneCollector {
     const std::size_t first = mesh_.vertices.size();
     if (mesh.mNumVertices > std::numeric_limits<std::uint32_t>::max() - first)
       refuse(input_, "has more vertices than 32 bits can count");
-    // A product with the identity would make a NaN of an infinity.
+    // Multiplying an infinity by the identity would give NaN.
     const bool is_in_place = place == aiMatrix4x4();
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D point = is_in_place ? mesh.mVertices[v] : place * mesh.mVertices[v];
@@ -128,7 +129,7 @@ IndexedMesh import_mesh(Input& input) {
   const std::string extension = input.extension();
   const bool is_named = !extension.empty() && importer.IsExtensionSupported(extension);
   const aiScene* scene = nullptr;
-  // A file may name others beside it; what comes through a pipe, or under another name, cannot.
+  // A file may reference others beside it; an input from a pipe, or under another name, cannot.
   const bool is_opened_by_name = is_named && !input.path().empty();
   if (content == "off" || (content.empty() && extension == ".off")) check_off_counts(input);
   const std::string_view bytes = is_opened_by_name ? std::string_view() : input.bytes();
@@ -136,7 +137,7 @@ IndexedMesh import_mesh(Input& input) {
     if (is_opened_by_name) {
       scene = importer.ReadFile(input.path().string(), 0);
     } else {
-      // Of what was compressed, the name may still tell the kind.
+      // The name of a compressed file may still show the format.
       const std::string kind = content.empty() && is_named ? extension.substr(1) : std::string(content);
       scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, kind.c_str());
     }

@@ -1,4 +1,4 @@
-// Meshes as vertices and faces by index: read by content, triangulated, welded.
+// Indexed meshes: detects their format, triangulates and welds them.
 #include "lab/formats/mesh/indexed_mesh.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace broadside::lab {
 
 namespace {
 
-/// A place as numbers in which equal ones, and they alone, are equal: -0 is 0, and a NaN is itself.
+/// A position as integers that are equal exactly if the positions are: -0 equals 0, and NaN equals itself.
 std::array<std::uint64_t, 3> place_of(const std::array<double, 3>& vertex) {
   std::array<std::uint64_t, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -19,7 +19,7 @@ std::array<std::uint64_t, 3> place_of(const std::array<double, 3>& vertex) {
   return place;
 }
 
-/// For every vertex the first one that is in the same place, in `a` and in `b`.
+/// For each vertex, the first vertex at the same position, in both `a` and `b`.
 std::vector<std::uint32_t> first_in_place(const IndexedMesh& a, const IndexedMesh& b) {
   std::vector<std::array<std::uint64_t, 6>> places(a.vertices.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> first_in_place(const IndexedMesh& a, const IndexedMes
   return first;
 }
 
-/// Keeps the vertices that are the first in their place, and names them by their new numbers.
+/// Keeps the first vertex at each position, and renumbers the faces' vertices.
 void keep_first(IndexedMesh& mesh, const std::vector<std::uint32_t>& first) {
   std::vector<std::uint32_t> numbers(first.size());
   std::uint32_t count = 0;
@@ -93,7 +93,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh) {
     for (std::size_t i = 0; i < face.size(); ++i) {
       const std::uint32_t a = face[i];
       const std::uint32_t b = face[i + 1 == face.size() ? 0 : i + 1];
-      // A face that names a vertex twice in a row has no side there.
+      // A face that repeats a vertex consecutively has no edge there.
       if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
     }
   }
@@ -104,7 +104,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh) {
 
 namespace {
 
-/// Whether the first line that is neither empty nor a comment begins as lines of OBJ do.
+/// Whether the first line that is neither empty nor a comment begins like a line of OBJ.
 bool begins_as_obj(std::string_view text) {
   constexpr std::string_view blanks = " \t\r";
   while (!text.empty()) {

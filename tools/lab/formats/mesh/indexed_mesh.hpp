@@ -1,4 +1,4 @@
-// Meshes as vertices and faces by index, and the readers of the formats that hold them.
+// Indexed meshes, and the readers of their formats.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@
 
 namespace broadside::lab {
 
-/// Vertices, and faces of three vertices or more that name them by their places.
+/// Vertices, and faces that name three or more vertices by index.
 struct IndexedMesh {
   std::vector<std::array<double, 3>> vertices;
-  std::vector<std::uint32_t> corners;  ///< the vertices of the faces, one face after the other
+  std::vector<std::uint32_t> corners;  ///< the vertices of all faces, face after face
   std::vector<std::size_t> face_ends;  ///< where each face ends in `corners`
-  std::size_t other_elements = 0;      ///< lines and points, which are left out
+  std::size_t other_elements = 0;      ///< the number of lines and points, which are left out
   bool has_own_vertices = false;       ///< whether the vertices are those of the file, in its order
-  /// The type of the file's coordinates; floats are held exactly as well.
+  /// The type of the file's coordinates; floats are also stored exactly.
   Precision precision = Precision::float64;
-  /// The library that read the file, where it may have rounded the file's numbers to float; empty otherwise.
+  /// The library that read the file, if it may have rounded the file's numbers to float; otherwise empty.
   std::string_view importer{};
 
   std::size_t face_count() const noexcept { return face_ends.size(); }
@@ -37,43 +37,43 @@ struct IndexedMesh {
 /// Reads a mesh: PLY by read_ply(), OBJ by read_obj(), other formats by import_mesh(). Throws FileError.
 IndexedMesh read_mesh(Input& input);
 
-/// Reads a mesh through assimp, which keeps floats: all parts of the file's scene, put where they are in it,
-/// one after the other. Lines and points are no faces. Throws FileError, also if a face names a vertex that
-/// is not there.
+/// Reads a mesh through assimp, which stores floats: all parts of the file's scene, transformed to their
+/// place, one after the other. Lines and points are not faces. Throws FileError, also if a face names a
+/// vertex that does not exist.
 ///
-/// In OFF the vertices are the file's own. Of other formats assimp gives each face (or each part) vertices of
-/// its own; see weld().
+/// For OFF, the vertices are the file's own. For other formats, assimp gives each face (or each part) its own
+/// vertices; see weld().
 IndexedMesh import_mesh(Input& input);
 
-/// What is missing in this build for import_mesh() and how to get it; empty where it works.
+/// The library that import_mesh() lacks in this build, and how to get it; empty if it works.
 std::string mesh_import_missing();
 
-/// Whether a file with this extension is a mesh for import_mesh().
+/// Whether import_mesh() reads files with this extension.
 bool is_mesh_extension(std::string_view extension);
 
-/// Makes vertices in one and the same place one, unless they are the file's own; each is then numbered where
-/// it came first. `later` is nullptr or the same mesh at another time, with as many vertices and the same
-/// faces: vertices become one if they are in the same place at both times.
+/// Merges vertices at the same position, unless they are the file's own, and numbers them in the order of
+/// their first occurrence. `later` is nullptr or the same mesh at another time, with the same number of
+/// vertices and the same faces: vertices are merged if they coincide at both times.
 void weld(IndexedMesh& mesh, IndexedMesh* later = nullptr);
 
-/// Makes each polygon a fan of triangles around its first corner.
+/// Splits each polygon into a fan of triangles around its first corner.
 void triangulate(IndexedMesh& mesh);
 
-/// The sides of all faces, each once whichever way around it is named: the lower vertex first, in order.
+/// The edges of all faces, each once whatever its direction: the lower vertex first, sorted.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh);
 
-/// "ply", "obj", "stl" (as text), "glb", "gltf" or "off"; empty if the first bytes of a file do not say.
-/// STL in binary begins with anything.
+/// "ply", "obj", "stl" (as text), "glb", "gltf" or "off"; empty if a file's first bytes do not show it.
+/// Binary STL can begin with any bytes.
 std::string_view mesh_content(std::string_view beginning);
 
-/// Reads an OBJ file: its lines "v" as vertices, as doubles, and its lines "f" as faces; all else is passed
-/// over. Vertices are numbered from 0. Throws FileError, naming the line.
+/// Reads an OBJ file: its "v" lines as vertices, in double, and its "f" lines as faces; ignores all others.
+/// Vertices are numbered from 0. Throws FileError with the line.
 IndexedMesh read_obj(Input& input);
 
 /// Reads a PLY file, as text or in binary of either byte order: x, y and z of the element "vertex", exactly,
-/// and the list "vertex_indices" (or "vertex_index") of the element "face"; all else is passed over. The mesh
-/// is of floats if the header says so of x, y and z, and of doubles otherwise. Throws FileError, naming the
-/// line of the header, or the byte.
+/// and the list "vertex_indices" (or "vertex_index") of the element "face"; ignores all else. The mesh is of
+/// floats if the header declares x, y and z so, and of doubles otherwise. Throws FileError with the line of
+/// the header, or the byte.
 IndexedMesh read_ply(Input& input);
 
 }  // namespace broadside::lab

@@ -1,4 +1,5 @@
-// Meshes (PLY, OBJ, STL, glTF and what else assimp reads): the bounds of their triangles, edges or vertices.
+// Meshes (PLY, OBJ, STL, glTF and assimp's other formats) as boxes: the bounds of their triangles, edges or
+// vertices.
 #include <memory>
 #include <string>
 #include <string_view>
@@ -34,7 +35,7 @@ class MeshFrames final : public FrameReader<3, double> {
 
 AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& options) {
   IndexedMesh mesh = read_mesh(*input);
-  // Vertices alone are a cloud of points.
+  // A mesh of only vertices is a point cloud.
   const bool is_cloud = mesh.face_count() == 0 && mesh.other_elements == 0 && !mesh.vertices.empty();
   const std::string part = !options.boxes.empty() ? options.boxes : is_cloud ? "vertices" : "triangles";
   const bool are_triangles = part == "triangles";
@@ -62,7 +63,7 @@ AnyFrameReader open_mesh(std::unique_ptr<Input> input, const ReadOptions& option
 }  // namespace
 
 Format mesh() {
-  // Without assimp, PLY and OBJ are still read.
+  // Without assimp, PLY and OBJ can still be read.
   const std::string missing = mesh_import_missing();
   return {
       .name = "mesh",

@@ -1,5 +1,5 @@
-// OBJ, the format of Wavefront: a line a vertex, "v x y z", or a face, "f 1/7 2/8 3/9", whose first numbers
-// are those of its vertices, counted from 1, or, if negative, back from the last one.
+// OBJ, the format of Wavefront. Each line is a vertex, "v x y z", or a face, "f 1/7 2/8 3/9". The first
+// numbers of a face are its vertices, counted from 1 or, if negative, back from the last one.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -44,7 +44,7 @@ class ObjReader {
   }
 
  private:
-  /// The next line, with the lines that a backslash at its end joins to it.
+  /// The next line, joined with those that follow a backslash at its end.
   bool next_line() {
     if (at_ >= bytes_.size()) return false;
     joined_.clear();
@@ -92,7 +92,7 @@ class ObjReader {
     const auto [end, error] = std::from_chars(word.data(), last, number);
     if (error != std::errc() || (end != last && *end != '/')) refuse("whole numbers of vertices behind 'f'");
     if (number < 0) number += static_cast<std::int64_t>(mesh_.vertices.size()) + 1;
-    // One beyond the last may still come.
+    // A vertex number beyond the last may be defined later.
     if (number < 1 || number > std::numeric_limits<std::uint32_t>::max())
       refuse(fmt::format("vertices from 1, or from -{}", mesh_.vertices.size()));
     return static_cast<std::uint32_t>(number - 1);
@@ -107,7 +107,7 @@ class ObjReader {
   std::size_t at_ = 0;
   std::size_t number_ = 0;
   std::string_view line_;
-  std::string joined_;  // the line, where it is of several
+  std::string joined_;  // the line, if joined of several
   std::string_view rest_;
   IndexedMesh mesh_;
 };

@@ -1,5 +1,5 @@
-// PLY, the Stanford triangle format (Greg Turk, 1994): a header of lines, and elements one after the other,
-// each a row of numbers and lists of numbers.
+// PLY, the Stanford triangle format (Greg Turk, 1994): a header of lines, then the elements, each a row of
+// numbers and lists of numbers.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -24,7 +24,7 @@ struct Property {
   std::string_view name{};
   NumberType type{};
   bool is_list = false;
-  NumberType count_type{};  // of a list's length, which stands before it
+  NumberType count_type{};  // of a list's length, which precedes the list
 };
 
 struct Element {
@@ -51,7 +51,7 @@ class PlyReader {
       if (at_ < bytes_.size())
         refuse(shown(word("")), "the end of the file, after the elements that the header claims");
     }
-    // Here, since the vertices may stand behind the faces.
+    // Checked here, because vertices may follow the faces.
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       for (const std::uint32_t vertex : mesh_.face(f)) {
         if (vertex >= mesh_.vertices.size())
@@ -142,15 +142,15 @@ class PlyReader {
     refuse_line("a type such as uchar, int, float or double");
   }
 
-  /// Refuses a header that claims more elements than the bytes behind it can hold.
+  /// Refuses a header that claims more elements than the remaining bytes can hold.
   void check_claims() const {
     std::size_t left = bytes_.size() - at_;
     for (const Element& element : elements_) {
       std::size_t min_bytes =
-          0;  // bytes of an element; as text, a number is a digit and what parts it from the next
+          0;  // bytes of an element; in text, a number is at least a digit and a separator
       for (const Property& property : element.properties)
         min_bytes += is_text_ ? 2 : (property.is_list ? property.count_type : property.type).bytes;
-      // The last number of a text needs nothing behind it.
+      // The last number in a text needs no separator.
       const std::size_t max_count = min_bytes == 0 ? 0 : (left + 1) / min_bytes;
       if (min_bytes != 0 && element.count > max_count)
         throw FileError(fmt::format(
@@ -167,7 +167,7 @@ class PlyReader {
   // The elements.
 
   void read_element(const Element& element) {
-    // Elements of nothing take no bytes, however many are claimed.
+    // Elements without properties take no bytes, however many are claimed.
     if (element.properties.empty()) return;
     const bool is_vertex = element.name == "vertex";
     if (is_vertex) begin_vertices(element);
@@ -233,7 +233,7 @@ class PlyReader {
 
   // Numbers.
 
-  /// A coordinate; as text, the nearest number of the type that the header declares.
+  /// A coordinate; in text, the nearest number of the type that the header declares.
   double number(const NumberType& type) {
     if (!is_text_) return value_of(bits_at(taken(type.bytes), type), type);
     if (type.kind == 'f' && type.bytes == 4) return static_cast<double>(parsed<float>("a number"));
@@ -249,12 +249,12 @@ class PlyReader {
   }
 
   void skip(const NumberType& type, std::uint64_t count) {
-    // No overflow: a list's length has 32 bits.
+    // Cannot overflow: a list's length has 32 bits.
     if (!is_text_) taken(count * type.bytes);
     for (std::uint64_t i = 0; is_text_ && i < count; ++i) word("a number");
   }
 
-  /// The place of the next bytes, which are passed over.
+  /// Consumes the next bytes, and returns their position.
   const char* taken(std::uint64_t count) {
     if (count > bytes_.size() - at_)
       refuse(fmt::format("the file ends {} bytes on", bytes_.size() - at_),

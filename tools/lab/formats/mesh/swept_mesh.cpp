@@ -1,4 +1,4 @@
-// One mesh at two times: read, compared, and swept.
+// One mesh at two times: reads, compares and sweeps it.
 #include "lab/formats/mesh/swept_mesh.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Boxes as a NumPy array: a row a box, with the minima on all axes and then the maxima; alone (.npy), or by
-// its name in a zip archive (.npz).
+// Reads and writes boxes as a NumPy array: one row per box, the minima on all axes and then the maxima. Alone
+// (.npy), or by its name in a zip archive (.npz).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::string_view npy_magic = "\x93NUMPY";
 
-/// What the header of an array says (numpy.lib.format, versions 1.0 to 3.0).
+/// The header of an array (numpy.lib.format, versions 1.0 to 3.0).
 struct NpyHeader {
   std::size_t bytes = 0;  // of the header
   NumberType type{};
@@ -40,8 +40,7 @@ struct NpyHeader {
   throw FileError(fmt::format("{}: {}; expected {}", name, found, expected));
 }
 
-/// The header's dictionary of Python, here without blanks and with one kind of quotes; `end` is where it
-/// ends.
+/// The header's Python dictionary, without blanks and with one kind of quotes; `end` is where it ends.
 std::string header_text(std::string_view bytes, const std::string& name, std::size_t& end) {
   const auto check_length = [&](std::size_t size) {
     if (bytes.size() < size)
@@ -66,7 +65,7 @@ std::string header_text(std::string_view bytes, const std::string& name, std::si
   return text;
 }
 
-/// Reads the header with which an array begins, and checks that the numbers that it claims follow.
+/// Reads the header at the beginning of an array, and checks that the numbers it claims follow.
 NpyHeader read_header(std::string_view bytes, const std::string& name) {
   NpyHeader header;
   const std::string text = header_text(bytes, name, header.bytes);
@@ -79,11 +78,11 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
   static const std::regex pattern(
       R"(\{(?=.*'descr':'([<>=|])([fiu])([1248])')(?=.*'fortran_order':(True|False)))"
       R"((?=.*'shape':\((\d{1,20}),(?:([46])|2,([23])),?\)).*\})");
-  constexpr std::size_t max_length = 1000;  // more would take the matcher much of the stack
+  constexpr std::size_t max_length = 1000;  // a longer text would take too much stack in the matcher
   std::smatch match;
-  // NumPy gives no order to a single byte, and only to that.
-  if (text.size() > max_length || !std::regex_match(text, match, pattern) || (match[1] == "|" && match[3] != "1") ||
-      (match[2] == "f" && match[3] == "1"))
+  // NumPy gives a byte order to all types but single bytes.
+  if (text.size() > max_length || !std::regex_match(text, match, pattern) ||
+      (match[1] == "|" && match[3] != "1") || (match[2] == "f" && match[3] == "1"))
     refuse(name, fmt::format("has the header {}", shown(text, 200)),
            "'descr' of f2, f4, f8, i1 to i8 or u1 to u8, with '<' or '>' before it, 'fortran_order', and "
            "'shape' of (n, 4) or "
@@ -92,10 +91,10 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
   header.type.kind = *match[2].first;
   header.type.bytes = static_cast<std::size_t>(*match[3].first - '0');
   header.is_column_major = match[4] == "True";
-  header.rows = std::strtoull(match[5].str().c_str(), nullptr, 10);  // the most there can be if it is more
+  header.rows = std::strtoull(match[5].str().c_str(), nullptr, 10);  // saturates at the maximum
   header.is_corners = match[7].matched;
   header.dimension = header.is_corners ? *match[7].first - '0' : (*match[6].first - '0') / 2;
-  // Compared as numbers of rows: in bytes, the claim may be more than 64 bits can say.
+  // Compares numbers of rows, because the claimed number of bytes may exceed 64 bits.
   const std::size_t rest = bytes.size() - header.bytes;
   if (rest % header.row_bytes() != 0 || rest / header.row_bytes() != header.rows)
     refuse(name, fmt::format("has {} bytes behind its header and claims {} rows", rest, match[5].str()),
@@ -103,7 +102,7 @@ NpyHeader read_header(std::string_view bytes, const std::string& name) {
   return header;
 }
 
-/// The boxes of an array whose rows are all there.
+/// The boxes of an array whose rows are all present.
 template <int D, typename Real>
 class NpyFrame final : public FrameReader<D, Real> {
  public:
@@ -165,7 +164,7 @@ class NpyFrame final : public FrameReader<D, Real> {
 
   /// A coordinate of a row's minima (corner 0) or maxima (1).
   double number(std::size_t row, std::size_t corner, std::size_t axis) const {
-    // By columns, the last index is the slowest.
+    // In column-major order, the last index varies slowest.
     const std::size_t place = !header_.is_column_major ? (2 * row + corner) * D + axis
                               : header_.is_corners     ? (2 * axis + corner) * header_.rows + row
                                                        : (corner * D + axis) * header_.rows + row;
@@ -234,7 +233,7 @@ class NpyWriter final : public FrameWriter<D, Real> {
 
 constexpr std::string_view array_suffix = ".npy";
 
-/// The member of an archive that holds the array of this name or, where that is empty, the only one.
+/// The member of an archive that holds the array called `name` or, if that is empty, the only array.
 std::size_t chosen_array(const ZipArchive& archive, const std::string& wanted, const std::string& file) {
   std::vector<std::size_t> arrays;
   std::string names;

@@ -1,4 +1,4 @@
-// Writes NumPy arrays: a header of fixed size, and the numbers as they are in memory.
+// Writes NumPy arrays: a header of fixed size, then the numbers as they are in memory.
 #include "lab/formats/npy/npy_array_writer.hpp"
 
 #include <bit>
@@ -8,11 +8,11 @@
 namespace broadside::lab {
 namespace {
 
-// NumPy aligns the numbers to 64 bytes; the longest header needs more than that.
+// NumPy aligns the numbers to 64 bytes; the longest header does not fit into 64.
 constexpr std::size_t header_bytes = 128;
 
 std::string header_of(std::string_view type, std::uint64_t rows, std::size_t columns) {
-  // In this machine's byte order, which the header names.
+  // In this machine's byte order, which the header states.
   const std::string text =
       fmt::format("{{'descr': '{}{}', 'fortran_order': False, 'shape': ({}, {}), }}",
                   std::endian::native == std::endian::little ? '<' : '>', type, rows, columns);

@@ -1,4 +1,4 @@
-// The format of traces among the others.
+// The trace format, for the list of formats.
 #include "lab/formats/trace/trace.hpp"
 
 #include <memory>
@@ -108,13 +108,13 @@ class TraceWriter final : public FrameWriter<D, Real> {
 
   void end_frame(std::size_t slots) {
     if (recorded_ != nullptr) put_pairs(slots);
-    // The caller checks the stream.
+    // The caller checks the stream for errors.
     if ((!recorder_.end_frame() || !recorder_.error().empty()) && stream_) throw FileError(recorder_.error());
   }
 
   std::ostream& stream_;
   Recorder<D, Real> recorder_;
-  const RecordedPairs* recorded_ = nullptr;  // of the frame being written; null where there are no pairs
+  const RecordedPairs* recorded_ = nullptr;  // of the frame being written; null if there are no pairs
   RecordedFrame pairs_;
   std::vector<BoxId> emptied_;  // in the frame being written
 };

@@ -1,4 +1,4 @@
-// Traces (docs/trace-format.md), read frame by frame: what a Recorder wrote in somebody's engine.
+// Reads traces (docs/trace-format.md), which a Recorder wrote inside a user's engine, frame by frame.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@
 
 namespace broadside::lab {
 
-/// Reads a trace frame by frame. Memory: that of one frame's changes and, where an engine's pairs were
-/// recorded, of the pairs of a frame, however long the trace, and never more than the bytes that are there
-/// justify, whatever they claim.
+/// Reads a trace frame by frame. Memory: the changes of one frame and, if an engine's pairs were recorded,
+/// the pairs of a frame, however long the trace. Never more than the actual bytes justify, whatever the trace
+/// claims.
 ///
-/// What is wrong is refused with a FileError (lab/formats/format.hpp) that names the frame and the byte. One
-/// thread at a time.
+/// Invalid data throw a FileError (lab/formats/format.hpp) with the frame and the byte. Use from one thread
+/// at a time.
 class TraceReader {
  public:
-  /// Reads the header of a trace from a stream, which must outlive the reader; `name` is what errors call it.
+  /// Reads the header of a trace from a stream, which must outlive the reader. Errors call it `name`.
   TraceReader(std::istream& stream, std::string name);
 
   TraceReader(const TraceReader&) = delete;
@@ -33,10 +33,11 @@ class TraceReader {
 
   int dimension() const noexcept { return dimension_; }
 
-  /// 4 where the trace holds floats, 8 where it holds doubles.
+  /// 4 if the trace holds floats, 8 if it holds doubles.
   int coordinate_bytes() const noexcept { return coordinate_bytes_; }
 
-  /// Whether there was another whole frame; what follows is then of that one. False for good at the end.
+  /// Whether there was another complete frame; the functions below then refer to it. After the end, always
+  /// false.
   bool next_frame();
 
   /// How many frames have been read.
@@ -45,18 +46,17 @@ class TraceReader {
   /// The number of slots, which is the size of the array, from this frame on.
   std::uint32_t slots() const noexcept { return slots_; }
 
-  /// The slots named in this frame, ascending; every one that is new is among them.
+  /// The slots that this frame names, ascending; includes every new slot.
   std::span<const BoxId> changed() const noexcept { return changed_; }
 
   /// The new box in changed()[i], exactly as in the file: the minima on all axes, then the maxima; those of
-  /// the absent box where the slot became empty.
+  /// the absent box if the slot became empty.
   std::span<const double> bounds(std::size_t i) const noexcept {
     const auto axes = static_cast<std::size_t>(dimension_);
     return std::span(bounds_).subspan(2 * axes * i, 2 * axes);
   }
 
-  /// The same as a box, for D = dimension(); doubles are rounded to the nearest float where floats are asked
-  /// for.
+  /// The same as a box, for D = dimension(). With Real = float, doubles are rounded to the nearest float.
   template <int D, typename Real>
   Box<D, Real> box(std::size_t i) const noexcept {
     const std::span<const double> from = bounds(i);
@@ -68,15 +68,15 @@ class TraceReader {
     return box;
   }
 
-  /// What this frame changes of the pairs that the engine reported, checked; before the first frame, the
-  /// margin alone. Null where the trace holds no pairs.
+  /// The frame's changes to the pairs that the engine reported, checked; before the first frame, only the
+  /// margin. Null if the trace holds no pairs.
   const RecordedPairs* recorded() const noexcept { return has_pairs_ ? &recorded_ : nullptr; }
 
-  /// After the last frame: where the trace was cut off, if it was; empty otherwise.
+  /// After the last frame: where the trace was cut off; empty if it was not.
   const std::string& warning() const noexcept { return warning_; }
 
  private:
-  /// What a frame's header says, and where the frame is.
+  /// A frame's header and position.
   struct FrameHeader {
     std::uint64_t byte;
     std::uint32_t slots;
@@ -114,18 +114,18 @@ class TraceReader {
   std::uint64_t frames_ = 0;
   std::uint32_t slots_ = 0;
   std::vector<BoxId> changed_;
-  std::vector<double> bounds_;  // of each changed slot, one after the other
+  std::vector<double> bounds_;  // of each changed slot, in sequence
   std::string warning_;
   bool ended_ = false;
 
   bool has_pairs_ = false;
   RecordedPairs recorded_;
-  RecordedFrame pairs_;        // those of this frame
-  std::vector<bool> has_box_;  // of each slot; kept only where there are pairs
+  RecordedFrame pairs_;        // the pairs of this frame
+  std::vector<bool> has_box_;  // by slot; kept only if there are pairs
 
   trace::Checksum checksum_;
-  std::vector<unsigned char> bytes_;  // those read last ...
-  std::uint64_t begin_ = 0;           // ... and where they begin in the file
+  std::vector<unsigned char> bytes_;  // the bytes read last ...
+  std::uint64_t begin_ = 0;           // ... and their position in the file
 };
 
 }  // namespace broadside::lab

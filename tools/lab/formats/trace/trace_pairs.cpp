@@ -1,4 +1,4 @@
-// Reads what a trace holds of an engine's pairs, and checks all that docs/trace-format.md promises of it.
+// Reads an engine's pairs from a trace, and checks them against all rules of docs/trace-format.md.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -15,7 +15,7 @@ std::string text_of(Pair pair) { return fmt::format("pair ({}, {})", index(pair.
 
 }  // namespace
 
-/// Takes the filters and pairs of a frame, whose boxes have been taken; they are in bytes_ from `at` on.
+/// Reads the filters and pairs of a frame after its boxes; they are in bytes_ from `at` on.
 void TraceReader::take_pairs(const FrameHeader& header, std::size_t at) {
   has_box_.resize(header.slots);
   std::vector<BoxId> emptied;
@@ -44,7 +44,7 @@ void TraceReader::take_pairs(const FrameHeader& header, std::size_t at) {
 
 void TraceReader::take_filters(const FrameHeader& header, std::size_t at) {
   recorded_.filters.clear();
-  std::uint64_t min_slot = 0;  // that the next slot may be
+  std::uint64_t min_slot = 0;  // minimum for the next slot
   for (std::uint32_t i = 0; i < header.pairs[0]; ++i, at += trace::filter_bytes) {
     const std::uint32_t slot = word(at);
     if (slot < min_slot || slot >= header.slots || !has_box_[slot])
@@ -74,7 +74,7 @@ void TraceReader::take_pair_list(std::size_t at, std::uint32_t count, bool may_r
   }
 }
 
-/// Refuses a pair that ends and did not hold, or not as often.
+/// Refuses a pair that ends without being reported, or more often than it was.
 void TraceReader::check_held(std::size_t end, const std::vector<Pair>& ended,
                              const std::vector<Pair>& held) const {
   if (std::ranges::includes(held, ended)) return;
@@ -83,7 +83,7 @@ void TraceReader::check_held(std::size_t end, const std::vector<Pair>& ended,
   refuse(begin_ + end, fmt::format("{} ends", text_of(wrong.front())), "one that the frame before had");
 }
 
-/// Refuses a pair of this frame that names a slot without a box, and one that is ignored twice.
+/// Refuses a pair of this frame that names a slot without a box, or that is ignored twice.
 void TraceReader::check_boxes(const FrameHeader& header) const {
   const auto twice = std::ranges::adjacent_find(pairs_.ignored());
   if (twice != pairs_.ignored().end())

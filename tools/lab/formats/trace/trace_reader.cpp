@@ -1,4 +1,4 @@
-// Reads a trace frame by frame and checks all that docs/trace-format.md promises of it.
+// Reads a trace frame by frame, and checks it against all rules of docs/trace-format.md.
 #include <algorithm>
 #include <bit>
 #include <cerrno>
@@ -24,7 +24,7 @@ TraceReader::TraceReader(std::istream& stream, std::string name) : stream_(strea
 }
 
 bool TraceReader::next_frame() {
-  // Until this frame turns out to be whole and right.
+  // Reset once this frame proves complete and valid.
   if (std::exchange(ended_, true)) return false;
   FrameHeader header;
   if (!read_frame_header(header)) return false;
@@ -50,7 +50,7 @@ bool TraceReader::next_frame() {
 }
 
 void TraceReader::read_header() {
-  // As much as every version has alike, and then the rest.
+  // First the part that all versions share, then the rest.
   constexpr std::size_t common = trace::header_bytes - trace::checksum_bytes;
   bool whole = read(common);
   if (bytes_.empty())
@@ -86,7 +86,7 @@ std::size_t TraceReader::frame_header_bytes() const noexcept {
   return trace::header_bytes + (has_pairs_ ? trace::pair_count_bytes : 0);
 }
 
-/// Whether there is a whole header of a frame; if there is a piece of one, warning_ says so.
+/// Whether there is a complete frame header; if there is a partial one, warning_ says so.
 bool TraceReader::read_frame_header(FrameHeader& header) {
   const bool whole = read(frame_header_bytes());
   const std::size_t there = std::min(bytes_.size(), word_bytes);
@@ -106,7 +106,8 @@ bool TraceReader::read_frame_header(FrameHeader& header) {
   return true;
 }
 
-/// Takes the slots named in a frame, which are in bytes_: those removed and those set, each ascending.
+/// Applies the slots named in a frame, which are in bytes_: first the removed ones, then the set ones, each
+/// ascending.
 void TraceReader::take(const FrameHeader& header) {
   const std::size_t set_begin = word_bytes * header.removed;
   const std::size_t bytes_per_box = word_bytes + 2 * static_cast<std::size_t>(dimension_ * coordinate_bytes_);
@@ -114,7 +115,7 @@ void TraceReader::take(const FrameHeader& header) {
   const auto axes = static_cast<std::size_t>(dimension_);
   changed_.clear();
   bounds_.clear();
-  std::uint64_t min_slot = 0;  // that the next slot may be
+  std::uint64_t min_slot = 0;  // minimum for the next slot
   std::uint64_t added = 0;
   std::size_t removed = 0;
   std::size_t set = set_begin;
@@ -158,18 +159,18 @@ void TraceReader::take_box(std::uint32_t slot, std::size_t at) {
   }
 }
 
-/// Reads the next `count` bytes, or what is left; returns whether it was all.
+/// Reads the next `count` bytes, or all that are left; returns whether there were enough.
 bool TraceReader::read(std::uint64_t count) {
   begin_ += bytes_.size();
   bytes_.clear();
   return read_on(count);
 }
 
-/// Likewise, behind the bytes that were read last.
+/// Likewise, but appends to the bytes read last.
 bool TraceReader::read_on(std::uint64_t count) {
   const std::uint64_t all = bytes_.size() + count;
   while (bytes_.size() < all) {
-    // In pieces, which grow as they turn out to be there.
+    // Reads in growing chunks, so that a forged size allocates nothing.
     constexpr std::uint64_t min_piece = std::uint64_t{1} << 16;
     const std::size_t before = bytes_.size();
     const std::uint64_t more = std::min(all - before, std::max<std::uint64_t>(before, min_piece));
@@ -201,7 +202,7 @@ double TraceReader::coordinate(std::size_t at) const noexcept {
   return std::bit_cast<double>(long_word(at));
 }
 
-/// Checks the checksum behind the first `count` bytes of those read last.
+/// Verifies the checksum after the first `count` bytes of those read last.
 void TraceReader::check_sum(std::size_t count) {
   checksum_.add(bytes_.data(), count);
   if (word(count) != checksum_.value())

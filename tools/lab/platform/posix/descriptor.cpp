@@ -1,4 +1,4 @@
-// Open files, by POSIX.
+// Open files on POSIX.
 #include "lab/platform/descriptor.hpp"
 
 #include <cerrno>

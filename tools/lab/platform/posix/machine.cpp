@@ -1,4 +1,4 @@
-// The machine, by POSIX and the files of Linux.
+// The machine's properties on POSIX and Linux.
 #include "lab/platform/machine.hpp"
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace broadside::lab::platform {
 namespace {
 
-/// What stands after the first `separator` in the file's first line that begins with `name`.
+/// The text after the first `separator` in the file's first line that begins with `name`.
 std::string field(const char* file, const std::string& name, char separator) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {
@@ -28,7 +28,7 @@ std::string field(const char* file, const std::string& name, char separator) {
 
 namespace {
 
-/// The number at the beginning of a file, 0 if there is none; `unit` is what follows it.
+/// The number at the beginning of a file, 0 if there is none; `unit` receives the character after it.
 double number_in(const std::string& file, char* unit = nullptr) {
   std::ifstream text(file);
   double number = 0;
@@ -37,7 +37,7 @@ double number_in(const std::string& file, char* unit = nullptr) {
   return number;
 }
 
-/// "L1d" of level 1 and type Data.
+/// "L1d", for level 1 and type Data.
 std::string cache_name(const std::string& folder) {
   std::string type;
   std::ifstream(folder + "type") >> type;

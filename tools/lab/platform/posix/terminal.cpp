@@ -1,4 +1,4 @@
-// Terminals and signals, by POSIX.
+// Terminals and signals on POSIX.
 #include "lab/platform/terminal.hpp"
 
 #include <csignal>
@@ -30,7 +30,7 @@ void on_interruption(void (*handle)()) {
   const auto handler = [](int) { interruption_handler(); };
   std::signal(SIGINT, handler);
   std::signal(SIGTERM, handler);
-  // Under nohup it is to go on.
+  // Under nohup, SIGHUP stays ignored.
   if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

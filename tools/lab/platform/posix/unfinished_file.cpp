@@ -1,4 +1,4 @@
-// Files that are being written, by POSIX and Linux's O_TMPFILE.
+// Unfinished files on POSIX, with Linux's O_TMPFILE.
 #include "lab/platform/unfinished_file.hpp"
 
 #include <array>
@@ -18,16 +18,16 @@
 namespace broadside::lab::platform {
 namespace {
 
-/// The path of the file that is being written beside its place, while it has one. It outlives every
-/// UnfinishedFile, since a signal's handler may look at it at any time.
+/// The path of the unfinished file, while it has a name. It outlives every UnfinishedFile, because a signal
+/// handler may read it at any time.
 std::array<char, PATH_MAX> unfinished_path;
 std::atomic<bool> has_unfinished_path = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal's handler must not wait");
 
 std::string path_of_descriptor(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
 
-/// Names the file for remove_unfinished_file() as long as it stands beside its place. The name does not grow
-/// with the target's, which may be as long as the system allows.
+/// Names the file for remove_unfinished_file() while it is beside its target. The length of the name does not
+/// depend on the target's, which may already have the maximum.
 void take_name(const std::filesystem::path& folder) {
   std::random_device random;
   const std::string name = fmt::format(".broadside-{:08x}{:08x}.part", random(), random());
@@ -55,7 +55,7 @@ int opened(const std::filesystem::path& folder, mode_t mode) {
 struct UnfinishedFile::State {
   std::filesystem::path target;
   std::filesystem::path folder;
-  std::optional<mode_t> old_mode;  // of the file that it replaces
+  std::optional<mode_t> old_mode;  // of the old file
   int descriptor = -1;
 };
 
@@ -77,7 +77,7 @@ UnfinishedFile::~UnfinishedFile() {
 int UnfinishedFile::descriptor() const { return state_->descriptor; }
 
 bool UnfinishedFile::take_place() {
-  // Not the bits that run a file as its owner: that is another one now, and so are the bytes.
+  // Without the set-user-ID and set-group-ID bits: the new file has another owner and other bytes.
   if (state_->old_mode && ::fchmod(state_->descriptor, *state_->old_mode & 0777) != 0) return false;
   // A link cannot replace a file, and a file without a name cannot be renamed.
   if (!has_unfinished_path) {

@@ -1,4 +1,4 @@
-// Open files, by Windows' C library and its mappings.
+// Open files on Windows, by its C library and file mappings.
 #include "lab/platform/descriptor.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace broadside::lab::platform {
 namespace {
 
-/// A call's count of bytes is an int there.
+/// Windows counts the bytes of a call in an int.
 constexpr std::size_t max_bytes_per_call = std::size_t{1} << 30;
 
 HANDLE handle_of(int descriptor) { return reinterpret_cast<HANDLE>(_get_osfhandle(descriptor)); }
@@ -61,14 +61,14 @@ void* map(int descriptor, std::uint64_t) {
     return nullptr;
   }
   void* const mapped = MapViewOfFile(mapping, FILE_MAP_READ, 0, 0, 0);
-  CloseHandle(mapping);  // the view keeps it
+  CloseHandle(mapping);  // the view keeps it open
   if (mapped == nullptr) errno = ENOMEM;
   return mapped;
 }
 
 void unmap(void* mapped, std::uint64_t) noexcept { UnmapViewOfFile(mapped); }
 
-// The system takes them where it needs them.
+// Windows reclaims the pages when it needs them.
 void release(void*, std::uint64_t) noexcept {}
 
 bool may_write(const std::filesystem::path& path) {

@@ -1,4 +1,4 @@
-// The machine, as Windows tells of it.
+// The machine's properties on Windows.
 #include "lab/platform/machine.hpp"
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace broadside::lab::platform {
 namespace {
 
-/// A text of the registry's part about this machine.
+/// A string value under HKEY_LOCAL_MACHINE in the registry.
 std::string registered(const wchar_t* key, const wchar_t* name) {
   std::array<wchar_t, 256> wide{};
   DWORD bytes = sizeof(wide);

@@ -1,4 +1,4 @@
-// Consoles and what interrupts a program, on Windows.
+// Consoles and interruptions on Windows.
 #include "lab/platform/terminal.hpp"
 
 #include <cstdio>
@@ -20,14 +20,14 @@ std::string in_utf8(const wchar_t* wide) {
   if (bytes <= 1) return {};
   std::string text(static_cast<std::size_t>(bytes), '\0');
   WideCharToMultiByte(CP_UTF8, 0, wide, -1, text.data(), bytes, nullptr, nullptr);
-  text.pop_back();  // the null
+  text.pop_back();  // the terminating null
   return text;
 }
 
 }  // namespace
 
 bool is_terminal(int descriptor) {
-  // Not _isatty(), which takes NUL for one as well.
+  // Not _isatty(), which is also true for NUL.
   DWORD mode = 0;
   return GetConsoleMode(handle_of(descriptor), &mode) != 0;
 }
@@ -49,7 +49,7 @@ void prepare_standard_streams() {
 }
 
 std::vector<std::string> arguments(int count, const char* const* values) {
-  // main() gets them in the code page of the system, which has not every letter.
+  // main() gets its arguments in the system's code page, which lacks some letters.
   int wide_count = 0;
   wchar_t** const wide = CommandLineToArgvW(GetCommandLineW(), &wide_count);
   if (wide == nullptr) return {values, values + count};

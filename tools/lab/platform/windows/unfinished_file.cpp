@@ -1,4 +1,4 @@
-// Files that are being written, by Windows: one that is open can be removed if it was opened so.
+// Unfinished files on Windows, where an open file can be removed if it was opened for that.
 #include "lab/platform/unfinished_file.hpp"
 
 #include <array>
@@ -15,8 +15,8 @@
 namespace broadside::lab::platform {
 namespace {
 
-/// The path of the file that is being written beside its place. It outlives every UnfinishedFile, since the
-/// thread in which Windows tells of Ctrl-C may look at it at any time.
+/// The path of the unfinished file. It outlives every UnfinishedFile, because the thread in which Windows
+/// reports Ctrl-C may read it at any time.
 std::array<wchar_t, 32768> unfinished_path;
 std::atomic<bool> has_unfinished_path = false;
 
