@@ -1,4 +1,4 @@
-// The join of all ranks' boxes: boxes go to the ranks whose part of space they touch, and pairs to the ranks
+// Joins all ranks' boxes: sends boxes to the ranks whose parts of space they touch, and pairs to the ranks
 // that own them.
 #include <algorithm>
 #include <array>
@@ -22,13 +22,13 @@ namespace {
 
 constexpr std::uint64_t max_small_ids = std::uint64_t{1} << 32;
 
-/// One set of boxes: those handed in on this rank, and those that touch its part of space.
+/// One set of boxes: those passed on this rank, and those that touch its part of space.
 template <int D, typename Real, typename Id>
 struct JoinSide {
   explicit JoinSide(const BoxView<D, Real>& handed_in) : mine(handed_in) {}
 
   BoxView<D, Real> mine;
-  std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box's
+  std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box
 
   std::vector<Box<D, Real>> boxes{};
   std::vector<Id> ids{};
@@ -42,18 +42,18 @@ struct JoinSide {
     constexpr std::size_t few = 16;
     if (ends.size() > few)
       return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin());
-    // Without a branch that depends on the pair.
+    // Branch-free with respect to the pair.
     std::size_t rank = 0;
     for (const std::uint64_t end : ends) rank += std::size_t{end <= id};
     return rank;
   }
 };
 
-/// Collects the pairs that belong to the part, in one list for each rank that owns some.
+/// Collects the pairs that belong to the part, in one list per owning rank.
 template <typename LeftSide, typename Id, typename P>
 class OwnedPairs final : public PairSink {
  public:
-  /// The sides outlive the sink.
+  /// The sides must outlive the sink.
   OwnedPairs(const LeftSide& left, const LeftSide& right, std::size_t ranks)
       : left_(left), right_(right), owned_(ranks) {}
 
@@ -126,7 +126,7 @@ std::uint64_t fingerprint(const Options& options, bool is_between) {
   return hash;
 }
 
-/// Throws if a rank's own boxes cannot be joined; `set` is what messages call them, such as "left box".
+/// Throws if a rank's own boxes cannot be joined; `set` names them in messages, such as "left box".
 template <int D, typename Real>
 void check_boxes(const BoxView<D, Real>& boxes, const char* set) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
@@ -139,7 +139,7 @@ void check_boxes(const BoxView<D, Real>& boxes, const char* set) {
                                 " has a NaN or min > max; expected min <= max, or the absent box");
 }
 
-/// The join of one call.
+/// State of one call.
 template <int D, typename Real, typename Id, typename P>
 class RankJoin {
  public:
@@ -190,7 +190,7 @@ class RankJoin {
     comm_.together([&] {
       boxes.resize(comm_.size());
       ids.resize(comm_.size());
-      // On this rank there will be those of the others as well.
+      // Leaves room for boxes of the other ranks.
       const std::size_t usual = side.mine.size() + side.mine.size() / 16;
       for (std::size_t part = 0; part < partition.size(); ++part) {
         const bool is_own = part == static_cast<std::size_t>(comm_.rank());
@@ -221,7 +221,7 @@ class RankJoin {
       side.begins_before[i] = static_cast<std::uint8_t>(region.begins_before(side.boxes[i]));
   }
 
-  /// The pairs that belong to this rank's part, by the ranks that own them.
+  /// Finds the pairs that belong to this rank's part, grouped by owner.
   std::vector<std::vector<P>> search() {
     const OneSide& left = sides_.front();
     const OneSide& right = sides_.back();

@@ -1,4 +1,5 @@
-// The house stands: no file includes what its floor may not, and every algorithm's file is in the registry.
+// Enforces the layering: no file includes a header that its folder may not use, and every algorithm's file is
+// in the registry.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ const fs::path project = BROADSIDE_SOURCE_DIR;
 
 bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
 
-/// The names under which the folders in `folder` should stand in the registry.
+/// The names under which the subfolders of `folder` should be registered.
 std::vector<std::string> names_of_folders(const std::string& folder) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(project / folder)) {

@@ -1,4 +1,4 @@
-// Whether the options that were given mean something to the scenes and files that they were given with.
+// Checks whether the given options apply to the scenes and files they were given with.
 #include "cli/applicability.hpp"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ bool has_seed(const lab::Scene& scene) { return !scene.fixed_seed; }
 bool moves_by_itself(const lab::Scene& scene) { return scene.history_2d || scene.history_3d; }
 bool is_still(const lab::Scene& scene) { return !moves_by_itself(scene); }
 
-/// An option, the scenes that it means something to, and what is said of one and of several others.
+/// An option, the scenes it applies to, and the messages about one scene and about several that it does not
+/// apply to.
 struct Rule {
   std::string_view option;
   bool (*applies)(const lab::Scene&);
@@ -46,7 +47,7 @@ constexpr std::array rules = {
     Rule{"--teleport", is_still, mover, movers},
 };
 
-/// The value that an option was given, as it was written; empty where it was not given, or the verb has none.
+/// The text of an option's value; empty if it was not given, or the verb does not have it.
 std::optional<std::string> value_of(const CLI::App& verb, std::string_view option) {
   const CLI::Option* const found = verb.get_option_no_throw(std::string(option));
   if (found == nullptr || found->count() == 0) return std::nullopt;

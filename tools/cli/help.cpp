@@ -1,4 +1,4 @@
-// What --help prints, in lines that the terminal holds.
+// Formats --help to the width of the terminal.
 #include "cli/help.hpp"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ std::size_t terminal_width() {
   return width == 0 ? standard_width : std::clamp(width, min_width, max_width);
 }
 
-/// The words of `text` in lines of at most `width`; the first begins in column `column`, the others
-/// in column `indent`.
+/// The words of `text` in lines of at most `width` columns. The first line begins in column `column`, the
+/// others in column `indent`.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
   std::string lines;
   std::istringstream words(text);
@@ -98,7 +98,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  // Indented lines are not wrapped: they are commands to be copied.
+  // Indented lines are commands to copy, so they are not wrapped.
   std::string footer;
   std::istringstream lines(app->get_footer());
   for (std::string line; std::getline(lines, line);)
@@ -118,7 +118,7 @@ void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
   std::string footer = "Examples:";
   for (const Example& example : examples)
     footer += fmt::format("\n  {} {}\n      {}", program_name(), example.command, example.what);
-  // What the program says of all its verbs comes last.
+  // The program's footer about all verbs comes last.
   verb.footer(footer + "\n\n" + verb.get_footer());
 }
 

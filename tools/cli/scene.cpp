@@ -1,4 +1,4 @@
-// broadside scene: makes a scene's boxes and writes them to a file.
+// broadside scene: generates a scene's boxes and writes them to a file.
 #include "lab/scenes/scene.hpp"
 
 #include <memory>
@@ -25,7 +25,7 @@ namespace {
 
 struct SceneArguments {
   std::vector<std::string> scenes;
-  std::string scene;  ///< the one that there is
+  std::string scene;  ///< exactly one
   InputOptions input;
   std::string output;
   std::string to;
@@ -37,7 +37,7 @@ struct SceneArguments {
   std::optional<std::uint64_t> seed;
 };
 
-/// Refuses options that mean nothing to the scene.
+/// Refuses options that do not apply to the scene.
 void check(const SceneArguments& arguments, const CLI::App& verb, const lab::NamedScene& named) {
   check_options(verb, {&named, 1});
   check_moves(verb, {&named, 1});

@@ -1,4 +1,4 @@
-// The scenes and files that a verb works on.
+// The scenes and files of a verb.
 #include "cli/scene_arguments.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_frames = 20;  // of a scene that moves by itself
+constexpr std::size_t standard_frames = 20;  // for scenes that move by themselves
 
 template <int D>
 lab::AnyFrameReader make_frames(const lab::NamedScene& named, const lab::SceneRequest& request) {

@@ -1,4 +1,4 @@
-// Values on the command line that CLI11 does not read by itself.
+// Parses values on the command line that CLI11 does not parse by itself.
 #include "cli/values.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::size_t read_count(const std::string& option, const std::string& text) {
     number *= unit;
     if (unit > 0) ++rest;
   }
-  // From 2^53 on a double leaves out whole numbers; no machine holds that many boxes.
+  // Beyond 2^53, doubles skip whole numbers; no machine holds that many boxes.
   constexpr double most = 9007199254740992.0;
   if (error != std::errc() || rest != end || !(number >= 1 && number <= most) || number != std::floor(number))
     throw Unusable(option + " is '" + text + "'; expected a whole number from 1, such as 1000, 100k or 1e6");
@@ -102,7 +102,7 @@ void check_writable(const std::string& option, const std::string& path) {
     throw Unusable(
         fmt::format("{} is '{}', which is read-only; expected a file that may be written, or another name",
                     option, path));
-  // An old file is replaced by a new one, which needs the folder as well.
+  // Replacing an existing file needs write access to its folder as well.
   if (!lab::is_written_directly(path) && !lab::platform::may_write(folder))
     throw Unusable(fmt::format(
         "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,

@@ -1,4 +1,4 @@
-// What the parts of the motion benchmark share: scenes in motion, headings and tables.
+// Shared by the parts of the motion benchmark: scenes in motion, headings and tables.
 #include "bench/motion/parts.hpp"
 
 #include <algorithm>

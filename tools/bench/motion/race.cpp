@@ -44,12 +44,12 @@ class TrackerFollower final : public MotionFollower<D> {
 
  private:
   Tracker<D> tracker_;
-  std::vector<Box<D>> boxes_;  // its own, as an engine's are
+  std::vector<Box<D>> boxes_;  // a copy of its own, as an engine has
   std::vector<BoxId> changed_;
   lab::FrameEvents events_;
 };
 
-/// A step from nothing to these boxes.
+/// A step that adds all of these boxes.
 template <int D>
 lab::Step<D> first_step(std::span<const Box<D>> boxes) {
   lab::Step<D> step{boxes.size(), {}, {boxes.begin(), boxes.end()}};
@@ -57,7 +57,7 @@ lab::Step<D> first_step(std::span<const Box<D>> boxes) {
   return step;
 }
 
-/// What a frame's events were by the first that told them.
+/// Hash of a frame's events, and the first runner that reported them.
 struct Told {
   std::uint64_t hash;
   std::string by;
@@ -86,7 +86,7 @@ class Race {
       Motion<D> motion = start();
       if (round == 0) let_in(motion.boxes);
       follow(motion, round);
-      // The first one is verified, and knows what that found.
+      // Only the first runner is verified, and reports what that found.
       if (round > 0) continue;
       for (Racer<D>& participant : participants_) {
         if (participant.follower) participant.runner->explanation = participant.follower->explanation();
@@ -103,7 +103,7 @@ class Race {
       std::string& why = participant.runner->left_out;
       if (participant.competitor.entry != nullptr)
         why = lab::unfit(*participant.competitor.entry, D, extremes);
-      // Some take quadratic time to put boxes in one by one.
+      // Some libraries take quadratic time to insert boxes one by one.
       const auto seconds_for = [&](std::size_t count) {
         std::vector<Box<D>> some;
         for (const std::size_t i : lab::sample_of(boxes.size(), count)) some.push_back(boxes[i]);
@@ -169,7 +169,7 @@ class Race {
     return watch.milliseconds();
   }
 
-  /// Writes more bytes than caches hold.
+  /// Writes more bytes than the caches hold.
   void flush_caches() {
     flushed_.resize(std::size_t{256} << 20);
     for (std::size_t i = 0; i < flushed_.size(); i += 64) ++flushed_[i];
@@ -197,7 +197,7 @@ class Race {
   RaceOutcome outcome_;
   std::vector<Racer<D>> participants_;
   std::vector<char> flushed_{};
-  std::map<std::string, std::vector<Told>> told_;  // by definition, and frame, the first one too
+  std::map<std::string, std::vector<Told>> told_;  // by definition and frame, including the first frame
 };
 
 }  // namespace

@@ -75,7 +75,7 @@ def searches_of(
     distributed.wait([*arrays, *frames])
 
     def put_in_order() -> list[Any]:
-        # By tasks: the other way ("p2p") waits forever for frames that the cluster holds already.
+        # By tasks: the alternative ("p2p") waits forever for frames that the cluster already holds.
         with dask.config.set({"dataframe.shuffle.method": "tasks"}):
             ordered = [frame.spatial_shuffle(npartitions=options.chunks).persist() for frame in frames]
         distributed.wait(ordered)
@@ -141,7 +141,7 @@ def compare(client: distributed.Client, n: int, options: argparse.Namespace) -> 
     lines = []
     for name in searches:
         if times[name]:
-            # Ratios of the same round, where there are several.
+            # Ratios within the same round, if there are several rounds.
             pairs = zip(times[name], times["broadside.dask, arrays"]) if name not in notes else [(times[name][0], base)]
             ratio = statistics.median(one / other for one, other in pairs)
             lines.append(f"| {n:,} | {name} | {statistics.median(times[name]):,.3f} | {ratio:,.2f} | {notes.get(name, '')} |")
@@ -163,7 +163,7 @@ def main() -> None:
           f"dask-geopandas {dask_geopandas.__version__}, DuckDB {duckdb.__version__}, Broadside {broadside.__version__}, "
           f"{date.today()}; `{' '.join(sys.argv)}`\n")
     print("| boxes, two sets of | library | seconds | times broadside.dask | |\n|---:|---|---:|---:|---|", flush=True)
-    # The default limit of memory is the machine's share; nothing here comes near it.
+    # The default memory limit is the machine's share; nothing here comes near it.
     with distributed.LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
             for n in map(int, options.boxes.split(",")):

@@ -26,7 +26,7 @@ import numpy as np
 import broadside
 
 Pairs = Any  # an array of pairs, or their number
-SLOW_SECONDS = 60.0  # a library whose first call takes longer is left out of the rounds
+SLOW_SECONDS = 60.0  # a library is left out of the rounds if its first call takes longer
 
 
 def scattered(n: int, dimension: int, seed: int) -> np.ndarray:
@@ -216,7 +216,7 @@ def compare(n: int, dimension: int, two_sets: bool, rounds: int, threads: int) -
         try:
             search = make(threads)
             taken, rows = seconds(lambda: search(a, b))
-        except Exception as error:  # what a library cannot do here is said in its line
+        except Exception as error:  # an unsupported case is reported in the library's line
             notes[name] = f"{type(error).__name__}: {str(error).splitlines()[0][:60]}"
             continue
         if isinstance(rows, int):

@@ -1,9 +1,9 @@
-// Compares the npm package with other libraries of JavaScript, in Node or in Chromium.
+// Compares the npm package with other JavaScript libraries, in Node or in Chromium.
 //
 //   node compare.mjs [--chromium] [--least N] [--most N] PACKAGE
 //
-// Times in Node are of the processor, so that other programs on the machine count for little; those in Chromium are of
-// the clock. Every library's pairs are compared with those of the first one, which are the package's.
+// Times in Node are processor times, which other programs on the machine hardly affect; times in Chromium are
+// wall-clock times. Every library's pairs are compared with those of the first one, which is the package.
 import { createRequire } from "node:module";
 import { cpus } from "node:os";
 import { dirname, join, resolve } from "node:path";

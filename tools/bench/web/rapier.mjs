@@ -1,4 +1,4 @@
-// Rapier as a broad phase: kinematic sensors, which collide with nothing and tell whom they meet.
+// Rapier as a broad phase: kinematic sensors, which report overlaps and exert no force.
 import rapier from "@dimforge/rapier2d-simd-compat";
 
 await rapier.init();

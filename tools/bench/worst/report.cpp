@@ -1,4 +1,4 @@
-// What the worst-case hunt prints and writes.
+// Output of the worst-case hunt, printed and written.
 #include "bench/worst/report.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The ranks of the program: errors shared, and bytes sent.
+// The ranks of the program: shared errors, and transfers of bytes.
 #include "cli/mpi/ranks.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// A bar for each text. They lie where the texts are long or many, so that these can be read.
+// Bar charts: one bar per label. Bars are horizontal if labels are long or many, so that they stay
+// readable.
 import { above, axisName, below, categoryAxis, frame, shortened, textWidth, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
@@ -10,15 +11,15 @@ export interface BarsSpec {
   x: { name: string; unit: string };
   y: AxisSpec;
   labels: readonly string[];
-  /** Of each label: a number, or none. */
+  /** Value of each label, or null for none. */
   values: readonly (number | null)[];
-  /** Of each label. */
+  /** Colour of each label. */
   colours: readonly string[];
-  /** Where bars begin, marked by a line. */
+  /** Start of the bars, marked by a line. */
   from: number;
-  /** Of each label: what stands at its bar, and in full where there is room. */
+  /** Text at each label's bar: a short one, and a full one for charts with enough room. */
   texts?: readonly { short: string; full: string }[];
-  /** Likewise: the interval in which its value lies, or none. */
+  /** Interval of each label's value, if any. */
   whiskers?: readonly (Interval | undefined)[];
 }
 
@@ -32,7 +33,7 @@ function describe(spec: BarsSpec, text: (value: number, at: number) => string): 
   return `${spec.title}. Bar chart of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
 }
 
-/** Bars of `spec`, the first label at the top or at the left. */
+/** Draws the bars of `spec`, with the first label at the top or on the left. */
 export function drawBars(spec: BarsSpec, place: Place): Drawn {
   const { theme } = place;
   const whiskers = spec.whiskers ?? [];
@@ -81,7 +82,7 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
         data: spec.values.map((value, at) => ({
           value: value ?? "-",
           ...(spec.colours[at] === undefined ? {} : { itemStyle: { color: spec.colours[at] } }),
-          // Its whisker carries the text.
+          // The whisker carries the text.
           ...(whiskers[at] === undefined ? {} : { label: { show: false } }),
         })),
         label: {

@@ -1,10 +1,11 @@
-// Prints what the built page costs in headless Chromium, as the table of README.md:
+// Prints the cost of the built page in headless Chromium, as the table of README.md:
 //
-//   node web/playground/frame_times.mjs [PAGE]    PAGE: build/playground/index.html if left out
+//   node web/playground/frame_times.mjs [PAGE]    PAGE: default build/playground/index.html
 //
-// The script's time is that of the page's own thread: searches run in a worker. Drawing is what the browser's drawing
-// process takes of the processor, since software draws here; other programs on the machine change it little, and frames
-// a second much. So the script and, as ratios, drawing tell of other machines.
+// The script's time is that of the page's own thread; searches run in a worker. Drawing is the
+// processor time of the browser's drawing process, because software does the drawing here. Other
+// programs on the machine affect these two little, but they affect frames per second much. The
+// script's time and, as ratios, the drawing times therefore carry over to other machines.
 import { existsSync } from "node:fs";
 import { createRequire } from "node:module";
 import { cpus } from "node:os";
@@ -40,7 +41,10 @@ async function opened(browser, hash) {
   return page;
 }
 
-/** Milliseconds from moves of a pointer that drags a box to the page's answer: the median, and nine in ten up to. */
+/**
+ * Milliseconds from pointer moves that drag a box to the page's answer: the median and the 90th
+ * percentile.
+ */
 async function dragDelays(browser) {
   const page = await opened(browser, "n=100000&moving=1&a=grid");
   await page.evaluate(() => {
@@ -57,7 +61,10 @@ async function dragDelays(browser) {
   return [delays[delays.length >> 1], delays[Math.floor(0.9 * delays.length)]];
 }
 
-/** Milliseconds from the page's start to its first frame with boxes and pairs, which is also when the module is ready. */
+/**
+ * Milliseconds from the page's start to its first frame with boxes and pairs; by then the module is
+ * ready, too.
+ */
 async function firstFrame(browser) {
   const times = [];
   for (let run = 0; run < runs; ++run) {
@@ -68,7 +75,7 @@ async function firstFrame(browser) {
   return middle(times);
 }
 
-/** Milliseconds that the drawing process has taken of the processor. */
+/** Milliseconds of processor time of the drawing process. */
 async function drawingTime(browser) {
   const session = await browser.newBrowserCDPSession();
   const { processInfo } = await session.send("SystemInfo.getProcessInfo");

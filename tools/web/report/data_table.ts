@@ -1,12 +1,13 @@
-// Tables that sort and filter: a real <table>, buttons in its head, aria-sort, and how many rows are left told aloud.
+// Tables that sort and filter: a real <table> with buttons in its head and aria-sort; the number of
+// remaining rows is announced to screen readers.
 import { grouped } from "../charts/numbers.ts";
 import { el, newId, picker, say } from "./dom.ts";
 
 export interface DataColumn<Row> {
   title: string;
-  /** What is sorted by; null stands last either way. */
+  /** Sort key; null is last in either order. */
   value: (row: Row) => number | string | null;
-  /** Standard: the value as it is. */
+  /** Default: the value as it is. */
   text?: (row: Row) => string;
 }
 
@@ -19,11 +20,11 @@ export interface DataTableSpec<Row> {
   caption: string;
   columns: readonly DataColumn<Row>[];
   rows: readonly Row[];
-  /** A list to choose from for each; lists that would offer one choice are left out. */
+  /** Each is a list of choices; lists that would offer only one choice are left out. */
   filters?: readonly DataFilter<Row>[];
-  /** Text of any length, below its row and as wide as the table is seen; null for none. */
+  /** Text of any length, below its row and as wide as the visible table; null for none. */
   note?: (row: Row) => string | null;
-  /** With a field in which rows are searched by their texts. */
+  /** Adds a search field, which matches the texts of rows. */
   search?: boolean;
 }
 
@@ -123,7 +124,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   show();
   return el("div", { class: "data-table" },
     controls.length > 0 && el("div", { class: "controls" }, ...controls),
-    // A region that scrolls must be reachable by the keyboard.
+    // A scrollable region must be reachable by keyboard.
     el("div", { class: "scroll", role: "region", tabindex: 0, "aria-labelledby": id },
       el("table", {}, el("caption", { id }, spec.caption), el("thead", {}, el("tr", {}, ...heads)), body)),
     (controls.length > 0 || spec.rows.length > pageRows) && count,

@@ -1,9 +1,9 @@
-// Searches that would take too long are not begun: their number of tests is known beforehand.
+// Refuses searches that would take too long, by their number of tests, which is known beforehand.
 
-/** The tests of a search of all pairs, one at a time or sixteen at once. */
+/** Maximum number of tests for a search of all pairs, whether one at a time or sixteen at once. */
 const mostTests = 400e6;
 
-/** Why a search of these many boxes is not begun; undefined where it may. */
+/** Why a search of this many boxes is refused; undefined if it may run. */
 export function refusal(spec: string, count: number): string | undefined {
   if (!/^(paper_)?brute_force\b/.test(spec)) return undefined;
   const tests = count * (count - 1) / 2;
@@ -13,5 +13,5 @@ export function refusal(spec: string, count: number): string | undefined {
     "That would stop the page, so it is left out.";
 }
 
-/** The most tests that an observation may record: eight bytes each. */
+/** Maximum number of tests of an observation, at eight bytes each. */
 export const mostObserved = 2_000_000;

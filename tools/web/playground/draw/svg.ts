@@ -3,7 +3,7 @@ import { projectionOf } from "./canvas_painter.ts";
 import { fills, levelColour } from "./colours.ts";
 import { overlapStrength, testLines, type Painting } from "./painting.ts";
 
-/** More boxes than this are a picture that few programs open. */
+/** A picture of more boxes than this opens in few programs. */
 export const mostSvgBoxes = 20_000;
 
 function escaped(text: string): string {
@@ -12,7 +12,7 @@ function escaped(text: string): string {
 
 const short = (value: number): string => String(Math.round(value * 100) / 100);
 
-/** The panels side by side, each under its caption. */
+/** The panels side by side, each with its caption above. */
 export function svgOf(painting: Painting, captions: readonly string[]): string {
   const { boxes, dimension, palette } = painting;
   const stride = 2 * dimension;

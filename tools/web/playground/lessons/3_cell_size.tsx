@@ -2,7 +2,7 @@ import { nameOf } from "../state/spec.ts";
 import { grouped } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
-/** Tests and references together; the best cells need some 1,600. */
+/** Limit on tests plus references; the best cell size needs about 1,600. */
 const most = 1800;
 
 export const cellSize: Lesson = {

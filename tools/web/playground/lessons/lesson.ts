@@ -6,7 +6,7 @@ import { standardKnobs, type Knobs } from "../scene/drift.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
 import type { State } from "../state/state.ts";
 
-/** What an exercise is judged by. */
+/** Facts by which an exercise is judged. */
 export interface Facts {
   state: State;
   shown: Shown;
@@ -15,7 +15,7 @@ export interface Facts {
 
 export interface Verdict {
   done: boolean;
-  /** How things stand, as a sentence. */
+  /** The current status, as a sentence. */
   text: string;
 }
 
@@ -35,7 +35,7 @@ export interface Lesson {
   title: string;
   text: ComponentChildren;
   tries: readonly Try[];
-  /** What the lesson begins with. */
+  /** Initial state of the lesson. */
   start: Partial<State>;
   exercise: Exercise;
 }

@@ -3,7 +3,7 @@ import { numbersPerBox, usualBounds, type Dimension, type Scene } from "./scene.
 
 export const framesPerSecond = 20;
 
-/** Frames of boxes. A frame may have fewer boxes than another one; those missing are absent. */
+/** Frames of boxes. Frames may differ in the number of boxes; missing ones are absent. */
 export interface Recorded {
   dimension: Dimension;
   frames: Float32Array<ArrayBuffer>[];

@@ -1,5 +1,6 @@
-// The state as the part of an address behind "#", and back. Only what differs from the standard is written; the number of
-// boxes and the panels, where they differ from what the scene begins with.
+// Writes the state to the part of an address after "#", and reads it back. Only values that differ
+// from the defaults are written. The scene determines the defaults of the number of boxes and of
+// the panels.
 import { standardKnobs, type Knobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
@@ -36,7 +37,7 @@ function readPanels(text: string): PanelChoice[] {
   });
 }
 
-/** A number of a range, else the standard one. */
+/** A number within a range, otherwise the default value. */
 function numberOf(text: string | null, standard: number, least: number, most: number): number {
   const value = text === null || text.trim() === "" ? NaN : Number(text);
   return Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : standard;
@@ -46,7 +47,7 @@ const knobNames: Record<keyof Knobs, [least: number, most: number]> = {
   ratio: [1, 1000], clustering: [0, 1], moving: [0, 1], speed: [0, 10],
 };
 
-/** The state at a time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
+/** The state at a given time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
 export function writeState(state: State, time: number): string {
   const query = new URLSearchParams();
   const put = (name: string, value: string, standard: string): void => {
@@ -79,12 +80,12 @@ export function writeState(state: State, time: number): string {
     put("capacity", String(steps.capacity), String(usual.steps.capacity));
   }
   if (state.embed) query.set("embed", "");
-  // These may stand in an address as they are, and are easier to read so.
+  // These are allowed unescaped in an address, and more readable.
   return query.toString().replace(/%3A/g, ":").replace(/%3D/g, "=").replace(/%3B/g, ";").replace(/%2C/g, ",")
     .replace(/embed=$/, "embed");
 }
 
-/** What an address says, before and behind its "#"; what it says wrongly is as usual. */
+/** Reads an address, before and after "#"; invalid values are replaced by defaults. */
 export function readState(search: string, hash: string): { state: State; time: number } {
   const query = new URLSearchParams(search.replace(/^\?/, ""));
   new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => query.set(name, value));

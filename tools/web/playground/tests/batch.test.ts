@@ -1,4 +1,4 @@
-// Which boxes are drawn as points, which as shapes, and which not at all.
+// Which boxes are drawn as points, which as shapes, and which are left out.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 
@@ -18,7 +18,7 @@ function solidLens(bounds: number[], view: View = standardView): Lens {
 
 function seen(dimension: 2 | 3, boxes: number[][], lens: Lens): { points: number[]; shapes: number[] } {
   const batch = new Batch(dimension);
-  // Marks tell the boxes apart.
+  // Marks identify the boxes.
   batch.set(Float32Array.from(boxes.flat()), Uint8Array.from(boxes.keys()), lens);
   for (let at = 0; at < batch.count; ++at) {
     const copy = [...batch.boxes.subarray(2 * dimension * at, 2 * dimension * (at + 1))];

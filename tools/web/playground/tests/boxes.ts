@@ -1,4 +1,4 @@
-// Boxes for the tests, and what overlaps by definition.
+// Boxes for the tests, and their overlaps by definition.
 import { randomAt } from "../scene/random.ts";
 
 export interface BoxKind {
@@ -20,7 +20,7 @@ export function randomBoxes(seed: number, count: number, { dimension, places, mo
   return boxes;
 }
 
-/** Every pair of boxes that overlap, sorted. */
+/** Every pair of overlapping boxes, sorted. */
 export function overlappingPairs(boxes: Float32Array, dimension: 2 | 3): string[] {
   const pairs: string[] = [];
   const stride = 2 * dimension;
@@ -38,7 +38,7 @@ export function overlappingPairs(boxes: Float32Array, dimension: 2 | 3): string[
   return pairs.sort();
 }
 
-/** Pairs as [a0, b0, ...], each with its lesser id first. */
+/** Pairs as [a0, b0, ...], each with its lower id first. */
 export function named(pairs: Uint32Array): string[] {
   const names: string[] = [];
   for (let at = 0; at < pairs.length; at += 2)

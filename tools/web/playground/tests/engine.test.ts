@@ -1,4 +1,4 @@
-// The engine in Node: its searches, what it observes, trackers, outlines, scenes and errors.
+// The engine in Node: searches, observations, trackers, outlines, scenes and errors.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -138,7 +138,7 @@ test("what is refused says what was found and what was expected", () => {
   boxes[0] = NaN;
   assert.throws(() => engine.find("grid", boxes, 2), /box 0|index 0|at 0/i);
   boxes[0] = 0;
-  assert.equal(engine.find("grid", boxes.slice(0, 8), 2).pairs.length % 2, 0);  // and it goes on
+  assert.equal(engine.find("grid", boxes.slice(0, 8), 2).pairs.length % 2, 0);  // it still works
 });
 
 test("it takes many boxes, and its memory grows", () => {

@@ -1,4 +1,4 @@
-// The state in an address and back; edits; specs; lines to copy.
+// The state in an address and back; edits; specs; code to copy.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

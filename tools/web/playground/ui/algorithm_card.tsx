@@ -1,11 +1,12 @@
-// The current panel's algorithm: what it is, its tunables, why auto chose what it chose; and more panels.
+// The current panel's algorithm: its description, its tunables and the reason for auto's choice;
+// and buttons for more panels.
 import type { Tunable } from "../engine/types.ts";
 import { mostPanels } from "../state/state.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
 import { addPanel, algorithms, changePanel, state, told } from "../state/store.ts";
 import { Card, Choice, Slider, Switch } from "./field.tsx";
 
-/** How far a slider goes where the tunable has no end of its own. */
+/** The range of a slider for a tunable without bounds of its own. */
 function rangeOf(tunable: Tunable, worldWidth: number): [least: number, most: number] {
   if (tunable.name === "capacity") return [Math.max(1, tunable.min ?? 1), 256];
   if (tunable.name === "cell") return [worldWidth / 400, worldWidth];
@@ -41,7 +42,10 @@ function TunableField({ tunable, spec, worldWidth, onChange }:
   );
 }
 
-/** Threads need shared memory, which a page from a folder has not; a declared world is the bounds. */
+/**
+ * Threads need shared memory, which a page from a folder does not have; the declared world is the
+ * bounds.
+ */
 const hidden = new Set(["threads", "left", "top", "width", "height", "reinsert"]);
 
 export function AlgorithmCard() {
@@ -50,7 +54,7 @@ export function AlgorithmCard() {
   const known = algorithms.value.find(({ name }) => name === nameOf(choice.spec));
   const bounds = told.value?.bounds;
   const worldWidth = bounds === undefined ? 100 : bounds[told.value!.dimension]! - bounds[0]!;
-  // What only trackers take does nothing in a search.
+  // A tunable of trackers has no effect in a search.
   const tunables = (known?.tunables ?? []).filter(({ name }) =>
     !hidden.has(name) && (choice.follow || !["update", "detect"].includes(name)));
   const explanation = told.value?.panels[panel]?.explanation ?? "";

@@ -1,4 +1,4 @@
-// The page's controls: each with its label, and what it says now.
+// The page's controls, each with its label and current value.
 import type { ComponentChildren } from "preact";
 import { useId } from "preact/hooks";
 
@@ -7,7 +7,7 @@ interface SliderProps {
   value: number;
   least: number;
   most: number;
-  /** Steps of the slider; on a logarithmic one, of the logarithm. */
+  /** Steps of the slider; on a logarithmic one, steps of the logarithm. */
   step?: number;
   logarithmic?: boolean;
   /** The value as text. */
@@ -37,7 +37,7 @@ interface ChoiceProps {
   value: string;
   options: readonly { value: string; label: string; group?: string }[];
   onChange: (value: string) => void;
-  /** Whether the label is for screen readers alone. */
+  /** Whether the label is only for screen readers. */
   bare?: boolean;
   class?: string;
 }
@@ -80,7 +80,7 @@ interface ButtonsProps<Value extends string> {
   onChange: (value: Value) => void;
 }
 
-/** A few choices that exclude each other. */
+/** A few mutually exclusive choices. */
 export function Buttons<Value extends string>({ label, value, options, onChange }: ButtonsProps<Value>) {
   return (
     <div class="buttons" role="group" aria-label={label}>

@@ -1,4 +1,4 @@
-// The boxes: a scene or a file, how many, and the sliders with cliffs.
+// The boxes: a scene or a file, their number, and the sliders that expose performance cliffs.
 import { sceneEntries, sceneEntry, fileScene } from "../scene/catalogue.ts";
 import type { Knobs } from "../scene/drift.ts";
 import { mostBoxes } from "../state/state.ts";
@@ -27,7 +27,7 @@ const knobs: readonly Knob[] = [
   { name: "speed", label: "Speed", least: 0, most: 6, text: (value) => `${value.toFixed(1)}×`, hint: "Of the boxes that move" },
 ];
 
-/** Two digits are enough to drag. */
+/** Two significant digits are enough for dragging. */
 function rounded(count: number): number {
   const unit = 10 ** Math.max(0, Math.floor(Math.log10(count)) - 1);
   return Math.min(mostBoxes, Math.max(1, Math.round(count / unit) * unit));

@@ -51,7 +51,7 @@ export function StepsView() {
   const listing = useRef<HTMLOListElement>(null);
   const step = result.steps[at];
   useEffect(() => {
-    // The list alone is scrolled, never the page.
+    // Scrolls only the list, never the page.
     const [list, line] = [listing.current, listing.current?.children[step?.line ?? 0]];
     if (list === null || !(line instanceof HTMLElement)) return;
     const top = line.offsetTop - list.offsetTop;
@@ -64,7 +64,7 @@ export function StepsView() {
   const reported = past.filter(({ outcome }) => outcome === "reported");
   const found = new Set(reported.flatMap(({ pair }) => pair ?? []));
   const onKey = (event: KeyboardEvent): void => {
-    // A slider has its own arrows.
+    // A slider handles arrows itself.
     if (event.target instanceof HTMLInputElement) return;
     if (event.key === "ArrowRight") go(at + 1);
     else if (event.key === "ArrowLeft") go(at - 1);

@@ -7,7 +7,7 @@ import { view, wholeView, zoomBy } from "./view.ts";
 
 const frame = 1 / 30;
 
-/** By itself, since it changes often. */
+/** A component of its own, because it changes often. */
 function TimeSlider() {
   const most = Number.isFinite(duration.value) ? duration.value : Math.max(10, latest.peek());
   const now = state.value.playing ? told.value?.time ?? 0 : clock.value;

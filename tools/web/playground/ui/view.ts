@@ -1,4 +1,4 @@
-// How the visitor looks at the boxes: the same in every panel.
+// The visitor's view of the boxes: the same in every panel.
 import { signal } from "@preact/signals";
 
 import { standardView } from "../draw/camera.ts";
