@@ -17,7 +17,7 @@ namespace broadside::mpi {
 
 /// Default sample size over all ranks: with 4,096 boxes per part, the number of boxes in a part is off by
 /// about 2 %.
-inline std::size_t standard_sample(std::size_t ranks) {
+inline std::size_t default_sample(std::size_t ranks) {
   return std::max<std::size_t>(std::size_t{1} << 14, (std::size_t{1} << 12) * ranks);
 }
 

@@ -206,7 +206,7 @@ class DistributedWorld<D, Real>::State {
     std::vector<Box<D, Real>> share;
     comm_.together([&] {
       if (comm_.size() == 1) return;
-      const std::size_t sample = options_.sample == 0 ? standard_sample(comm_.size()) : options_.sample;
+      const std::size_t sample = options_.sample == 0 ? default_sample(comm_.size()) : options_.sample;
       const std::span<const Owned> boxes = owned_.all();
       add_sample<Real, D>(
           boxes.size(), share_of_sample(sample, owned_.size(), std::max<std::uint64_t>(all, 1)),

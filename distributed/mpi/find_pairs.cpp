@@ -101,11 +101,11 @@ void hand_on(std::span<const LargePair> pairs, const PairCallback& take) {
 }
 
 void hand_on(std::span<const Pair> pairs, const PairCallback& take) {
-  constexpr std::size_t most = std::size_t{1} << 14;
+  constexpr std::size_t max_chunk = std::size_t{1} << 14;
   std::vector<LargePair> chunk;
-  chunk.reserve(std::min(most, pairs.size()));
+  chunk.reserve(std::min(max_chunk, pairs.size()));
   while (!pairs.empty()) {
-    const std::span<const Pair> next = pairs.first(std::min(most, pairs.size()));
+    const std::span<const Pair> next = pairs.first(std::min(max_chunk, pairs.size()));
     chunk.clear();
     for (const Pair pair : next) chunk.push_back({index(pair.first), index(pair.second)});
     take(chunk);
@@ -129,10 +129,10 @@ std::uint64_t fingerprint(const Options& options, bool is_between) {
 /// Throws if a rank's own boxes cannot be joined; `set` names them in messages, such as "left box".
 template <int D, typename Real>
 void check_boxes(const BoxView<D, Real>& boxes, const char* set) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  if (boxes.size() > most)
-    throw InvalidFrame(std::to_string(boxes.size()) + " boxes; expected at most " + std::to_string(most) +
-                       " on a rank");
+  constexpr std::uint64_t max_boxes = std::numeric_limits<std::uint32_t>::max();
+  if (boxes.size() > max_boxes)
+    throw InvalidFrame(std::to_string(boxes.size()) + " boxes; expected at most " +
+                       std::to_string(max_boxes) + " on a rank");
   for (std::size_t i = 0; i < boxes.size(); ++i)
     if (const Box<D, Real> box = boxes[i]; !is_present(box) && !is_absent(box))
       throw InvalidInput(i, std::string(set) + " " + std::to_string(i) +
@@ -171,7 +171,7 @@ class RankJoin {
     std::uint64_t all = 0;
     comm_.together([&] {
       for (const OneSide& side : sides_) all += side.size();
-      const std::size_t sample = options.sample == 0 ? standard_sample(comm_.size()) : options.sample;
+      const std::size_t sample = options.sample == 0 ? default_sample(comm_.size()) : options.sample;
       for (const OneSide& side : sides_) {
         statistics_.boxes += side.mine.size();
         if (comm_.size() == 1) continue;
@@ -287,14 +287,14 @@ RankStatistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, cons
     if (right != nullptr) check_boxes(*right, "right box");
   });
   std::vector<std::vector<std::uint64_t>> ends;
-  std::uint64_t most = 0;
+  std::uint64_t max_ids = 0;
   for (const BoxView<D, Real>& view : views) {
     std::vector<std::uint64_t> counts = comm.gather(view.size());
     for (std::size_t rank = 1; rank < counts.size(); ++rank) counts[rank] += counts[rank - 1];
-    most = std::max(most, counts.back());
+    max_ids = std::max(max_ids, counts.back());
     comm.together([&] { ends.push_back(std::move(counts)); });
   }
-  if (most <= max_small_ids && !options.has_large_ids)
+  if (max_ids <= max_small_ids && !options.has_large_ids)
     return join<std::uint32_t, Pair>(comm, *finder, views, std::move(ends), pairs, options);
   return join<std::uint64_t, LargePair>(comm, *finder, views, std::move(ends), pairs, options);
 }

@@ -235,10 +235,10 @@ class OutOfCoreJoin<D, Real>::Work {
 
   /// Thins the sample, so that making the cuts costs little compared with reading.
   static std::vector<Box<D, Real>> thinned(std::vector<Box<D, Real>> sample) {
-    constexpr std::size_t most = std::size_t{1} << 16;
-    if (sample.size() <= most) return sample;
-    std::vector<Box<D, Real>> some(most);
-    for (std::size_t i = 0; i < most; ++i) some[i] = sample[i * sample.size() / most];
+    constexpr std::size_t max_size = std::size_t{1} << 16;
+    if (sample.size() <= max_size) return sample;
+    std::vector<Box<D, Real>> some(max_size);
+    for (std::size_t i = 0; i < max_size; ++i) some[i] = sample[i * sample.size() / max_size];
     return some;
   }
 
@@ -301,10 +301,11 @@ class OutOfCoreJoin<D, Real>::Work {
     const Partition<D, Real> partition(sample_of(part), parts_for(count), 0, region_of(part));
     std::vector<PartRecord> parts;
     if (partition.size() > 1) parts = distribute(part, partition);
-    const bool is_help = partition.size() > 1 && std::ranges::all_of(parts, [&](const PartRecord& smaller) {
-                           return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
-                         });
-    if (is_help) {
+    const bool reduces_size =
+        partition.size() > 1 && std::ranges::all_of(parts, [&](const PartRecord& smaller) {
+          return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
+        });
+    if (reduces_size) {
       const auto at = manifest_.parts.erase(manifest_.parts.begin() + static_cast<std::ptrdiff_t>(place));
       manifest_.parts.insert(at, parts.begin(), parts.end());
     } else {

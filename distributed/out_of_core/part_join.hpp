@@ -118,31 +118,32 @@ class PartJoin {
   void join(PartRecord& part, const Region& region, Finder<D, Real>& finder) {
     RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
-    const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
+    const std::uint64_t max_loaded = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
     const auto room = [&](std::size_t side) {
-      return static_cast<std::size_t>(std::min(part.boxes[side], most + (std::uint64_t{1} << 15)));
+      return static_cast<std::size_t>(std::min(part.boxes[side], max_loaded + (std::uint64_t{1} << 15)));
     };
     PartBoxes<D, Real> left;
     PartBoxes<D, Real> right;
     left.reserve(room(0));
     if (is_between_ || is_in_pieces) right.reserve(room(is_between_ ? 1 : 0));
-    for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]); load(reader, region, most, left);) {
+    for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]);
+         load(reader, region, max_loaded, left);) {
       if (!is_between_) join_one(left, finder, runs);
       // Within one source: the pieces after this one. Between two sources: all pieces of the other source.
       BlockReader others = is_between_ ? BlockReader(folder_.box_file(part, 1), part.blocks[1]) : reader;
-      while ((is_between_ || is_in_pieces) && load(others, region, most, right))
+      while ((is_between_ || is_in_pieces) && load(others, region, max_loaded, right))
         join_two(left, right, finder, runs);
     }
     runs.flush();
   }
 
  private:
-  /// Loads blocks until there are `max_boxes` boxes; false if none are left.
-  static bool load(BlockReader& reader, const Region& region, std::uint64_t most,
+  /// Loads blocks until there are `max_loaded` boxes; false if none are left.
+  static bool load(BlockReader& reader, const Region& region, std::uint64_t max_loaded,
                    PartBoxes<D, Real>& loaded) {
     std::vector<std::byte> block;
     loaded.clear();
-    while (loaded.boxes.size() < most && reader.next(block))
+    while (loaded.boxes.size() < max_loaded && reader.next(block))
       for_each_box<D, Real>(block, [&](const Box<D, Real>& box, std::uint64_t id) {
         loaded.boxes.push_back(box);
         loaded.ids.push_back(id);

@@ -46,10 +46,10 @@ class Sources {
     std::vector<Box<D, Real>> boxes;
     bool is_all = true;  ///< whether these are all boxes
   };
-  SampledBoxes sample(std::size_t most) const {
+  SampledBoxes sample(std::size_t max_boxes) const {
     SampledBoxes sample;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
-      const std::size_t max_yet = most * (source + 1) / sources_.size();
+      const std::size_t max_yet = max_boxes * (source + 1) / sources_.size();
       sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {
         if (sample.boxes.size() < max_yet)
           sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());

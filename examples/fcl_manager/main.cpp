@@ -63,8 +63,8 @@ class Room {
   };
 
   void add(const std::shared_ptr<fcl::CollisionGeometryd>& shape) {
-    const auto anywhere = [this](double most) {
-      std::uniform_real_distribution<> value(-most, most);
+    const auto anywhere = [this](double max) {
+      std::uniform_real_distribution<> value(-max, max);
       return fcl::Vector3d(value(random_), value(random_), value(random_));
     };
     auto object = std::make_unique<fcl::CollisionObjectd>(shape);

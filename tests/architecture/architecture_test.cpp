@@ -42,11 +42,11 @@ std::vector<std::string> registered_names(AlgorithmKind kind) {
   return names;
 }
 
-TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
+TEST(Architecture, NoFileBreaksTheIncludeRules) {
   std::size_t files = 0;
-  for (const char* const floor :
+  for (const char* const folder :
        {"include", "src", "integrations", "distributed", "tools", "tests", "examples"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / folder)) {
       const fs::path& path = entry.path();
       if (!is_source(path)) continue;
       ++files;
@@ -68,7 +68,7 @@ TEST(IncludeRules, SeeEveryFormOfInclude) {
       ElementsAre("<vector>", "\"core/a.hpp\"", "NAME"));
 }
 
-TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
+TEST(IncludeRules, AllowPermittedIncludes) {
   EXPECT_THAT(breaches("include/broadside/a.hpp", "#include <span>\n#include \"broadside/box.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(breaches("src/kernels/a.cpp", "#include \"broadside/pair.hpp\"\n#include \"kernels/run.hpp\""),

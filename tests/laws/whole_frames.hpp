@@ -35,8 +35,8 @@ std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame);
 using RunUpdate = std::function<bool(const std::function<void()>& update)>;
 
 /// Passes the frames to the tracker in order, and describes the first difference from the expected events,
-/// which lead from the pairs of each completed update to those of the next; empty if there is none. Throws
-/// what the tracker throws, except for the sinks' exceptions. `run` makes updates fail in other ways.
+/// which lead from the pairs of each completed update to those of the next; empty if all agree. Exceptions of
+/// the tracker propagate, except those of the sinks. `run` makes updates fail in other ways.
 template <int D, typename Real>
 std::string divergence(Tracker<D, Real>& tracker, std::span<const WholeFrame<D, Real>> frames,
                        const RunUpdate& run = {});

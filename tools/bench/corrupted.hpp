@@ -207,11 +207,11 @@ class Corrupted {
 };
 
 /// How many corruptions were applied, and how many were detected.
-struct Caught {
+struct CorruptionCounts {
   std::size_t applied = 0;
   std::size_t caught = 0;
 
-  void add(const Caught& other) {
+  void add(const CorruptionCounts& other) {
     applied += other.applied;
     caught += other.caught;
   }
@@ -229,8 +229,9 @@ inline lab::Effort corruption_effort(std::size_t definition_boxes) {
 
 /// Lets `compare` measure the algorithm `base` under corruptions `first` to `first + count - 1`, each in one
 /// search or frame of one of the rounds. A corruption is detected if its measurement has failed.
-inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest& request, std::uint64_t first,
-                                std::size_t count, std::size_t definition_boxes) {
+inline CorruptionCounts compare_corrupted(const std::string& base, const lab::CaseRequest& request,
+                                          std::uint64_t first, std::size_t count,
+                                          std::size_t definition_boxes) {
   Corrupted corrupted(base, request.boxes, (corruption_rounds + 1) * (request.frames + 1));
   lab::Catalogue catalogue;
   catalogue.add(corrupted.algorithm());
@@ -243,7 +244,7 @@ inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest&
   options.plan = {request};
   options.effort = corruption_effort(definition_boxes);
   const lab::Comparison comparison = lab::compare(catalogue, options);
-  Caught result;
+  CorruptionCounts result;
   for (std::size_t i = 0; i < count; ++i) {
     if (!corrupted.at(first + i).is_applied) continue;
     ++result.applied;
@@ -254,8 +255,8 @@ inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest&
 
 /// As above, but the reference has the same fault as the compared algorithm, in every search and frame. Only
 /// the boxes that are checked by definition can reveal it.
-inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, std::uint64_t first,
-                                               std::size_t count) {
+inline CorruptionCounts compare_with_corrupted_reference(const lab::CaseRequest& request, std::uint64_t first,
+                                                         std::size_t count) {
   lab::Case measured;
   measured.scene = request.scene;
   measured.seeds = {1};
@@ -266,7 +267,7 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
   const std::vector<History<2>> inputs = {lab::make_history<2>(
       named.scene, named.spec,
       {.boxes = request.boxes, .seed = 1, .frames = request.frames, .moving = request.moving})};
-  Caught result;
+  CorruptionCounts result;
   for (std::uint64_t number = first; number < first + count; ++number) {
     bool is_applied = false;
     const auto faulty = [&](std::string name) {

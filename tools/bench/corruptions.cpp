@@ -21,10 +21,10 @@ namespace {
 constexpr std::size_t at_once = 25;
 
 /// Distributes `count` corruptions over algorithms, dimensions and scenes.
-Caught corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) {
+CorruptionCounts corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) {
   const std::vector<std::string> algorithms = {"grid", "bvh", "sweep_and_prune", "quadtree", "brute_force"};
   const std::vector<std::string> scenes = {"uniform", "clustered"};
-  Caught all;
+  CorruptionCounts all;
   // Some corruptions find no pair or event to corrupt, or no later frame to repeat one in.
   for (std::size_t done = 0, turn = 0; all.applied < count; ++turn) {
     const std::size_t some = std::min(at_once, count - all.applied);
@@ -44,7 +44,7 @@ int run(std::size_t count) {
   lab::AlignedColumns columns("<>>>");
   columns.add({"what was corrupted", "corruptions", "caught", ""});
   bool all_caught = true;
-  const auto add = [&](const std::string& what, const Caught& caught) {
+  const auto add = [&](const std::string& what, const CorruptionCounts& caught) {
     columns.add({what, lab::grouped(caught.applied), lab::grouped(caught.caught),
                  fmt::format("{:.1f} %", 100.0 * static_cast<double>(caught.caught) /
                                              static_cast<double>(std::max<std::size_t>(caught.applied, 1)))});

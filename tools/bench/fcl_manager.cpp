@@ -98,17 +98,18 @@ class CallbackPairs {
 };
 
 /// The smallest distance of centres found by a distance query, and its callbacks.
-struct LeastDistance {
+struct MinDistance {
   std::uint64_t calls = 0;
   double distance = std::numeric_limits<double>::infinity();
 
-  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data, double& least) {
+  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data,
+                   double& min_distance) {
     if (first == second) return false;  // FCL's tree reports the object itself
-    auto& query = *static_cast<LeastDistance*>(data);
+    auto& query = *static_cast<MinDistance*>(data);
     ++query.calls;
     query.distance =
         std::min(query.distance, (first->getAABB().center() - second->getAABB().center()).norm());
-    least = query.distance;
+    min_distance = query.distance;
     return false;
   }
 };
@@ -160,8 +161,8 @@ QueryCost query_cost(const fcl::BroadPhaseCollisionManagerd& manager,
   const double collided = watch.milliseconds();
   std::uint64_t calls = 0;
   for (std::size_t i = 0; i < queries; ++i) {
-    LeastDistance query;
-    manager.distance(asked(i), &query, LeastDistance::take);
+    MinDistance query;
+    manager.distance(asked(i), &query, MinDistance::take);
     found[i].second = query.distance;
     calls += query.calls;
   }

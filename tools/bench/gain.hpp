@@ -109,11 +109,11 @@ inline void add_gain(const std::string& name,
     shared.push_back(accountant.take_shared_ms() / accounted_ms);
   }
   const double gain = lab::median(gains);
-  const double most = lab::median(copies_gain);
+  const double max_gain = lab::median(copies_gain);
   const double part = lab::median(shared);
   const auto with = [part](double threads) { return fmt::format("{:.1f}", 1 / (1 - part + part / threads)); };
   columns.add({name, lab::rounded(lab::median(ones)), fmt::format("{:.2f}", gain),
-               fmt::format("{:.2f}", most), fmt::format("{:.2f}", gain / most),
+               fmt::format("{:.2f}", max_gain), fmt::format("{:.2f}", gain / max_gain),
                fmt::format("{:.0f} %", part * 100), with(8), with(16)});
 }
 

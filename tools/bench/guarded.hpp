@@ -27,8 +27,8 @@ int guarded(const char* program, int failure, Run run) {
 
 /// The argument at `place` as a number, or `default_value` if there are fewer arguments. Throws
 /// std::invalid_argument if it is not a number.
-inline std::size_t number_at(int count, char** arguments, int place, std::size_t standard) {
-  if (count <= place) return standard;
+inline std::size_t number_at(int count, char** arguments, int place, std::size_t default_value) {
+  if (count <= place) return default_value;
   const std::string_view text = arguments[place];
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -38,8 +38,8 @@ inline std::size_t number_at(int count, char** arguments, int place, std::size_t
 }
 
 /// The argument at `place`, or `default_value` if there are fewer arguments.
-inline std::string text_at(int count, char** arguments, int place, const std::string& standard) {
-  return count > place ? arguments[place] : standard;
+inline std::string text_at(int count, char** arguments, int place, const std::string& default_value) {
+  return count > place ? arguments[place] : default_value;
 }
 
 }  // namespace broadside::bench

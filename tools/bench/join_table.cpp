@@ -51,19 +51,19 @@ void measure(std::size_t count, const std::vector<lab::Entry>& entries, std::siz
   for (const lab::Entry& entry : entries) {
     if (!entry.algorithm->has_dimension(2)) continue;
     Finder<2, Real> finder(*entry.algorithm, entry.spec);
-    double least = std::numeric_limits<double>::infinity();
+    double min_ms = std::numeric_limits<double>::infinity();
     for (std::size_t round = 0; round < rounds; ++round) {
       PairCounter pairs;
       const lab::Stopwatch watch;
       finder.find_between(left, right, pairs);
-      least = std::min(least, watch.milliseconds());
+      min_ms = std::min(min_ms, watch.milliseconds());
       const std::uint64_t expected = expected_pairs.try_emplace(count, pairs.count()).first->second;
       if (pairs.count() != expected)
         throw std::runtime_error(fmt::format("{}: {} pairs; expected {}", entry.spec.text(),
                                              lab::grouped(pairs.count()), lab::grouped(expected)));
     }
     fmt::print("{:<6}  {:<30} {:>14} {:>10.1f}\n", sizeof(Real) == sizeof(float) ? "float" : "double",
-               entry.spec.text(), lab::grouped(expected_pairs[count]), least);
+               entry.spec.text(), lab::grouped(expected_pairs[count]), min_ms);
     std::fflush(stdout);
   }
 }

@@ -57,12 +57,12 @@ bool asks_for_motion(const AdviseArguments& arguments) {
 }
 
 lab::SceneRequest request_of(const AdviseArguments& arguments) {
-  constexpr std::size_t standard_frames = 20;
+  constexpr std::size_t default_frames = 20;
   lab::SceneRequest request;
-  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.boxes = arguments.boxes.empty() ? default_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
   if (asks_for_motion(arguments))
-    request.frames = arguments.frames.empty() ? standard_frames : read_count("--frames", arguments.frames);
+    request.frames = arguments.frames.empty() ? default_frames : read_count("--frames", arguments.frames);
   request.moving = arguments.moving.value_or(request.moving);
   request.drift = arguments.motion.drift_or_standard();
   request.teleport = arguments.motion.teleport_or_standard();

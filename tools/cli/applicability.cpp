@@ -60,15 +60,16 @@ bool is_flag(const CLI::App& verb, std::string_view option) {
 
 /// "scene 'a'", "scenes 'a', 'b' and 'c'", "scenes 'a', 'b', 'c' and 9 others".
 std::string names_of(std::span<const lab::NamedScene> scenes) {
-  constexpr std::size_t most = 3;
+  constexpr std::size_t max_names = 3;
   if (scenes.size() == 1)
     return fmt::format("{} '{}'", is_read_from_file(scenes[0].scene) ? "file" : "scene", scenes[0].spec.name);
   std::string names = "scenes ";
-  for (std::size_t i = 0; i < std::min(scenes.size(), most); ++i) {
+  for (std::size_t i = 0; i < std::min(scenes.size(), max_names); ++i) {
     const bool is_last = i + 1 == scenes.size();
     names += fmt::format("{}'{}'", i == 0 ? "" : is_last ? " and " : ", ", scenes[i].spec.name);
   }
-  return scenes.size() > most ? fmt::format("{} and {} others", names, scenes.size() - most) : names;
+  return scenes.size() > max_names ? fmt::format("{} and {} others", names, scenes.size() - max_names)
+                                   : names;
 }
 
 bool is_number(std::string_view text) {

@@ -16,7 +16,7 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_width = 80;
+constexpr std::size_t default_width = 80;
 constexpr std::size_t min_width = 40;
 constexpr std::size_t max_width = 100;  // longer lines are hard to read
 
@@ -27,7 +27,7 @@ std::size_t terminal_width() {
     std::from_chars(text.data(), text.data() + text.size(), width);
   }
   if (width == 0) width = lab::platform::terminal_width();
-  return width == 0 ? standard_width : std::clamp(width, min_width, max_width);
+  return width == 0 ? default_width : std::clamp(width, min_width, max_width);
 }
 
 /// The words of `text` in lines of at most `width` columns. The first line begins in column `column`, the

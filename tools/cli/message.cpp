@@ -123,8 +123,8 @@ void ProgressLine::clear() {
 }
 
 std::string roughly(double seconds) {
-  constexpr double most = 1e9;  // an estimate beyond a human life is useless
-  const auto whole = static_cast<std::int64_t>(std::ceil(std::min(seconds, most)));
+  constexpr double max_seconds = 1e9;  // an estimate beyond a human life is useless
+  const auto whole = static_cast<std::int64_t>(std::ceil(std::min(seconds, max_seconds)));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
   return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);

@@ -15,7 +15,7 @@
 namespace broadside::cli {
 
 /// Number of boxes of a scene if -n is not given.
-inline constexpr std::size_t standard_boxes = 10'000;
+inline constexpr std::size_t default_boxes = 10'000;
 
 /// Adds them under the positional name `name`, and as --scenes.
 CLI::Option* add_scenes(CLI::App& verb, const std::string& name, std::vector<std::string>& scenes,

@@ -30,8 +30,9 @@ std::size_t read_count(const std::string& option, const std::string& text) {
     if (unit > 0) ++rest;
   }
   // Beyond 2^53, doubles skip whole numbers; no machine holds that many boxes.
-  constexpr double most = 9007199254740992.0;
-  if (error != std::errc() || rest != end || !(number >= 1 && number <= most) || number != std::floor(number))
+  constexpr double max_count = 9007199254740992.0;
+  if (error != std::errc() || rest != end || !(number >= 1 && number <= max_count) ||
+      number != std::floor(number))
     throw Unusable(option + " is '" + text + "'; expected a whole number from 1, such as 1000, 100k or 1e6");
   return static_cast<std::size_t>(number);
 }
@@ -51,9 +52,10 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
 }
 
 std::size_t read_threads(const std::string& text) {
-  constexpr std::size_t most = 1024;
+  constexpr std::size_t max_threads = 1024;
   const std::size_t threads = read_index("--threads", text);
-  if (threads > most) throw Unusable("--threads is " + text + "; expected at most " + std::to_string(most));
+  if (threads > max_threads)
+    throw Unusable("--threads is " + text + "; expected at most " + std::to_string(max_threads));
   if (threads != 1 && standard_executor() == nullptr)
     throw Unusable("--threads is " + text + "; expected 1: this program was built without threads");
   return threads;

@@ -44,11 +44,11 @@ async function page() {
 
 /** A text as C++ string literals, none longer than compilers must accept. */
 function literals(text) {
-  const most = 30000;
+  const maxLength = 30000;
   const bytes = Buffer.from(text, "utf8");
   const lines = [];
   for (let begin = 0; begin < bytes.length;) {
-    let end = Math.min(begin + most, bytes.length);
+    let end = Math.min(begin + maxLength, bytes.length);
     while (end < bytes.length && (bytes[end] & 0xc0) === 0x80) --end;
     lines.push(`    R"part(${bytes.subarray(begin, end).toString("utf8")})part"sv,`);
     begin = end;

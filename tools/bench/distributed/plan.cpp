@@ -166,12 +166,12 @@ class MedianCuts {
 
   static std::size_t longest_axis(std::span<const Box<D>> boxes) {
     std::size_t longest = 0;
-    float most = -1;
+    float max_spread = -1;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      const auto [least, greatest] =
+      const auto [lowest, highest] =
           std::ranges::minmax(boxes, {}, [axis](const Box<D>& box) { return box.min[axis]; });
-      if (greatest.min[axis] - least.min[axis] > most)
-        longest = axis, most = greatest.min[axis] - least.min[axis];
+      if (highest.min[axis] - lowest.min[axis] > max_spread)
+        longest = axis, max_spread = highest.min[axis] - lowest.min[axis];
     }
     return longest;
   }

@@ -31,11 +31,11 @@ struct MotionBenchmarkOptions {
   lab::SceneRequest request(std::size_t its_boxes, const Turns& turns, double its_moving) const {
     return {.boxes = its_boxes, .seed = seed, .frames = turns.frames, .moving = its_moving, .drift = drift};
   }
-  Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;
-  std::string algorithms_or(const std::string& standard) const {
-    return algorithms.empty() ? standard : algorithms;
+  Turns turns(std::size_t default_frames, std::size_t default_rounds) const;
+  std::string algorithms_or(const std::string& default_value) const {
+    return algorithms.empty() ? default_value : algorithms;
   }
-  std::size_t boxes_or(std::size_t standard) const { return boxes > 0 ? boxes : standard; }
+  std::size_t boxes_or(std::size_t default_value) const { return boxes > 0 ? boxes : default_value; }
 };
 
 /// The motion of a scene. Its boxes are generated (or recorded) once for all rounds.

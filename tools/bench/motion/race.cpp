@@ -58,7 +58,7 @@ lab::Step<D> first_step(std::span<const Box<D>> boxes) {
 }
 
 /// Hash of a frame's events, and the first runner that reported them.
-struct Told {
+struct ReportedEvents {
   std::uint64_t hash;
   std::string by;
 };
@@ -126,8 +126,8 @@ class Race {
       make(participant);
       const double milliseconds = update(participant, first);
       check(participant, 0, round);
-      double& least = participant.runner->build_ms;
-      least = least > 0 ? std::min(least, milliseconds) : milliseconds;
+      double& min_ms = participant.runner->build_ms;
+      min_ms = min_ms > 0 ? std::min(min_ms, milliseconds) : milliseconds;
     }
     for (std::size_t frame = 0; frame < turns_.frames; frame += turns_.in_a_row) {
       std::vector<lab::Step<D>> steps;
@@ -179,16 +179,16 @@ class Race {
     const lab::FrameEvents& events = participant.follower->events();
     lab::EventHasher hasher;
     hasher.add(events);
-    std::vector<Told>& told = told_[participant.competitor.definition];
-    if (frame == told.size()) {
-      told.push_back({hasher.hash(), participant.runner->algorithm});
-      if (frame > 0 && told_.size() == 1) outcome_.events += events.begun.size() + events.ended.size();
+    std::vector<ReportedEvents>& reported = reported_[participant.competitor.definition];
+    if (frame == reported.size()) {
+      reported.push_back({hasher.hash(), participant.runner->algorithm});
+      if (frame > 0 && reported_.size() == 1) outcome_.events += events.begun.size() + events.ended.size();
     }
-    if (told[frame].hash != hasher.hash()) {
+    if (reported[frame].hash != hasher.hash()) {
       throw std::runtime_error(fmt::format(
           "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
           participant.runner->algorithm, lab::counted(events.begun.size(), "pair as begun", "pairs as begun"),
-          events.ended.size(), told[frame].by));
+          events.ended.size(), reported[frame].by));
     }
     if (round == 0) participant.follower->verify();
   }
@@ -197,7 +197,8 @@ class Race {
   RaceOutcome outcome_;
   std::vector<Racer<D>> participants_;
   std::vector<char> flushed_{};
-  std::map<std::string, std::vector<Told>> told_;  // by definition and frame, including the first frame
+  // By definition and frame, including the first frame.
+  std::map<std::string, std::vector<ReportedEvents>> reported_;
 };
 
 }  // namespace

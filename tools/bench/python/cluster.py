@@ -3,9 +3,9 @@
     build/python/tester/bin/python tools/bench/python/cluster.py [--boxes 100000,1000000] [--rounds 3] [--workers 2]
         [--chunks 8] [--slow 8] [--limit 60]
 
-The Dask libraries run on one LocalCluster, a process and a thread for each worker, which holds the boxes already; DuckDB
-has as many threads. All hand their pairs to this process. One whose first call takes longer than --slow seconds is called
-once; one that takes longer than --limit is stopped. What needs the boxes in spatial order has that counted apart.
+The Dask libraries run on one LocalCluster, which already holds the boxes, with one process and thread per worker; DuckDB
+uses as many threads. All send their pairs to this process. A library is called only once if its first call takes longer
+than --slow seconds; a call that takes longer than --limit is stopped. Sorting boxes spatially is timed separately.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ COLUMNS = ("xmin", "ymin", "xmax", "ymax")
 
 
 class Stopped(Exception):
-    """A call that ran into the limit."""
+    """A call that exceeded the time limit."""
 
 
 def within(client: distributed.Client, collection: Any, limit: float) -> Any:
@@ -68,7 +68,7 @@ def joined(client: distributed.Client, left: Any, right: Any, limit: float) -> n
 def searches_of(
     client: distributed.Client, left: np.ndarray, right: np.ndarray, options: argparse.Namespace
 ) -> tuple[dict[str, Callable[[], np.ndarray]], float]:
-    """The searches by name, and the seconds that the boxes' spatial order takes."""
+    """The searches by name, and the seconds for sorting the boxes spatially."""
     rows = (len(left) + options.chunks - 1) // options.chunks
     arrays = [dask.array.from_array(boxes, chunks=(rows, 4)).persist() for boxes in (left, right)]
     frames = [geo_frame(boxes, row, options.chunks).persist() for boxes, row in ((left, "i"), (right, "j"))]

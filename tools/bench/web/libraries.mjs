@@ -176,7 +176,7 @@ function fillRbush3d(boxes) {
 const rbush3d = {
   name: "rbush-3d",
   dimension: 3,
-  most: 200_000,  // a million boxes would take minutes
+  maxCount: 200_000,  // a million boxes would take minutes
   fill: fillRbush3d,
   pairs: (boxes, filled = fillRbush3d(boxes)) => treePairs(filled),
 };
@@ -215,7 +215,7 @@ function fillSystem(boxes) {
 const detectCollisions = {
   name: "detect-collisions",
   dimension: 2,
-  most: 20_000,
+  maxCount: 20_000,
   // It computes penetration depths in float 64 from sizes and does not count touching as a contact.
   isOther: true,
   fill: fillSystem,
@@ -252,7 +252,7 @@ export function ours(broadside, name = "broadside") {
 const of3 = { dimension: 3 };
 
 export const others = [
-  { name: "naive", dimension: 2, most: 20_000, pairs: naivePairs2, motion: byAllPairs(naivePairs2) },
-  { name: "naive", dimension: 3, most: 20_000, pairs: naivePairs3 },
+  { name: "naive", dimension: 2, maxCount: 20_000, pairs: naivePairs2, motion: byAllPairs(naivePairs2) },
+  { name: "naive", dimension: 3, maxCount: 20_000, pairs: naivePairs3 },
   flatbush, rbush, rbush3d, ...boxIntersects, detectCollisions,
 ];

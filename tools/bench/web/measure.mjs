@@ -86,7 +86,7 @@ export function compareStill({ clock, libraries, dimension, count, rounds = 5, m
   const rows = [];
   let expected;
   for (const library of libraries) {
-    if (library.dimension !== dimension || library.pairs === undefined || count > (library.most ?? Infinity)) continue;
+    if (library.dimension !== dimension || library.pairs === undefined || count > (library.maxCount ?? Infinity)) continue;
     const found = digest(library.pairs(boxes));
     expected ??= found;
     rows.push({ name: library.name, library, agrees: found === expected });
@@ -114,7 +114,7 @@ export function compareMoving({ clock, libraries, count, frames = 12, dimension 
   const rows = [];
   let expected;
   for (const library of libraries) {
-    if (library.dimension !== dimension || library.motion === undefined || count > (library.most ?? Infinity)) continue;
+    if (library.dimension !== dimension || library.motion === undefined || count > (library.maxCount ?? Infinity)) continue;
     // One warm-up run, so that the JIT compilers have optimised the code.
     const warming = library.motion(first.slice());
     for (const { list, boxes: now } of steps) warming(now, list);
@@ -166,8 +166,8 @@ export function table(title, rows, key = "whole") {
 }
 
 /** Runs all comparisons. `minCount` and `maxCount` limit the number of boxes. */
-export function compareAll({ clock, libraries, say, least = 1, most = Infinity }) {
-  const some = (all) => all.filter((count) => count >= least && count <= most);
+export function compareAll({ clock, libraries, say, minCount = 1, maxCount = Infinity }) {
+  const some = (all) => all.filter((count) => count >= minCount && count <= maxCount);
   const still = [1, 2, 3, 4, 6, 8, 10, 12, 13, 15, 20, 30, 50, 100, 1000, 10_000, 100_000, 1_000_000];
   for (const dimension of [2, 3]) {
     const rows = some(still).flatMap((count) => compareStill({

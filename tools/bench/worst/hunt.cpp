@@ -14,7 +14,7 @@ namespace {
 constexpr double uniform_seconds = 120;
 
 /// Keeps the shorter times of two runs with the same results.
-void take_least(MeasuredRun& run, const MeasuredRun& again) {
+void take_min(MeasuredRun& run, const MeasuredRun& again) {
   if (!again.finished()) return;
   if (!run.finished() || again.milliseconds < run.milliseconds) run = again;
 }
@@ -65,7 +65,7 @@ const Hunter::Runs& Hunter::uniform(const lab::HardInput& input, bool again) {
                                              hunt_.algorithms[i].spec.text(), more[i].fault.data()));
     }
     if (runs.empty()) runs = more;
-    for (std::size_t i = 0; i < more.size(); ++i) take_least(runs[i], more[i]);
+    for (std::size_t i = 0; i < more.size(); ++i) take_min(runs[i], more[i]);
   }
   return runs;
 }
@@ -143,7 +143,7 @@ InputResult Hunter::measure(const lab::HardInput& input) {
   };
   if (std::ranges::any_of(result.findings, above)) {
     const Runs again = run_all(run, false);
-    for (std::size_t i = 0; i < std::min(runs.size(), again.size()); ++i) take_least(runs[i], again[i]);
+    for (std::size_t i = 0; i < std::min(runs.size(), again.size()); ++i) take_min(runs[i], again[i]);
     result = judged(input, runs, uniform(input, true));
   }
   check(result, run);

@@ -94,7 +94,7 @@ struct TooManyPairs : std::exception {};
 /// Hashes pairs, and stops a search that finds too many.
 class LimitedHasher final : public PairSink {
  public:
-  explicit LimitedHasher(double most) : most_(most) {}
+  explicit LimitedHasher(double max_count) : max_count_(max_count) {}
 
   std::uint64_t hash() const noexcept { return hash_; }
   std::uint64_t count() const noexcept { return count_; }
@@ -103,10 +103,10 @@ class LimitedHasher final : public PairSink {
   void consume(std::span<const Pair> pairs) override {
     for (const Pair pair : pairs) hash_ += broadside::hash(pair);
     count_ += pairs.size();
-    if (static_cast<double>(count_) > most_) throw TooManyPairs();
+    if (static_cast<double>(count_) > max_count_) throw TooManyPairs();
   }
 
-  double most_;
+  double max_count_;
   std::uint64_t hash_ = 0;
   std::uint64_t count_ = 0;
 };
@@ -184,10 +184,10 @@ class Measured {
     std::int64_t held = 0;
     const auto update = [&](std::span<const BoxId> changed, bool is_first) {
       // Allows for a hundred movers that each begin a pair with a giant box.
-      const double most =
+      const double max_events =
           is_first ? max_pairs_ : effort_.max_pairs * (100 + static_cast<double>(changed.size()));
-      LimitedHasher begun(most);
-      LimitedHasher ended(most);
+      LimitedHasher begun(max_events);
+      LimitedHasher ended(max_events);
       const lab::Stopwatch watch;
       statistics = tracker.update({boxes, changed}, begun, ended);
       const double milliseconds = watch.milliseconds();

@@ -12,7 +12,7 @@ namespace broadside::bench {
 
 /// A table for each algorithm with its `max_lines` worst inputs over uniform boxes and, for `auto`, also over
 /// the best.
-std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t most);
+std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t max_lines);
 
 /// A line for each algorithm above its bounds on the input; empty if there is none.
 std::string above_text(const InputResult& result, const Bounds& bounds);

@@ -68,7 +68,7 @@ int main(int count, char** values) {
   try {
     exit = cli::run(lab::platform::arguments(count, values));
     cli::flush_output();
-  } catch (const cli::EndsOnAll& error) {
+  } catch (const cli::SharedError& error) {
     if (cli::rank() == 0) cli::say(error.what());
   } catch (const std::exception& error) {
     // The other ranks do not know of the error and may be waiting for this rank.

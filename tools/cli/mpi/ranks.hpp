@@ -16,11 +16,11 @@ int rank();
 int ranks();
 
 /// An error of some rank, thrown on all ranks, with the text of the first rank that has one.
-class EndsOnAll : public std::runtime_error {
+class SharedError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws RankError on all ranks if some rank has an error.
+/// Throws SharedError on all ranks if some rank has an error.
 void settle(const std::exception_ptr& error);
 
 /// Does a step of work on all ranks; throws on all of them if it fails on one.

@@ -24,12 +24,12 @@ export interface BarsSpec {
 }
 
 function describe(spec: BarsSpec, text: (value: number, at: number) => string): string {
-  const most = 40;
-  const parts = spec.labels.slice(0, most).map((label, i) => {
+  const maxBars = 40;
+  const parts = spec.labels.slice(0, maxBars).map((label, i) => {
     const value = spec.values[i];
     return ` ${label}: ${value === null || value === undefined ? "none" : text(value, i)}.`;
   });
-  const more = spec.labels.length > most ? ` And ${spec.labels.length - most} more.` : "";
+  const more = spec.labels.length > maxBars ? ` And ${spec.labels.length - maxBars} more.` : "";
   return `${spec.title}. Bar chart of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
 }
 
@@ -48,8 +48,8 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
     scale: false,
     ...(axis["min"] === undefined ? {} : { startValue: spec.from }),
   };
-  const most = place.width < 520 ? 22 : 42;
-  const labels = spec.labels.map((label) => (lying ? shortened(label, most) : label));
+  const maxCharacters = place.width < 520 ? 22 : 42;
+  const labels = spec.labels.map((label) => (lying ? shortened(label, maxCharacters) : label));
   const labelAxis = categoryAxis(labels, place);
   const height = lying ? 56 + spec.labels.length * 24 : Math.round(Math.min(360, Math.max(260, place.width * 0.5)));
   return {

@@ -98,12 +98,12 @@ export function scaledScenes(cases: readonly Case[]): { scene: string; dimension
 }
 
 /**
- * Time over the number of boxes for one of scaledScenes(), with one line for each of at most `most`
+ * Time over the number of boxes for one of scaledScenes(), with one line for each of at most `maxLines`
  * algorithms.
  */
 export function drawScaling(
   cases: readonly Case[], of: ReturnType<typeof scaledScenes>[number], place: Place,
-  kinds: readonly Measurement["kind"][] = ["own"], most = 8,
+  kinds: readonly Measurement["kind"][] = ["own"], maxLines = 8,
 ): Drawn {
   const chosen = cases.filter((other) => other.scene === of.scene && other.dimension === of.dimension &&
     other.mode === of.mode && (of.mode === "find" || percent(other.moving) === percent(of.moving)));
@@ -122,7 +122,7 @@ export function drawScaling(
     const end = points.reduce((a, b) => (b[0] > a[0] ? b : a));
     return end[0] === last ? end[1] : Infinity;
   };
-  const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, most);
+  const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, maxLines);
   const moves = of.mode === "track" ? `, ${percent(of.moving)} moving` : "";
   return drawLines({
     title: `Time over the number of boxes: ${of.scene}, ${of.dimension}D${moves}`,
@@ -137,8 +137,8 @@ export function drawScaling(
 /**
  * Frame times of a moving case, one history after the other, with each algorithm's 99th percentile.
  */
-export function drawFrames(of: Case, place: Place, most = 6): Drawn {
-  const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, most);
+export function drawFrames(of: Case, place: Place, maxLines = 6): Drawn {
+  const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, maxLines);
   // Slow algorithms were measured on fewer histories.
   const fewest = Math.min(...shown.map((measurement) => measurement.samples_ms?.length ?? 0));
   const frames = shown[0]?.frames ?? 0;

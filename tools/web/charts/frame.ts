@@ -35,11 +35,11 @@ export function textWidth(text: string): number {
   return text.length * 7.2;
 }
 
-/** The text, shortened in the middle if it is longer than `most` characters. */
-export function shortened(text: string, most: number): string {
-  if (text.length <= most) return text;
-  const half = Math.floor((most - 1) / 2);
-  return `${text.slice(0, most - 1 - half)}…${text.slice(text.length - half)}`;
+/** The text, shortened in the middle if it is longer than `maxLength` characters. */
+export function shortened(text: string, maxLength: number): string {
+  if (text.length <= maxLength) return text;
+  const half = Math.floor((maxLength - 1) / 2);
+  return `${text.slice(0, maxLength - 1 - half)}…${text.slice(text.length - half)}`;
 }
 
 const legendLine = 22;
@@ -69,19 +69,19 @@ export function legendHeight(names: readonly string[], width: number): number {
  */
 export function logTicks(values: readonly number[]): { min: number; max: number; ticks: number[] } {
   const positive = values.filter((value) => value > 0);
-  const least = Math.min(...positive);
-  const most = Math.max(...positive);
-  const decades = Math.log10(most / least);
+  const lowest = Math.min(...positive);
+  const highest = Math.max(...positive);
+  const decades = Math.log10(highest / lowest);
   const steps = decades > 3 ? [1] : decades > 1.5 ? [1, 3] : [1, 2, 5];
   const ticks: number[] = [];
-  for (let power = Math.floor(Math.log10(least)) - 1; power <= Math.ceil(Math.log10(most)); ++power) {
+  for (let power = Math.floor(Math.log10(lowest)) - 1; power <= Math.ceil(Math.log10(highest)); ++power) {
     for (const step of steps) ticks.push(Number((step * 10 ** power).toPrecision(6)));
   }
-  const first = ticks.findLastIndex((tick) => tick <= least * 1.0001);
-  const last = ticks.findIndex((tick) => tick >= most * 0.9999);
+  const first = ticks.findLastIndex((tick) => tick <= lowest * 1.0001);
+  const last = ticks.findIndex((tick) => tick >= highest * 0.9999);
   const shown = ticks.slice(first, last + 1);
-  const min = shown[0] ?? least;
-  const max = shown[shown.length - 1] ?? most;
+  const min = shown[0] ?? lowest;
+  const max = shown[shown.length - 1] ?? highest;
   // At most about eight labels: for many decades, every second or third.
   const stride = Math.ceil(shown.length / 8);
   return { min, max, ticks: shown.filter((_, i) => i % stride === 0) };

@@ -52,7 +52,7 @@ export function drawMap(spec: MapSpec, place: Place): Drawn {
     const [x = 0, y = 0] = api.coord([api.value(0), api.value(1)]);
     const size = api.size?.([1, 1]);
     const [width = 0, height = 0] = Array.isArray(size) ? size : [];
-    const most = Math.floor((width - 8) / 6.2);
+    const maxCharacters = Math.floor((width - 8) / 6.2);
     return {
       type: "group",
       children: [
@@ -64,7 +64,7 @@ export function drawMap(spec: MapSpec, place: Place): Drawn {
         {
           type: "text",
           style: {
-            text: most < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), most), x, y, fill: inkOn(colour),
+            text: maxCharacters < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), maxCharacters), x, y, fill: inkOn(colour),
             font: `11px ${font}`,
             align: "center", verticalAlign: "middle",
           },

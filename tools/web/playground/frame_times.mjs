@@ -90,7 +90,7 @@ async function measure(browser, { hash, frames }) {
     window.playground.scriptTimes.length = 0;
     return [window.playground.frames, performance.now()];
   });
-  await page.waitForFunction((least) => window.playground.frames >= least, begin[0] + frames,
+  await page.waitForFunction((min) => window.playground.frames >= min, begin[0] + frames,
     { polling: 50, timeout: 120_000 });
   const seen = await page.evaluate(() => ({
     script: [...window.playground.scriptTimes], search: window.playground.shown.panels[0].milliseconds,
@@ -100,7 +100,7 @@ async function measure(browser, { hash, frames }) {
   await page.close();
   const script = seen.script.sort((a, b) => a - b);
   return {
-    middle: script[script.length >> 1], most: script[Math.floor(0.9 * script.length)], search: seen.search, drawing,
+    middle: script[script.length >> 1], p90: script[Math.floor(0.9 * script.length)], search: seen.search, drawing,
     perSecond: (seen.frames - begin[0]) / (seen.now - begin[1]) * 1000,
   };
 }
@@ -112,11 +112,11 @@ console.log(`First frame with boxes and pairs, from the page's start: ${(await f
 console.log("| scene | script a frame, median | nine in ten up to | search | drawing, processor time | frames a second |");
 console.log("|---|---:|---:|---:|---:|---:|");
 for (const scene of scenes) {
-  const { middle: median, most, search, drawing, perSecond } = await measure(browser, scene);
-  console.log(`| ${scene.name} | ${median.toFixed(1)} ms | ${most.toFixed(1)} ms | ${search.toFixed(2)} ms | ` +
+  const { middle: median, p90, search, drawing, perSecond } = await measure(browser, scene);
+  console.log(`| ${scene.name} | ${median.toFixed(1)} ms | ${p90.toFixed(1)} ms | ${search.toFixed(2)} ms | ` +
     `${drawing.toFixed(0)} ms | ${perSecond.toFixed(1)} |`);
 }
-const [delay, mostDelay] = await dragDelays(browser);
+const [delay, delay90] = await dragDelays(browser);
 console.log(`\nA drag among 100,000 moving boxes is answered after ${delay.toFixed(0)} ms (median; nine in ten up to ` +
-  `${mostDelay.toFixed(0)} ms).`);
+  `${delay90.toFixed(0)} ms).`);
 await browser.close();

@@ -38,7 +38,7 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   const worst = leads.reduce<(typeof leads)[number] | undefined>(
-    (least, lead) => (least === undefined || lead.ratio.median < least.ratio.median ? lead : least), undefined);
+    (min, lead) => (min === undefined || lead.ratio.median < min.ratio.median ? lead : min), undefined);
   const failed = comparison.measurements.filter(({ verified }) => verified === false);
   const skipped = comparison.measurements.filter(({ verified }) => verified === null).length;
   const measured = comparison.measurements.length - skipped;

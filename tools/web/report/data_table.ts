@@ -45,14 +45,14 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   let searched = "";
   let sorted = -1;
   let direction = 1;
-  let most = pageRows;
+  let maxRows = pageRows;
 
   const numeric = spec.columns.map((column) => spec.rows.every((row) => typeof column.value(row) !== "string"));
   const classOf = (i: number): string => (numeric[i] === true ? "number" : "");
   const body = el("tbody");
   const count = el("p", { class: "note" });
   const more = el("button", { type: "button", class: "more", onclick: () => {
-    most = Infinity;
+    maxRows = Infinity;
     show();
   } });
   const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: classOf(i) },
@@ -83,7 +83,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
 
   function show(): void {
     const left = rowsLeft();
-    const shown = left.slice(0, most);
+    const shown = left.slice(0, maxRows);
     body.replaceChildren(...shown.flatMap((row) => {
       const note = spec.note?.(row) ?? null;
       const cells = spec.columns.map((column, i) => el("td", { class: classOf(i) }, textOf(column, row)));
@@ -99,7 +99,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   }
 
   function filtered(): void {
-    most = pageRows;
+    maxRows = pageRows;
     show();
     say(count.textContent ?? "");
   }

@@ -27,7 +27,7 @@ export interface Drawing {
   views: View[];
 }
 
-const mostZoom = 40;
+const maxZoom = 40;
 
 /** A picture that wheel, buttons, pointer and keys zoom and move. */
 class Picture {
@@ -80,7 +80,7 @@ class Picture {
   }
 
   scale(by: number): void {
-    this.zoom = Math.min(mostZoom, Math.max(1, this.zoom * by));
+    this.zoom = Math.min(maxZoom, Math.max(1, this.zoom * by));
     this.place();
     say(`zoom ${Math.round(this.zoom * 100)} %`);
   }

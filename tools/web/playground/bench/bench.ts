@@ -10,7 +10,7 @@ import { Panel, type PanelFrame } from "./panel.ts";
 import { Mark, type Reply, type Request, type Setup, type Shown } from "./protocol.ts";
 
 /** Maximum number of overlaps to draw. */
-const mostOverlaps = 40_000;
+const maxOverlaps = 40_000;
 
 export class Bench {
   private setup: Setup | undefined;
@@ -141,7 +141,7 @@ export class Bench {
 /** Intersections of the boxes of each pair. */
 function intersections(boxes: Float32Array, pairs: Uint32Array, dimension: number): Float32Array<ArrayBuffer> {
   const stride = 2 * dimension;
-  const count = Math.min(mostOverlaps, pairs.length / 2);
+  const count = Math.min(maxOverlaps, pairs.length / 2);
   const parts = new Float32Array(count * stride);
   for (let pair = 0; pair < count; ++pair) {
     const [a, b] = [stride * pairs[2 * pair]!, stride * pairs[2 * pair + 1]!];

@@ -2,7 +2,7 @@
 // box's tests.
 import type { Engine, Outline } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
-import { mostObserved, refusal } from "./budget.ts";
+import { maxObserved, refusal } from "./budget.ts";
 import { Follower } from "./followers.ts";
 import { Mark, type PanelChoice, type PanelResult, type Selection, type Setup } from "./protocol.ts";
 import { reasons } from "./reasons.ts";
@@ -93,7 +93,7 @@ export class Panel {
     const { spec } = this.choice;
     const count = boxes.length / (2 * dimension);
     const expected = /brute_force/.test(spec) ? count * (count - 1) / 2 : result.statistics.tests;
-    if (expected > mostObserved) {
+    if (expected > maxObserved) {
       result.unobserved = "There are too many tests to record. Take fewer boxes.";
       return;
     }

@@ -12,7 +12,7 @@ export interface Lens {
   /** Half the panel's size, in device pixels. */
   pixels: readonly [number, number];
   /** A box whose longer side has up to this many pixels is drawn as a point. */
-  mostPoint: number;
+  maxPoint: number;
 }
 
 /** Boxes just beyond the panel's edge may reach into it, because tiny boxes are drawn enlarged. */
@@ -72,28 +72,28 @@ export class Batch {
   }
 
   /** Adds the boxes drawn as points, and returns the number of larger boxes. */
-  private addFlat(boxes: Float32Array, marks: Uint8Array | undefined, { matrix, pixels, mostPoint }: Lens): number {
+  private addFlat(boxes: Float32Array, marks: Uint8Array | undefined, { matrix, pixels, maxPoint }: Lens): number {
     const { large } = this;
     const [scaleX, scaleY, shiftX, shiftY] = [matrix[0]!, matrix[5]!, matrix[12]!, matrix[13]!];
     const [left, right] = [(-edge - shiftX) / scaleX, (edge - shiftX) / scaleX];
     const [top, bottom] = [(edge - shiftY) / scaleY, (-edge - shiftY) / scaleY];  // y grows downwards in the world
-    const most = mostPoint / (scaleX * pixels[0]);
+    const maxExtent = maxPoint / (scaleX * pixels[0]);
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 4) {
       const x0 = boxes[at]!, y0 = boxes[at + 1]!, x1 = boxes[at + 2]!, y1 = boxes[at + 3]!;
       // Absent boxes have x0 > x1.
       if (!(x0 <= x1 && x0 <= right && x1 >= left && y0 <= bottom && y1 >= top)) continue;
-      if (x1 - x0 <= most && y1 - y0 <= most) this.put(points++, boxes, marks, box);
+      if (x1 - x0 <= maxExtent && y1 - y0 <= maxExtent) this.put(points++, boxes, marks, box);
       else large[found++] = box;
     }
     this.points = points;
     return found;
   }
 
-  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, mostPoint }: Lens): number {
+  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, maxPoint }: Lens): number {
     const { large } = this;
     const norm = (row: number): number => Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!);
-    const most = Math.sqrt(0.75) * mostPoint / (norm(1) * pixels[1]);  // radius of a cube, by its distance
+    const maxRadius = Math.sqrt(0.75) * maxPoint / (norm(1) * pixels[1]);  // radius of a cube, by its distance
     const [slackX, slackY] = [norm(0) + norm(3), norm(1) + norm(3)];
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 6) {
@@ -106,7 +106,7 @@ export class Batch {
       // Infinite boxes have centres of NaN, for which all of these comparisons are false.
       if (w < -radius || Math.abs(m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) > w + slackX * radius ||
         Math.abs(m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) > w + slackY * radius) continue;
-      if (radius <= most * w) this.put(points++, boxes, marks, box);
+      if (radius <= maxRadius * w) this.put(points++, boxes, marks, box);
       else large[found++] = box;
     }
     this.points = points;

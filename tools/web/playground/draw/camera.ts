@@ -19,7 +19,7 @@ export interface View {
   tilt: number;
 }
 
-export const standardView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
+export const defaultView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
 
 /**
  * A flat camera. Pixels of a panel are `x * scale + left` and `y * scale + top`; y grows downwards.

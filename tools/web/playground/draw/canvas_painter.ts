@@ -3,7 +3,7 @@ import { m4 } from "twgl.js";
 
 import { flatCamera, solidMatrix } from "./camera.ts";
 import { fills, levelColour } from "./colours.ts";
-import { mostTestLines, overlapStrength, testLines, type Painter, type Painting, type PanelPainting } from "./painting.ts";
+import { maxTestLines, overlapStrength, testLines, type Painter, type Painting, type PanelPainting } from "./painting.ts";
 
 /** Projects a box to panel pixels: a rectangle, in 3D the bounding rectangle of its corners. */
 export type Projection = (boxes: Float32Array, at: number) => [x: number, y: number, width: number, height: number];
@@ -97,7 +97,7 @@ export class CanvasPainter implements Painter {
     context.globalAlpha = overlapStrength(painting);
     for (let at = 0; at < painting.overlaps.length; at += stride) context.fillRect(...project(painting.overlaps, at));
     if (panel.tests === undefined) return;
-    const others = panel.tests.others.subarray(0, mostTestLines);
+    const others = panel.tests.others.subarray(0, maxTestLines);
     const lines = testLines(boxes, dimension, panel.tests.box, others);
     context.strokeStyle = palette.marks[2]!;
     context.globalAlpha = 0.8;

@@ -64,13 +64,13 @@ export function overlapStrength({ overlaps, bounds, dimension }: Painting): numb
 }
 
 /** Maximum number of lines from a selected box to the boxes that it was tested against. */
-export const mostTestLines = 3000;
+export const maxTestLines = 3000;
 
 /** Lines between centres: two points each. */
 export function testLines(boxes: Float32Array, dimension: Dimension, box: number, others: Uint32Array):
     Float32Array<ArrayBuffer> {
   const stride = 2 * dimension;
-  const count = Math.min(mostTestLines, others.length);
+  const count = Math.min(maxTestLines, others.length);
   const lines = new Float32Array(6 * count);
   const centre = (of: number, axis: number): number =>
     axis < dimension ? (boxes[stride * of + axis]! + boxes[stride * of + dimension + axis]!) / 2 : 0;

@@ -34,7 +34,7 @@ export const flatVertex = `#version 300 es
 ${fetchBox}
 uniform mat4 matrix;
 uniform vec4 viewport;
-uniform float least;
+uniform float minExtent;
 uniform bool points;
 flat out vec4 place;
 flat out vec4 ink;
@@ -59,7 +59,7 @@ void main() {
     middle = centre.xy / centre.w;
     extent = (0.5 * (mat3(abs(turn[0]), abs(turn[1]), abs(turn[2])) * (high - low)) / centre.w).xy;
   }
-  extent = max(extent, least / pixels);
+  extent = max(extent, minExtent / pixels);
   // A box over all of the picture leaves the others their colours.
   if (extent.x * extent.y > 0.5) fill *= 0.3;
   place = vec4(viewport.xy + (middle + 1.0) * pixels, extent * pixels);

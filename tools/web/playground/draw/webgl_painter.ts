@@ -35,10 +35,10 @@ const shapes = {
  * Lines and edges of cubes are antialiased up to this number of boxes. In software that takes four
  * times as long.
  */
-const mostSmooth = 1000;
+const maxSmooth = 1000;
 
 /** Above this number of boxes, fewer details are drawn. */
-const leastCrowd = 20_000;
+const minCrowd = 20_000;
 
 /** Boxes in graphics memory. */
 class Layer {
@@ -57,7 +57,7 @@ class Layer {
    * which costs nothing.
    */
   set(dimension: 2 | 3, boxes: Float32Array, marks: Uint8Array | undefined, lens: Lens): number {
-    const now = [boxes, marks, ...Array.from(lens.matrix), ...lens.pixels, lens.mostPoint];
+    const now = [boxes, marks, ...Array.from(lens.matrix), ...lens.pixels, lens.maxPoint];
     if (now.every((one, at) => one === this.last[at])) return 0;
     this.last = now;
     const batch = this.batches[dimension];
@@ -71,7 +71,7 @@ interface Style {
   inks: number[];
   fills: number[];
   border: number;
-  least: number;
+  minExtent: number;
   /** The parts of a 3D box to draw. */
   parts: readonly ("faces" | "edges")[];
 }
@@ -120,7 +120,7 @@ export class WebglPainter implements Painter {
     const { gl } = this;
     const { dimension, boxes, palette, panels } = painting;
     this.drawn = { vertices: 0, bytes: 0 };
-    const smooth = boxes.length / (2 * dimension) <= mostSmooth &&
+    const smooth = boxes.length / (2 * dimension) <= maxSmooth &&
       (dimension === 3 || panels.some(({ tests }) => tests !== undefined));
     if (smooth) this.smooth.begin(this.canvas.width, this.canvas.height);
     gl.disable(gl.SCISSOR_TEST);
@@ -147,14 +147,14 @@ export class WebglPainter implements Painter {
     const matrix = dimension === 2
       ? flatMatrix(flatCamera(bounds, panel.place, view), panel.place) : solidMatrix(bounds, panel.place, view);
     const count = boxes.length / (2 * dimension);
-    const isCrowd = count > leastCrowd;
-    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], mostPoint: (isCrowd ? 16 : 8) * ratio };
+    const isCrowd = count > minCrowd;
+    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], maxPoint: (isCrowd ? 16 : 8) * ratio };
     const draw = (layer: Layer, style: Style): void => this.draw(layer, dimension, matrix, viewport, style);
     if (panel.outline !== undefined && this.setStructure(panel.outline, dimension, lens)) {
       const flat = dimension === 2;
       draw(this.structure, {
         inks: inksOf(palette.levels.length, (level) => [...rgb(levelColour(palette, level)), flat ? 0.75 : 0.4]),
-        fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), least: 0, parts: ["edges"],
+        fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), minExtent: 0, parts: ["edges"],
       });
     }
     // In a crowd, borders would cover the insides; the selected box and the boxes tested against it
@@ -163,7 +163,7 @@ export class WebglPainter implements Painter {
       isCrowd && (mark === Mark.none || mark === Mark.lit || mark === Mark.faded) ? 0.5 : 1;
     const style: Style = {
       inks: palette.marks.flatMap((ink, mark) => [...rgb(ink), strengthOf(mark)]), fills: [...fills],
-      border: Math.max(1, ratio), least: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
+      border: Math.max(1, ratio), minExtent: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
     };
     const marks = panel.marks?.length === count ? panel.marks : painting.marks;
     this.drawn.bytes += this.scene.set(dimension, boxes, marks, lens);
@@ -172,7 +172,7 @@ export class WebglPainter implements Painter {
       this.drawn.bytes += this.overlaps.set(dimension, overlaps, undefined, lens);
       draw(this.overlaps, {
         ...style, inks: inksOf(1, () => [...rgb(palette.overlap), strength]), fills: Array<number>(6).fill(1),
-        least: isCrowd ? 0 : style.least, parts: ["faces"],
+        minExtent: isCrowd ? 0 : style.minExtent, parts: ["faces"],
       });
     }
     if (panel.tests !== undefined && panel.tests.others.length > 0) {
@@ -208,7 +208,7 @@ export class WebglPainter implements Painter {
     };
     const useFlat = (points: boolean, first: number): void => {
       gl.useProgram(this.flat.program);
-      setUniforms(this.flat, { ...shared, viewport, first, points, border: style.border, least: style.least });
+      setUniforms(this.flat, { ...shared, viewport, first, points, border: style.border, minExtent: style.minExtent });
     };
     if (batch.points > 0) {
       useFlat(true, 0);

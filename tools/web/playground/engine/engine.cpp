@@ -255,7 +255,7 @@ void make_scene(std::size_t count, std::uint32_t seed) {
   throw InvalidSpec("no scene '" + spec.name + "'; expected one of: " + names);
 }
 
-#ifndef BROADSIDE_OBSERVE  // what only one of the two modules has
+#ifndef BROADSIDE_OBSERVE  // only in one of the two modules
 
 /// Why a file with these first bytes cannot be read here; empty if it may be readable.
 std::string unread(std::string_view beginning, const std::string& name) {

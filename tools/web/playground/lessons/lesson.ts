@@ -2,7 +2,7 @@
 import type { ComponentChildren } from "preact";
 
 import type { Duel, PanelChoice, Shown } from "../bench/protocol.ts";
-import { standardKnobs, type Knobs } from "../scene/drift.ts";
+import { defaultKnobs, type Knobs } from "../scene/drift.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
 import type { State } from "../state/state.ts";
 
@@ -41,7 +41,7 @@ export interface Lesson {
 }
 
 export function scene(name: string, count: number, knobs: Partial<Knobs> = {}): SceneChoice {
-  return { name, count, seed: 1, knobs: { ...standardKnobs, ...knobs } };
+  return { name, count, seed: 1, knobs: { ...defaultKnobs, ...knobs } };
 }
 
 export function panels(...specs: readonly string[]): PanelChoice[] {

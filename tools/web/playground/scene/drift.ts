@@ -15,7 +15,7 @@ export interface Knobs {
   speed: number;
 }
 
-export const standardKnobs: Knobs = { ratio: 3, clustering: 0, moving: 1, speed: 1 };
+export const defaultKnobs: Knobs = { ratio: 3, clustering: 0, moving: 1, speed: 1 };
 
 const size = [160, 100, 100] as const;
 const clusters = 7;

@@ -28,7 +28,7 @@ export function withEdit(edits: readonly Edit[], edit: Edit): Edit[] {
 
 /** The number of boxes, including added ones. */
 export function countWith(count: number, edits: readonly Edit[]): number {
-  return edits.reduce((most, edit) => Math.max(most, edit.box + 1), count);
+  return edits.reduce((max, edit) => Math.max(max, edit.box + 1), count);
 }
 
 /** Writes one edited box at a given time. */

@@ -19,7 +19,7 @@ const lateAfter = 120;
 
 /** Script times of the last frames, in ms, for measurements of the page. */
 export const scriptTimes: number[] = [];
-const mostTimes = 600;
+const maxTimes = 600;
 
 /** Number of frames that the bench has shown. */
 export let frames = 0;
@@ -111,7 +111,7 @@ export class Loop {
     }
     this.script += performance.now() - begin;
     scriptTimes.push(this.script);
-    if (scriptTimes.length > mostTimes) scriptTimes.shift();
+    if (scriptTimes.length > maxTimes) scriptTimes.shift();
     this.script = 0;
     requestAnimationFrame((then) => this.step(then));
   }
@@ -133,8 +133,8 @@ export class Loop {
 
   private advance(seconds: number): void {
     const next = clock.value + seconds;
-    const most = duration.value;
-    clock.value = next > most && most > 0 ? next % most : next;
+    const end = duration.value;
+    clock.value = next > end && end > 0 ? next % end : next;
     latest.value = Math.max(latest.value, clock.value);
   }
 

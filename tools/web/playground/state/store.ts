@@ -5,9 +5,9 @@ import type { Algorithm } from "../engine/types.ts";
 import type { Duel, Measured, PanelChoice, Setup, Shown } from "../bench/protocol.ts";
 import { fileScene, sceneEntry } from "../scene/catalogue.ts";
 import { countWith, withEdit, type Edit } from "../scene/edits.ts";
-import { mostPanels, standardState, startOf, type State } from "./state.ts";
+import { maxPanels, defaultState, startOf, type State } from "./state.ts";
 
-export const state = signal<State>(standardState);
+export const state = signal<State>(defaultState);
 /** Current scene time in seconds. The results on screen have their own time in `shown`. */
 export const clock = signal(0);
 /** The latest time so far: the end of the scrubbing range. */
@@ -84,7 +84,7 @@ export function changePanel(at: number, change: Partial<PanelChoice>): void {
 
 export function addPanel(spec: string): void {
   const { panels } = state.value;
-  if (panels.length < mostPanels) patch({ panels: [...panels, { spec, follow: false }] });
+  if (panels.length < maxPanels) patch({ panels: [...panels, { spec, follow: false }] });
 }
 
 export function removePanel(at: number): void {

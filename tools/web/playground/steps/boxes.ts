@@ -56,9 +56,9 @@ export function worldAround(boxes: readonly Box[]): World {
   const extent = (coordinates: number[]): [number, number] => {
     const finite = coordinates.filter(Number.isFinite);
     if (finite.length === 0) return [0, 1];
-    const least = finite.reduce((a, b) => Math.min(a, b));
-    const wide = finite.reduce((a, b) => Math.max(a, b)) - least;
-    return [least, wide > 0 ? wide : 1];
+    const min = finite.reduce((a, b) => Math.min(a, b));
+    const wide = finite.reduce((a, b) => Math.max(a, b)) - min;
+    return [min, wide > 0 ? wide : 1];
   };
   const [left, width] = extent(boxes.flatMap((box) => [box.minX, box.maxX]));
   const [top, height] = extent(boxes.flatMap((box) => [box.minY, box.maxY]));

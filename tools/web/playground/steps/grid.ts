@@ -97,8 +97,8 @@ function chosenSize(boxes: readonly Box[], world: World): number {
 /** Whether this grid would exceed the limit on cells or references. */
 function isTooLarge(boxes: readonly Box[], layout: Layout, isChosen: boolean): boolean {
   const count = boxes.length;
-  const mostCells = isChosen ? Math.min(4 * count, 2 ** 22) : Math.min(Math.max(16 * count, 2 ** 16), 2 ** 22);
-  if (layout.columns * layout.rows > Math.max(1, mostCells)) return true;
+  const maxCells = isChosen ? Math.min(4 * count, 2 ** 22) : Math.min(Math.max(16 * count, 2 ** 16), 2 ** 22);
+  if (layout.columns * layout.rows > Math.max(1, maxCells)) return true;
   let references = 0;
   for (const box of boxes) {
     const [left, right, top, bottom] = layout.span(box);

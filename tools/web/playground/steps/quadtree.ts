@@ -206,10 +206,10 @@ class Quadtree {
     const { depth, boxes: ids } = this.#node(node);
     if (depth === this.#depthMax) return false;
     const boxes = ids.map((id) => this.#boxes[id]!);
-    const least = (side: (box: Box) => number): number => boxes.reduce((most, box) => Math.min(most, side(box)), Infinity);
+    const minOf = (side: (box: Box) => number): number => boxes.reduce((min, box) => Math.min(min, side(box)), Infinity);
     const common = {
-      minX: -least((box) => -box.minX), minY: -least((box) => -box.minY),
-      maxX: least((box) => box.maxX), maxY: least((box) => box.maxY),
+      minX: -minOf((box) => -box.minX), minY: -minOf((box) => -box.minY),
+      maxX: minOf((box) => box.maxX), maxY: minOf((box) => box.maxY),
     };
     return !isPresent(common);
   }

@@ -4,7 +4,7 @@ import { overlap, type Box } from "./boxes.ts";
 import type { Listing } from "./listing.ts";
 
 /** Nobody looks at more steps, and the page would run out of memory. */
-const mostSteps = 300_000;
+const maxSteps = 300_000;
 
 /** The lines of Algorithm 1, which the other algorithms call on each of their collections. */
 export type TestLine = "test" | "report";
@@ -20,8 +20,8 @@ export class Recorder<Line extends string, State extends StepState> {
   }
 
   step(line: Line | TestLine, text: string, boxes: number[], state: State, more: Partial<Step> = {}): void {
-    if (this.#steps.length === mostSteps)
-      throw new Error(`the search takes more than ${mostSteps} steps; expected fewer boxes`);
+    if (this.#steps.length === maxSteps)
+      throw new Error(`the search takes more than ${maxSteps} steps; expected fewer boxes`);
     this.#steps.push({ line: this.#listing.line(line), text, boxes, state, ...more });
   }
 

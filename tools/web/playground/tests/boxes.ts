@@ -4,17 +4,17 @@ import { randomAt } from "../scene/random.ts";
 export interface BoxKind {
   dimension: 2 | 3;
   places: number;      // minima are whole numbers below this one, so that boxes touch and coincide
-  mostExtent: number;  // in whole numbers; 0: points
+  maxExtent: number;  // in whole numbers; 0: points
 }
 
-export function randomBoxes(seed: number, count: number, { dimension, places, mostExtent }: BoxKind):
+export function randomBoxes(seed: number, count: number, { dimension, places, maxExtent }: BoxKind):
     Float32Array<ArrayBuffer> {
   const boxes = new Float32Array(2 * dimension * count);
   for (let box = 0; box < count; ++box) {
     for (let axis = 0; axis < dimension; ++axis) {
       const at = 2 * dimension * box + axis;
       boxes[at] = Math.floor(places * randomAt(seed, box, axis));
-      boxes[at + dimension] = boxes[at]! + Math.floor((mostExtent + 1) * randomAt(seed, box, 3 + axis));
+      boxes[at + dimension] = boxes[at]! + Math.floor((maxExtent + 1) * randomAt(seed, box, 3 + axis));
     }
   }
   return boxes;

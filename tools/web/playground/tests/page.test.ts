@@ -365,7 +365,7 @@ describe("the playground", { skip: missing }, () => {
           window.playground.scriptTimes.length = 0;
           return window.playground.frames;
         });
-        await until(page, (least) => window.playground.frames > least, before + frames);
+        await until(page, (min) => window.playground.frames > min, before + frames);
         const times = (await page.evaluate(() => [...window.playground.scriptTimes])).sort((a, b) => a - b);
         context.diagnostic(`${count} boxes: script a frame, median ${times[times.length >> 1]!.toFixed(1)} ms, ` +
           `nine in ten up to ${times[Math.floor(0.9 * times.length)]!.toFixed(1)} ms; ` +

@@ -36,7 +36,7 @@ function wasteOfTracker(spec: string, { dimension, settings, boxes }: Preset, se
 }
 
 /** Minimum waste of each, in tests per box, and as a multiple of the waste of auto. */
-const least: Record<string, { waste: number; times: number }> = {
+const minWaste: Record<string, { waste: number; times: number }> = {
   drifting_crowd: { waste: 150, times: 10 },
   huge_floor: { waste: 60, times: 3 },
   one_point: { waste: 1000, times: 100 },
@@ -57,7 +57,7 @@ for (const preset of presets) {
         preset.follows ? wasteOfTracker(spec, preset, seed) : wasteOfSearch(spec, preset, seed, 1);
       const broken = wasteOf(preset.breaks);
       const auto = wasteOf("auto");
-      const { waste: mostly, times } = least[preset.name]!;
+      const { waste: mostly, times } = minWaste[preset.name]!;
       const found = `${broken.toFixed(1)} tests a box for nothing, auto ${auto.toFixed(1)}`;
       assert.ok(broken >= mostly, `${found}; expected at least ${mostly}`);
       assert.ok(broken >= times * auto, `${found}; expected at least ${times} times auto's`);

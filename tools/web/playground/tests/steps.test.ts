@@ -19,7 +19,7 @@ const algorithms: StepAlgorithm[] = ["brute_force", "grid", "sweep_and_prune", "
  */
 function sceneOf(seed: number): Float32Array<ArrayBuffer> {
   const of = (purpose: number, below: number): number => Math.floor(below * randomAt(seed, 1_000_000, purpose));
-  const boxes = randomBoxes(seed, of(0, 41), { dimension: 2, places: [2, 12, 60, 400][of(1, 4)]!, mostExtent: of(2, 9) });
+  const boxes = randomBoxes(seed, of(0, 41), { dimension: 2, places: [2, 12, 60, 400][of(1, 4)]!, maxExtent: of(2, 9) });
   const count = boxes.length / 4;
   const shift = [0, -17.25, 1e-3][of(3, 3)]!;
   for (let at = 0; at < boxes.length; ++at) boxes[at] = boxes[at]! * [1, 0.37][of(4, 2)]! + shift;
@@ -112,7 +112,7 @@ test("quadtree: boxes end in the leaves, as many as the C++ has references", () 
 });
 
 test("too many boxes are refused before the page runs out of memory", () => {
-  const boxes = randomBoxes(1, 1500, { dimension: 2, places: 9000, mostExtent: 3 });
+  const boxes = randomBoxes(1, 1500, { dimension: 2, places: 9000, maxExtent: 3 });
   assert.throws(() => steps("brute_force", boxes), /more than 300000 steps; expected fewer boxes/);
 });
 

@@ -5,8 +5,8 @@ import { useId } from "preact/hooks";
 interface SliderProps {
   label: string;
   value: number;
-  least: number;
-  most: number;
+  min: number;
+  max: number;
   /** Steps of the slider; on a logarithmic one, steps of the logarithm. */
   step?: number;
   logarithmic?: boolean;
@@ -16,7 +16,7 @@ interface SliderProps {
   hint?: string | undefined;
 }
 
-export function Slider({ label, value, least, most, step, logarithmic = false, text, onChange, hint }: SliderProps) {
+export function Slider({ label, value, min, max, step, logarithmic = false, text, onChange, hint }: SliderProps) {
   const id = useId();
   const inward = (one: number): number => logarithmic ? Math.log10(one) : one;
   const outward = (one: number): number => logarithmic ? 10 ** one : one;
@@ -25,8 +25,8 @@ export function Slider({ label, value, least, most, step, logarithmic = false, t
     <div class="field">
       <label for={id}>{label}</label>
       <output for={id}>{said}</output>
-      <input id={id} type="range" min={inward(least)} max={inward(most)} title={hint}
-        step={step ?? (inward(most) - inward(least)) / 200} value={inward(Math.max(least, value))} aria-valuetext={said}
+      <input id={id} type="range" min={inward(min)} max={inward(max)} title={hint}
+        step={step ?? (inward(max) - inward(min)) / 200} value={inward(Math.max(min, value))} aria-valuetext={said}
         onInput={(event) => onChange(outward(event.currentTarget.valueAsNumber))} />
     </div>
   );

@@ -10,7 +10,7 @@ import { palette } from "./themes.ts";
 import { view } from "./view.ts";
 
 /** A finer resolution than this costs much and shows little. */
-const mostRatio = 2;
+const maxRatio = 2;
 
 export class Stage {
   readonly canvas = document.createElement("canvas");
@@ -54,7 +54,7 @@ export class Stage {
   measure(): void {
     if (this.holder === undefined) return;
     const all = this.holder.getBoundingClientRect();
-    this.painter.resize(all.width, all.height, Math.min(mostRatio, window.devicePixelRatio));
+    this.painter.resize(all.width, all.height, Math.min(maxRatio, window.devicePixelRatio));
     this.places = [...this.holder.querySelectorAll(".window")].map((one) => {
       // Counts that wrap take height from a window. Observing an element triggers a notification at
       // once, so each is observed only once.

@@ -55,15 +55,15 @@ S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
     const S middle = box.min[axis] / 2 + box.max[axis] / 2;
     centre[axis] = std::isfinite(middle) ? middle : 0;
   }
-  S least = std::numeric_limits<S>::infinity();
+  S min_distance = std::numeric_limits<S>::infinity();
   std::vector<Neighbour<S>> found;
   for (std::size_t count = first_count;; count *= first_count) {
     index.nearest(centre, count, found, {.except = except});
     for (const Neighbour<S>& neighbour : found) {
       const S distance = distance_of(box, boxes[broadside::index(neighbour.box)]);
-      if (distance > reached) least = std::min(least, distance);
+      if (distance > reached) min_distance = std::min(min_distance, distance);
     }
-    if (found.size() < count || std::isfinite(least)) return least;
+    if (found.size() < count || std::isfinite(min_distance)) return min_distance;
     const S farthest = std::sqrt(found.back().distance_squared);
     if (farthest > reached) return farthest;
   }
@@ -79,8 +79,8 @@ struct DistantPair {
   friend auto operator<=>(const DistantPair&, const DistantPair&) = default;
 };
 
-/// Calls `visit(pair, least)` for pairs in ascending order of distance, until it returns true or the next
-/// pair is not closer than `least`, which it may lower: best-first branch and bound.
+/// Calls `visit(pair, min_distance)` for pairs in ascending order of distance, until it returns true or the
+/// next pair is not closer than `min_distance`, which it may lower: best-first branch and bound.
 ///
 /// Pairs come from `gather(radius, pairs)`, which appends all pairs with a distance of at most `radius` and
 /// perhaps others, for growing radii. Each ring is at least twice as wide as the one before, so pairs
@@ -88,7 +88,7 @@ struct DistantPair {
 /// existing boxes; it is infinite if nothing is left.
 template <typename S, typename Gather, typename Beyond, typename Visit>
 void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& visit) {
-  S least = std::numeric_limits<S>::max();
+  S min_distance = std::numeric_limits<S>::max();
   S reached = -1;
   // Squares of smaller distances vanish, so such pairs come first together.
   S radius = std::sqrt(std::numeric_limits<S>::min());
@@ -97,17 +97,17 @@ void visit_by_distance(const Gather& gather, const Beyond& beyond, const Visit& 
     pairs.clear();
     gather(radius, pairs);
     std::erase_if(pairs, [&](const DistantPair<S>& pair) {
-      return !(pair.distance > reached && pair.distance <= radius && pair.distance < least);
+      return !(pair.distance > reached && pair.distance <= radius && pair.distance < min_distance);
     });
     std::ranges::sort(pairs);
     for (const DistantPair<S>& pair : pairs) {
-      if (!(pair.distance < least) || visit(pair, least)) return;
+      if (!(pair.distance < min_distance) || visit(pair, min_distance)) return;
     }
-    if (radius >= least) return;
+    if (radius >= min_distance) return;
     reached = radius;
     radius *= 2;
-    if (radius < least) radius = std::max(radius, beyond(reached));
-    radius = std::min(radius, least);
+    if (radius < min_distance) radius = std::max(radius, beyond(reached));
+    radius = std::min(radius, min_distance);
   }
 }
 
