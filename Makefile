@@ -1,4 +1,4 @@
-# The front door. Each target brings what it needs: missing packages, data, the build.
+# The entry point for developers. Each target first installs or builds what it needs: packages, data, the build.
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
@@ -8,7 +8,7 @@ jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
 PROCESSES := 10
 sources := find $(wildcard include src bindings distributed integrations tools tests examples) -name '*.[ch]pp'
-# The sources that a build compiles, of which some include several others.
+# Prints the sources that a build compiles; a unity source includes several others.
 compiled := sed -n 's/^ *"file": "\(.*\)".*/\1/p'
 
 help: ## List the targets
@@ -17,10 +17,10 @@ help: ## List the targets
 compare: program ## Build the program and run the quick comparison, or that of COMPARE_ARGS
 	build/release/broadside compare $(COMPARE_ARGS)
 
-paper: setup ## Print the paper (Markdown, PDF, HTML) and what README quotes from the committed results
+paper: setup ## Print the paper (Markdown, PDF, HTML) and README's figures from the committed results
 	$(debian_python) -m tools.paper print --to docs/paper
 
-# The runs are kept one by one: a run that was cut off goes on where it ended. Debian's Python has the packages.
+# Each run is stored, so an interrupted measurement resumes. Debian's Python has the packages.
 RUNS := 3
 debian_python := $(firstword $(wildcard /usr/bin/python3) python3)
 
@@ -28,19 +28,19 @@ experiments: program ## Measure the paper's experiments in RUNS=3 runs and judge
 	$(debian_python) -m tools.paper run --runs $(RUNS)
 	$(debian_python) -m tools.paper judge
 
-# Commits alone tell a revision from another, so there must be nothing that is not committed.
+# A commit identifies the measured revision, so there must be no uncommitted changes.
 published: program ## Measure the comparison in PROCESSES=10 processes, then publish it and the experiments: tools/paper/results
 	git diff --quiet HEAD
 	$(debian_python) -m tools.paper compare --runs $(PROCESSES)
 	$(debian_python) -m tools.paper publish
 
-bench: program ## The long comparison (also in build/bench.json), the claims about motion and a soak
+bench: program ## Run the long comparison (also written to build/bench.json), the motion benchmark and a soak test
 	cmake --build --preset release --target motion $(soak)
 	build/release/broadside compare --long --json build/bench.json
 	build/release/bench/motion
 	$(addprefix build/release/bench/,$(soak))
 
-pictures: program ## Draw the pictures of docs/algorithms.md anew
+pictures: program ## Redraw the pictures of docs/algorithms.md
 	tools/docs/pictures build/release/broadside docs/pictures
 
 deb: build/deb/build.ninja ## Make Debian packages of library, headers and program: build/deb/packages
@@ -49,12 +49,12 @@ deb: build/deb/build.ninja ## Make Debian packages of library, headers and progr
 	rm -rf build/deb/packages
 	cd build/deb && cpack
 
-abi: setup-ci ## Write the dump anew that tests compare the C interface's ABI with
+abi: setup-ci ## Update the ABI dump that tests compare the C interface with
 	mkdir -p build/abi
 	cmake -D HEADER=$(CURDIR)/bindings/c/broadside.h -D COMPILER=cc -D FOLDER=$(CURDIR)/build/abi \
 	  -D DUMP=$(CURDIR)/bindings/c/abi/broadside.abi -P bindings/c/abi/dump.cmake
 
-# CMake's build folder and the two environments are kept. The first has what builds the wheel, the second what tests it.
+# CMake's build folder and two virtual environments are kept: one builds the wheel, the other tests it.
 python_folder := build/python
 
 python: $(python_folder)/builder/ready ## Build the Python package as a wheel: build/python/wheels/
@@ -73,7 +73,7 @@ $(python_folder)/%/ready: | setup
 	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
 
-# CMake's build folders: the modules for each dimension, with SIMD and without.
+# CMake's build folders: one for each dimension, with and without SIMD.
 wasm_folder := build/wasm
 wasm_flavours := 2d 3d 2d-scalar 3d-scalar
 
@@ -88,18 +88,18 @@ test-wasm: wasm ## Run the tests of the npm package
 	BROADSIDE_PACKAGE=$(CURDIR)/$(wasm_folder)/package BROADSIDE_WEB=$(CURDIR)/tools/web \
 	  node --test $(wasm_folder)/tests/
 
-test-installed: test-wasm ## Install the npm package in an empty project, build it by Vite, test it in Node 18; takes the network
+test-installed: test-wasm ## Install the npm package in an empty project, build it with Vite, test it in Node 18; needs the network
 	node tests/bindings/wasm/installed.mjs $(wasm_folder)/package $(wasm_folder)/tests
 
 $(wasm_flavours:%=$(wasm_folder)/%/build.ninja): $(wasm_folder)/%/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset wasm-$*
 
-compare-web: wasm ## Compare the npm package with other libraries of JavaScript, in Node and in Chromium
+compare-web: wasm ## Compare the npm package with other JavaScript libraries, in Node and in Chromium
 	cd tools/bench/web && npm ci --silent --ignore-scripts --no-audit --no-fund
 	node tools/bench/web/compare.mjs $(wasm_folder)/package
 	node tools/bench/web/compare.mjs --chromium $(wasm_folder)/package
 
-# Its engine is the whole library, built by itself.
+# Its engine is the whole library, in a build of its own.
 playground: $(wasm_folder)/playground/build.ninja ## Build the playground, a page to see and compare algorithms: build/playground/index.html
 	@test -f $< || emcmake cmake --preset playground
 	cmake --build --preset playground
@@ -113,24 +113,24 @@ wasm test-wasm test-installed compare-web playground: export NODE_PATH := /usr/s
 
 test: tests-release ## Build everything and run all tests
 
-sanitize: tests-asan tests-tsan ## The tests under the address, undefined-behaviour and thread sanitizers
+sanitize: tests-asan tests-tsan ## Run the tests with the address, undefined-behaviour and thread sanitizers
 
-systems: build/release/build.ninja ## Check the law on ARM, Windows, 32-bit x86 and a big-endian machine, each emulated
+systems: build/release/build.ninja ## Run the equivalence test on emulated ARM, Windows, 32-bit x86 and a big-endian machine
 	@test -f $< || cmake --preset release
 	cmake --build --preset release --target law_here
 	ctest --preset release -R '^systems' --parallel $(jobs)
 
-windows: build/windows/build.ninja ## Build the program for Windows by MinGW-w64; run it and the unit tests by Wine
+windows: build/windows/build.ninja ## Build the program for Windows with MinGW-w64; run it and the unit tests under Wine
 	@test -f $< || cmake --preset windows
 	cmake --build --preset windows
 	ctest --preset windows
 
-clang: tests-clang ## The tests in an optimised build by clang; CI has clang in the build of the address sanitizer
+clang: tests-clang ## Run the tests in an optimised clang build; CI uses clang only with the address sanitizer
 
-format: setup-ci ## Put every source file in the project's format
+format: setup-ci ## Format every source file
 	$(sources) | xargs clang-format -i
 
-lint: check-format build/lint/build.ninja ## Check format and types, and what clang-tidy says of library, lab and program
+lint: check-format build/lint/build.ninja ## Check format and types, and run clang-tidy on library, lab and program
 	tools/web/node_modules/.bin/tsc --noEmit --project tools/web
 	@test -f build/lint/build.ninja || cmake --preset lint
 	$(compiled) build/lint/compile_commands.json | sort -u | grep --extended-regexp --invert-match \
@@ -143,7 +143,7 @@ check-format: setup-ci
 clean: ## Remove everything that was built or fetched
 	rm -rf build
 
-# The other libraries of a comparison are installed for it, unless PEERS=no.
+# The comparison's other libraries are installed unless PEERS=no.
 PEERS := yes
 compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
@@ -163,27 +163,27 @@ setup:
 setup-ci:
 	@tools/setup/setup --ci
 
-# What setup has installed, a configured build has to look for: setup then takes build.ninja away, and make, which has
-# seen it, does not miss it.
+# The build must be configured again after setup has installed packages: setup then removes build.ninja, but make has
+# already seen it.
 # Builds everything that `cmake --install build/release` copies.
 program: build/release/build.ninja
 	@test -f $< || cmake --preset release
 	cmake --build --preset release --target broadside_installed
 
-# Everything built under one preset, and its tests.
+# Builds everything with one preset and runs its tests.
 tests-%: build/%/build.ninja
 	@test -f $< || cmake --preset $*
 	cmake --build --preset $*
 	ctest --preset $* --parallel $(jobs)
 
-# What uses threads; the rest has none to sanitize.
+# Only the tests that use threads.
 tests-tsan: build/tsan/build.ninja
 	@test -f $< || cmake --preset tsan
 	cmake --build --preset tsan --target thread_tests
 	ctest --test-dir build/tsan/tests/threads --output-on-failure --parallel $(jobs)
 
-# The other libraries were compiled by Debian, whoever compiles what drives them; the tests on other systems and those of
-# how the library is installed have compilers of their own, those of the page and the paper none.
+# Left out: tests of other libraries, which Debian has compiled whatever our compiler; tests of other systems and of
+# the installed library, which choose their own compilers; and tests of the page and the paper, which need none.
 tests-clang: build/clang/build.ninja
 	cmake --build --preset clang
 	ctest --preset clang --parallel $(jobs) \
@@ -192,5 +192,5 @@ tests-clang: build/clang/build.ninja
 build/%/build.ninja: CMakePresets.json | setup
 	cmake --preset $*
 
-# These are clang's.
+# These presets use clang or its tools.
 build/asan/build.ninja build/clang/build.ninja build/lint/build.ninja: | setup-ci

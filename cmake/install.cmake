@@ -1,8 +1,8 @@
-# Installs headers, library, CMake package and pkg-config file, so that find_package(Broadside) and `pkg-config broadside`
-# find the library; and the program, where it is built, with its manual, completions and, for COMPONENTS program of
-# find_package, its verbs.
+# Installs headers, library, CMake package and pkg-config file, so that find_package(Broadside) and `pkg-config
+# broadside` find the library. If the program is built, installs it with its manual, completions and, for COMPONENTS
+# program of find_package, its verbs.
 #
-# CMake's own components are what packages.cmake makes packages of: `library`, `development`, `program`, and `verbs`.
+# packages.cmake makes packages of the components `library`, `development`, `program` and `verbs`.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -19,7 +19,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/bindings/c/broadside.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(EXPORT BroadsideTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT development)
 
-# Parts of space, and what joins them.
+# The partition of space, and the joins that use it.
 set(distributed broadside_partition)
 if(BROADSIDE_HAS_OUT_OF_CORE)
   list(APPEND distributed broadside_out_of_core)
@@ -35,7 +35,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/distributed/include/broadside/large_pair.hpp
 install(TARGETS ${distributed} EXPORT BroadsideTargets ARCHIVE COMPONENT development
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-# Read for COMPONENTS mpi alone, since it takes MPI to be found.
+# Read only for COMPONENTS mpi, because it requires MPI.
 if(BROADSIDE_HAS_MPI)
   set_target_properties(broadside_mpi PROPERTIES EXPORT_NAME mpi)
   foreach(name IN ITEMS mpi distributed_world)
@@ -47,20 +47,20 @@ if(BROADSIDE_HAS_MPI)
   install(EXPORT BroadsideMpiTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT development)
 endif()
 
-# The config file makes the target itself: Bullet is wherever it is found there.
+# The config file creates the target itself, with the Bullet that it finds there.
 if(BROADSIDE_HAS_BULLET)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet/include/broadside
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
 endif()
 
-# The config file makes the target itself: FCL is wherever it is found there.
+# The config file creates the target itself, with the FCL that it finds there.
 if(BROADSIDE_HAS_FCL)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/fcl/include/broadside
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
 endif()
 
-# A program that links the static library must also link Highway and the thread library. A C compiler must link the C++
-# library and libm as well, which it does not do by itself. A shared library is already linked with all of them.
+# A program that links the static library must also link Highway and the thread library. A C compiler must also be told
+# to link the C++ library and libm. A shared library is already linked with all of them.
 set(library_packages "")
 set(pkg_config_packages "")
 set(cxx_libraries "")
@@ -96,7 +96,8 @@ if(BROADSIDE_BUILD_PROGRAM)
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/paper/listings COMPONENT verbs)
   install(EXPORT BroadsideProgramTargets NAMESPACE Broadside:: DESTINATION ${package_folder} COMPONENT verbs)
 
-  # A shared library is found beside the program, wherever the two are; by a Debian package, where the system has its.
+  # The program finds a shared library relative to itself, wherever the two are installed. In a Debian package, the
+  # library is in the system's path.
   cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR}
              OUTPUT_VARIABLE library_folder)
   if(BUILD_SHARED_LIBS AND NOT BROADSIDE_DEB)
@@ -125,8 +126,8 @@ if(BROADSIDE_BUILD_PROGRAM)
             DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
   endif()
 
-  # Whoever links the lab links what it links. A target is called after its package: fmt::fmt, embree. What stands there
-  # as a file needs no package, and :: and @ bracket what another folder has added.
+  # Targets that link the lab also need the lab's libraries. Targets are named after their packages: fmt::fmt, embree.
+  # Entries that are files need no package; entries with :: and @ were added by another folder.
   get_target_property(linked broadside_lab LINK_LIBRARIES)
   foreach(target IN LISTS linked)
     if(target MATCHES "^([A-Za-z0-9_]+)(::[A-Za-z0-9_]+)?$" AND NOT CMAKE_MATCH_1 STREQUAL "Broadside")
@@ -137,13 +138,13 @@ if(BROADSIDE_BUILD_PROGRAM)
 endif()
 
 configure_file(${PROJECT_SOURCE_DIR}/cmake/BroadsideConfig.cmake.in ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake @ONLY)
-# Below 1.0 a minor version may break what the one before promised.
+# Before version 1.0, a minor version may break compatibility.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/BroadsideConfig.cmake ${PROJECT_BINARY_DIR}/BroadsideConfigVersion.cmake
         DESTINATION ${package_folder} COMPONENT development)
 
-# The prefix is known only when it is installed, so it is told relative to the file.
+# The prefix is known only after installation, so paths are relative to this file.
 if(IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
   set(pkg_config_prefix ${CMAKE_INSTALL_PREFIX})
 else()

@@ -1,5 +1,6 @@
-# The sources of an observing build, which write down what searches compare: src/kernels/observed_tests.hpp. A program
-# compiles them for itself with BROADSIDE_OBSERVE; they stand before the libraries and take the place of theirs.
+# The sources of an observing build, which record the boxes that searches compare: src/kernels/observed_tests.hpp. A
+# program compiles them with BROADSIDE_OBSERVE and lists them before the libraries, so that they replace the libraries'
+# versions.
 set(broadside_observing_sources
   ${PROJECT_SOURCE_DIR}/src/find/search.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bvh_join.cpp

@@ -1,15 +1,15 @@
 # Sets is_optimized: a generator expression that is true in the build types in which BROADSIDE_OPTIMIZE adds -O3 to the
 # library's flags.
 #
-# Without a build type, or with Debug, a project compiles with no -O or with -O0, which makes the library ten times as slow.
-# Any other level is the user's choice, and so are the build types of Broadside itself.
+# Without a build type, or with Debug, a project compiles without -O or with -O0, which makes the library ten times as
+# slow. The user's choice of any other level is respected, and so are the build types of Broadside itself.
 if(NOT BROADSIDE_OPTIMIZE MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "BROADSIDE_OPTIMIZE is '${BROADSIDE_OPTIMIZE}'; expected AUTO, ON or OFF")
 endif()
 
 set(is_optimized 0)
 if(MSVC OR NOT CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang|AppleClang)$")
-  return()  # other compilers name their flags differently
+  return()  # other compilers have other flags
 endif()
 
 get_directory_property(directory_options COMPILE_OPTIONS)

@@ -1,5 +1,5 @@
-# Debian packages, by cpack: libbroadsideX.Y (the shared library), libbroadside-dev (headers, CMake package, pkg-config
-# file) and broadside (the program, its manual and completions). docs/packaging.md says how they are made and checked.
+# Debian packages, made by cpack: libbroadsideX.Y (the shared library), libbroadside-dev (headers, CMake package,
+# pkg-config file) and broadside (the program, its manual and completions). See docs/packaging.md.
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(release 1)
 set(broadside_package_of_library libbroadside${abi})
@@ -47,7 +47,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "overlapping boxes of tables, maps and m
 Finds the overlapping boxes of files, compares broad-phase algorithms on them,
 checks every result, and says which algorithm suits them.")
 
-# What Debian asks of each package: its licence and its changes, compressed.
+# Debian requires each package to have its licence and a compressed changelog.
 set(folder ${PROJECT_BINARY_DIR}/debian)
 file(MAKE_DIRECTORY ${folder})
 file(STRINGS ${PROJECT_SOURCE_DIR}/CHANGELOG.md heading REGEX "^## \\[${PROJECT_VERSION}\\] - ")

@@ -1,4 +1,4 @@
-# Highway where there is no runtime library of it for the processor: headers do, since one instruction set leaves nothing to
-# choose.
+# Highway for processors without a build of its runtime library. Headers suffice, because with a single instruction set
+# there is nothing to choose.
 include(${CMAKE_CURRENT_LIST_DIR}/link.cmake)
 broadside_host_headers(hwy::hwy hwy)

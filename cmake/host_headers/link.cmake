@@ -1,8 +1,8 @@
-# Libraries of headers that were installed for this machine, for a compiler for another one: each by a link in a folder of
-# its own, as /usr/include holds headers of another processor and system.
+# Makes this machine's header-only libraries available to a cross compiler. Each is linked into a folder of its own,
+# because /usr/include also holds headers for another processor and system.
 function(broadside_host_headers target name)
   find_path(BROADSIDE_HOST_HEADERS_${name} ${name} PATHS /usr/include NO_CMAKE_FIND_ROOT_PATH NO_DEFAULT_PATH
-            DOC "The folder on this machine that has ${name}/")
+            DOC "Folder on this machine that contains ${name}/")
   if(NOT BROADSIDE_HOST_HEADERS_${name})
     set(${CMAKE_FIND_PACKAGE_NAME}_FOUND FALSE PARENT_SCOPE)
     set(${CMAKE_FIND_PACKAGE_NAME}_NOT_FOUND_MESSAGE "${name}/ not found in /usr/include; expected it as "

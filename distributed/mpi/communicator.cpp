@@ -1,4 +1,4 @@
-// Collective calls, checked, and failures that all ranks learn of.
+// Checked collective calls, and errors that are shared by all ranks.
 #include "communicator.hpp"
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace broadside::mpi {
 namespace {
 
-/// By default MPI ends all ranks if a call fails. This is for communicators with another error handler.
+/// By default, MPI ends all ranks if a call fails. This check is for communicators with another error
+/// handler.
 void check(int result, const char* call) {
   if (result == MPI_SUCCESS) return;
   std::array<char, MPI_MAX_ERROR_STRING> text{};
@@ -24,7 +25,7 @@ void check(int result, const char* call) {
 
 enum class ErrorKind : std::uint64_t { invalid_input, invalid_frame, invalid_spec, other };
 
-/// What went wrong on a rank, as it is sent to the others. It takes no memory, which may be what is missing.
+/// A rank's error, as sent to the other ranks. It allocates nothing, because memory may be exhausted.
 struct SentError {
   ErrorKind kind = ErrorKind::other;
   std::uint64_t index = 0;
@@ -59,7 +60,7 @@ SentError fault_of(const std::exception_ptr& error, int rank) {
 /// MPI counts in ints.
 constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
 
-/// Calls use(bytes, count) for pieces that MPI can count.
+/// Calls use(bytes, count) for pieces of at most max_bytes.
 template <typename Use>
 void for_each_piece(std::byte* bytes, std::uint64_t size, const Use& use) {
   while (size > 0) {
@@ -100,7 +101,7 @@ void Communicator::settle(const std::exception_ptr& error) {
 }
 
 void Communicator::check_same(std::uint64_t number, const char* what) {
-  // The largest of x and of ~x tell the largest and the smallest x.
+  // The maximum of x and of ~x gives the maximum and the minimum of x.
   std::array<std::uint64_t, 2> bounds{number, ~number};
   check(MPI_Allreduce(MPI_IN_PLACE, bounds.data(), 2, MPI_UINT64_T, MPI_MAX, comm_), "MPI_Allreduce");
   if (bounds[0] != ~bounds[1])
@@ -162,7 +163,7 @@ void Communicator::exchange_blocks(std::span<const Block> out, std::span<const B
   try {
     begin_exchange(out, in);
   } catch (...) {
-    // The caller frees the buffers, so no request may be pending. A send that cannot be cancelled is
+    // The caller frees the buffers, so no request may be pending. A send that cannot be cancelled has been
     // received.
     for (MPI_Request& request : requests_)
       if (request != MPI_REQUEST_NULL) MPI_Cancel(&request);

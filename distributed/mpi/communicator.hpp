@@ -1,5 +1,5 @@
-// The ranks of an MPI communicator: failures that all of them learn of, and arrays of any length sent from
-// each to each.
+// A communicator with errors that are shared by all ranks, and with exchanges of arrays of any length between
+// all ranks.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace broadside::mpi {
 
-/// A communicator of our own over the caller's ranks, so that no message is mistaken for one of theirs. All
-/// members are collective but rank(), size() and sent_bytes().
+/// A private duplicate of the caller's communicator, so that its messages are never confused with the
+/// caller's. All members except rank(), size() and sent_bytes() are collective.
 class Communicator {
  public:
   explicit Communicator(MPI_Comm comm);
@@ -28,12 +28,12 @@ class Communicator {
   int rank() const noexcept { return rank_; }
   std::size_t size() const noexcept { return static_cast<std::size_t>(size_); }
 
-  /// The bytes that this rank has sent to others by exchange().
+  /// Bytes that this rank has sent to others by exchange().
   std::uint64_t sent_bytes() const noexcept { return sent_bytes_; }
 
-  /// Does a step of work on every rank. Where it throws on one, all ranks throw: so none waits for a rank
-  /// that has left. What InvalidInput, InvalidFrame and InvalidSpec say of the first such rank is thrown by
-  /// all, as such. Of anything else, a rank throws its own, and RankError for another's.
+  /// Runs a step of work on every rank. If it throws on one, all ranks throw, so that none waits for a rank
+  /// that has left. InvalidInput, InvalidFrame and InvalidSpec of the first failing rank are rethrown on all
+  /// ranks. For anything else, the failing rank throws its own exception, and the others RankError.
   template <typename Work>
   void together(const Work& work) {
     std::exception_ptr error;
@@ -45,7 +45,7 @@ class Communicator {
     settle(error);
   }
 
-  /// Throws InvalidSpec on all ranks unless all call it with the same number.
+  /// Throws InvalidSpec on all ranks unless all pass the same number.
   void check_same(std::uint64_t number, const char* what);
 
   std::uint64_t sum(std::uint64_t number);
@@ -53,13 +53,13 @@ class Communicator {
   double sum(double number);
   double max(double number);
 
-  /// The sum of the numbers of the ranks before this one.
+  /// Exclusive prefix sum: the sum of the numbers of all lower ranks.
   std::uint64_t sum_before(std::uint64_t number);
 
   /// The number of each rank.
   std::vector<std::uint64_t> gather(std::uint64_t number);
 
-  /// The values of rank 0.
+  /// Copies the values of rank 0 to all ranks.
   template <typename T>
   void broadcast(std::vector<T>& values) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -69,10 +69,10 @@ class Communicator {
     broadcast_bytes(values.data(), count * sizeof(T));
   }
 
-  /// What came from the ranks.
+  /// Values received from all ranks.
   template <typename T>
   struct Received {
-    std::vector<T> values;              ///< this rank's own first, then those of the others in their order
+    std::vector<T> values;              ///< this rank's own first, then the others' in rank order
     std::vector<std::uint64_t> counts;  ///< from each rank
 
     /// Calls visit(value, rank) for each.
@@ -90,7 +90,8 @@ class Communicator {
     }
   };
 
-  /// Sends to[r] to rank r. What stays on this rank is not copied where to[rank()] has room for the others'.
+  /// Sends to[r] to rank r. Values that stay on this rank are not copied if to[rank()] has enough capacity
+  /// for the others'.
   template <typename T>
   Received<T> exchange(std::vector<std::vector<T>> to) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -133,7 +134,7 @@ class Communicator {
   void broadcast_bytes(void* bytes, std::uint64_t size);
   void exchange_counts(std::span<const std::uint64_t> to, std::span<std::uint64_t> from);
 
-  /// Blocks of the ranks but this one, in their order.
+  /// One block for each other rank, in rank order.
   void reserve_requests(std::span<const Block> out, std::span<const Block> in);
   void exchange_blocks(std::span<const Block> out, std::span<const Block> in);
   void begin_exchange(std::span<const Block> out, std::span<const Block> in);

@@ -1,4 +1,4 @@
-// Space cut into a part for each rank, from a sample of all ranks' boxes.
+// Partitions space into a part for each rank, from a sample of all ranks' boxes.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 
 namespace broadside::mpi {
 
-/// How large a sample of all ranks is where the caller does not say: with 4,096 boxes a part, its box count
-/// is off by some 2 %.
-inline std::size_t standard_sample(std::size_t ranks) {
+/// Default sample size over all ranks: with 4,096 boxes per part, the number of boxes in a part is off by
+/// about 2 %.
+inline std::size_t default_sample(std::size_t ranks) {
   return std::max<std::size_t>(std::size_t{1} << 14, (std::size_t{1} << 12) * ranks);
 }
 
-/// Appends about `wanted` of `count` boxes, spread evenly: one from anywhere in each stretch, since boxes may
-/// come in rows and columns in which an even step would hit the same column each time.
+/// Appends about `wanted` of `count` boxes by stratified sampling: a random one from each stretch. With a
+/// regular step, boxes in rows and columns could all come from the same column.
 template <typename Real, int D, typename BoxAt>
 void add_sample(std::size_t count, std::size_t wanted, const BoxAt& box_at,
                 std::vector<Box<D, Real>>& sample) {
@@ -37,7 +37,7 @@ void add_sample(std::size_t count, std::size_t wanted, const BoxAt& box_at,
   }
 }
 
-/// The share of a sample that falls to a rank with `mine` of `all` boxes.
+/// The number of sampled boxes of a rank with `mine` of `all` boxes.
 inline std::size_t share_of_sample(std::size_t sample, std::uint64_t mine, std::uint64_t all) {
   if (mine == 0) return 0;
   return static_cast<std::size_t>(static_cast<double>(sample) * static_cast<double>(mine) /
@@ -45,8 +45,8 @@ inline std::size_t share_of_sample(std::size_t sample, std::uint64_t mine, std::
          1;
 }
 
-/// Cuts space into at most one part a rank, the same on all ranks, from this rank's share of a sample of
-/// `all` boxes. Rank 0 chooses the cuts, so that they are the same even where ranks compute differently.
+/// Partitions space into at most one part per rank, the same on all ranks, from this rank's share of a sample
+/// of `all` boxes. Rank 0 chooses the cuts, so that they agree even if ranks round differently.
 template <int D, typename Real>
 Partition<D, Real> cut_space(Communicator& comm, std::vector<Box<D, Real>> share, std::uint64_t all) {
   if (comm.size() == 1) return {};

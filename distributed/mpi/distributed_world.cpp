@@ -1,4 +1,4 @@
-// A world on all ranks: owners send what changed to the parts, and parts send events to the owners.
+// A distributed world: owners send changed boxes to the parts, and parts send events to the owners.
 #include "broadside/distributed_world.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::uint64_t fingerprint(const DistributedWorldOptions& options, std::uint64_t 
   return hash;
 }
 
-/// The register of the ids of all boxes, spread over the ranks by a hash.
+/// The register of all ids, distributed over the ranks by a hash.
 class IdRegister {
  public:
   /// The rank that registers an id.
@@ -93,7 +93,7 @@ class DistributedWorld<D, Real>::State {
       send_changes();
       send_events();
     } catch (...) {
-      // The parts have seen some of it.
+      // The parts have already taken some of the changes.
       is_to_be_cut_ = true;
       unregister(new_ids_);
       throw;
@@ -151,7 +151,7 @@ class DistributedWorld<D, Real>::State {
     handed_over_.clear();
   }
 
-  /// Registers the ids of new boxes, and notes those of removed ones.
+  /// Registers the ids of new boxes, and collects those of removed ones.
   void register_ids() {
     ByRank<std::uint64_t> added;
     ByRank<std::uint64_t> removed;
@@ -193,20 +193,20 @@ class DistributedWorld<D, Real>::State {
       workers.threads = *options_.threads;
       tracker.set_workers(workers);
     }
-    // A rank without a part has boxes of none.
+    // A rank without a part holds no boxes.
     const typename Partition<D, Real>::Region region =
         own < partition_.size() ? partition_.region(own) : Partition<D, Real>::everything();
     part_ = std::make_unique<Part>(region, std::move(tracker));
   }
 
-  /// Cuts space by the boxes as they are, and gives the new parts the boxes as they were, whose pairs hold
-  /// already.
+  /// Repartitions space by the current boxes, and gives the new parts the boxes of the last update, whose
+  /// pairs are already known.
   void cut() {
     const std::uint64_t all = comm_.sum(std::uint64_t{owned_.size()});
     std::vector<Box<D, Real>> share;
     comm_.together([&] {
       if (comm_.size() == 1) return;
-      const std::size_t sample = options_.sample == 0 ? standard_sample(comm_.size()) : options_.sample;
+      const std::size_t sample = options_.sample == 0 ? default_sample(comm_.size()) : options_.sample;
       const std::span<const Owned> boxes = owned_.all();
       add_sample<Real, D>(
           boxes.size(), share_of_sample(sample, owned_.size(), std::max<std::uint64_t>(all, 1)),
@@ -272,7 +272,7 @@ class DistributedWorld<D, Real>::State {
     ended_ = std::move(ended);
   }
 
-  /// Looks whether space is to be cut anew.
+  /// Decides whether to repartition space.
   void measure() {
     const double work = Partition<D, Real>::cost(part_->boxes(), part_->pairs());
     const double all = comm_.sum(work);
@@ -281,14 +281,14 @@ class DistributedWorld<D, Real>::State {
     statistics_.largest_over_mean_work = imbalance;
     const std::uint64_t min_boxes = 256 * comm_.size();
     if (std::exchange(has_just_cut_, false)) {
-      // A few boxes say nothing about what cuts can achieve.
+      // A few boxes do not show what cuts can achieve.
       achieved_ = boxes < min_boxes ? 1 : imbalance;
       boxes_at_cut_ = boxes;
       work_at_cut_ = all;
     }
     achieved_ = std::min(achieved_, imbalance);
-    // Where cuts cannot help, as where all boxes are at one place, they are not tried again until the balance
-    // gets worse, or the boxes are others: twice as many, or a crowd that has spread and lost its pairs.
+    // If cuts do not help, for example because all boxes are in one place, they are not tried again until the
+    // balance gets worse or the boxes have changed: twice as many, or a dissolved crowd with fewer pairs.
     const bool is_worse = imbalance > 1.1 * achieved_;
     const bool is_another_world = boxes >= 2 * boxes_at_cut_ || all <= work_at_cut_ / 2;
     is_to_be_cut_ =
@@ -299,19 +299,19 @@ class DistributedWorld<D, Real>::State {
   DistributedWorldOptions options_;
   Partition<D, Real> partition_;
   OwnedBoxes<D, Real> owned_;
-  std::unordered_map<std::uint64_t, int> handed_over_;  // to which rank
+  std::unordered_map<std::uint64_t, int> handed_over_;  // by id: the new rank
   IdRegister register_;
-  std::vector<std::uint64_t> new_ids_;    // registered here in this update
-  std::vector<std::uint64_t> ended_ids_;  // and to be taken out after it
+  std::vector<std::uint64_t> new_ids_;    // registered on this rank in this update
+  std::vector<std::uint64_t> ended_ids_;  // to be unregistered after it
   std::unique_ptr<Part> part_;
   std::vector<LargePair> begun_;
   std::vector<LargePair> ended_;
   DistributedWorldStatistics statistics_;
   bool is_to_be_cut_ = true;
   bool has_just_cut_ = false;
-  double achieved_ = 1;             // the least imbalance since space was cut
-  std::uint64_t boxes_at_cut_ = 0;  // of all parts, just after space was cut
-  double work_at_cut_ = 0;          // likewise
+  double achieved_ = 1;             // smallest imbalance since the last repartitioning
+  std::uint64_t boxes_at_cut_ = 0;  // of all parts, just after the last repartitioning
+  double work_at_cut_ = 0;          // of all parts, just after the last repartitioning
 };
 
 template <int D, typename Real>

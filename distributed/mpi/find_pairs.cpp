@@ -1,4 +1,4 @@
-// The join of all ranks' boxes: boxes go to the ranks whose part of space they touch, and pairs to the ranks
+// Joins all ranks' boxes: sends boxes to the ranks whose parts of space they touch, and pairs to the ranks
 // that own them.
 #include <algorithm>
 #include <array>
@@ -22,13 +22,13 @@ namespace {
 
 constexpr std::uint64_t max_small_ids = std::uint64_t{1} << 32;
 
-/// One set of boxes: those handed in on this rank, and those that touch its part of space.
+/// One set of boxes: those passed on this rank, and those that touch its part of space.
 template <int D, typename Real, typename Id>
 struct JoinSide {
   explicit JoinSide(const BoxView<D, Real>& handed_in) : mine(handed_in) {}
 
   BoxView<D, Real> mine;
-  std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box's
+  std::vector<std::uint64_t> ends;  ///< for each rank, the id after its last box
 
   std::vector<Box<D, Real>> boxes{};
   std::vector<Id> ids{};
@@ -42,18 +42,18 @@ struct JoinSide {
     constexpr std::size_t few = 16;
     if (ends.size() > few)
       return static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin());
-    // Without a branch that depends on the pair.
+    // Branch-free with respect to the pair.
     std::size_t rank = 0;
     for (const std::uint64_t end : ends) rank += std::size_t{end <= id};
     return rank;
   }
 };
 
-/// Collects the pairs that belong to the part, in one list for each rank that owns some.
+/// Collects the pairs that belong to the part, in one list per owning rank.
 template <typename LeftSide, typename Id, typename P>
 class OwnedPairs final : public PairSink {
  public:
-  /// The sides outlive the sink.
+  /// The sides must outlive the sink.
   OwnedPairs(const LeftSide& left, const LeftSide& right, std::size_t ranks)
       : left_(left), right_(right), owned_(ranks) {}
 
@@ -101,11 +101,11 @@ void hand_on(std::span<const LargePair> pairs, const PairCallback& take) {
 }
 
 void hand_on(std::span<const Pair> pairs, const PairCallback& take) {
-  constexpr std::size_t most = std::size_t{1} << 14;
+  constexpr std::size_t max_chunk = std::size_t{1} << 14;
   std::vector<LargePair> chunk;
-  chunk.reserve(std::min(most, pairs.size()));
+  chunk.reserve(std::min(max_chunk, pairs.size()));
   while (!pairs.empty()) {
-    const std::span<const Pair> next = pairs.first(std::min(most, pairs.size()));
+    const std::span<const Pair> next = pairs.first(std::min(max_chunk, pairs.size()));
     chunk.clear();
     for (const Pair pair : next) chunk.push_back({index(pair.first), index(pair.second)});
     take(chunk);
@@ -126,20 +126,20 @@ std::uint64_t fingerprint(const Options& options, bool is_between) {
   return hash;
 }
 
-/// Throws if a rank's own boxes cannot be joined; `set` is what messages call them, such as "left box".
+/// Throws if a rank's own boxes cannot be joined; `set` names them in messages, such as "left box".
 template <int D, typename Real>
 void check_boxes(const BoxView<D, Real>& boxes, const char* set) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  if (boxes.size() > most)
-    throw InvalidFrame(std::to_string(boxes.size()) + " boxes; expected at most " + std::to_string(most) +
-                       " on a rank");
+  constexpr std::uint64_t max_boxes = std::numeric_limits<std::uint32_t>::max();
+  if (boxes.size() > max_boxes)
+    throw InvalidFrame(std::to_string(boxes.size()) + " boxes; expected at most " +
+                       std::to_string(max_boxes) + " on a rank");
   for (std::size_t i = 0; i < boxes.size(); ++i)
     if (const Box<D, Real> box = boxes[i]; !is_present(box) && !is_absent(box))
       throw InvalidInput(i, std::string(set) + " " + std::to_string(i) +
                                 " has a NaN or min > max; expected min <= max, or the absent box");
 }
 
-/// The join of one call.
+/// State of one call.
 template <int D, typename Real, typename Id, typename P>
 class RankJoin {
  public:
@@ -171,7 +171,7 @@ class RankJoin {
     std::uint64_t all = 0;
     comm_.together([&] {
       for (const OneSide& side : sides_) all += side.size();
-      const std::size_t sample = options.sample == 0 ? standard_sample(comm_.size()) : options.sample;
+      const std::size_t sample = options.sample == 0 ? default_sample(comm_.size()) : options.sample;
       for (const OneSide& side : sides_) {
         statistics_.boxes += side.mine.size();
         if (comm_.size() == 1) continue;
@@ -190,7 +190,7 @@ class RankJoin {
     comm_.together([&] {
       boxes.resize(comm_.size());
       ids.resize(comm_.size());
-      // On this rank there will be those of the others as well.
+      // Leaves room for boxes of the other ranks.
       const std::size_t usual = side.mine.size() + side.mine.size() / 16;
       for (std::size_t part = 0; part < partition.size(); ++part) {
         const bool is_own = part == static_cast<std::size_t>(comm_.rank());
@@ -221,7 +221,7 @@ class RankJoin {
       side.begins_before[i] = static_cast<std::uint8_t>(region.begins_before(side.boxes[i]));
   }
 
-  /// The pairs that belong to this rank's part, by the ranks that own them.
+  /// Finds the pairs that belong to this rank's part, grouped by owner.
   std::vector<std::vector<P>> search() {
     const OneSide& left = sides_.front();
     const OneSide& right = sides_.back();
@@ -287,14 +287,14 @@ RankStatistics find_pairs(MPI_Comm mpi_comm, const BoxView<D, Real>& boxes, cons
     if (right != nullptr) check_boxes(*right, "right box");
   });
   std::vector<std::vector<std::uint64_t>> ends;
-  std::uint64_t most = 0;
+  std::uint64_t max_ids = 0;
   for (const BoxView<D, Real>& view : views) {
     std::vector<std::uint64_t> counts = comm.gather(view.size());
     for (std::size_t rank = 1; rank < counts.size(); ++rank) counts[rank] += counts[rank - 1];
-    most = std::max(most, counts.back());
+    max_ids = std::max(max_ids, counts.back());
     comm.together([&] { ends.push_back(std::move(counts)); });
   }
-  if (most <= max_small_ids && !options.has_large_ids)
+  if (max_ids <= max_small_ids && !options.has_large_ids)
     return join<std::uint32_t, Pair>(comm, *finder, views, std::move(ends), pairs, options);
   return join<std::uint64_t, LargePair>(comm, *finder, views, std::move(ends), pairs, options);
 }

@@ -1,4 +1,5 @@
-// The boxes of one part of space, followed by a tracker: which pairs of all space begin and end there.
+// Follows the boxes of one part of space with a tracker, and reports which pairs of the whole world begin and
+// end there.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +16,14 @@
 
 namespace broadside::mpi {
 
-/// A box that touched the part at the last update, and has changed.
+/// A changed box that touched the part at the last update.
 template <int D, typename Real>
 struct ChangedPartBox {
   Box<D, Real> now;
   std::uint64_t id;
 };
 
-/// A box that touches the part and did not at the last update.
+/// A box that touches the part now, and did not at the last update.
 template <int D, typename Real>
 struct EnteringBox {
   Box<D, Real> before;
@@ -30,19 +31,19 @@ struct EnteringBox {
   std::uint64_t id;
 };
 
-/// One thread at a time. After a call that has thrown, only the destructor may be called.
+/// Not thread-safe. After an exception, only the destructor may be called.
 ///
-/// The tracker sees a box while it touches the part. So it also reports pairs that only cross the part's
-/// bounds, and pairs that belong to another part, which has both boxes too. The boxes before and now tell
-/// whether a pair is an event of the whole world: it begins if it did not overlap before, and the part to
-/// which it belongs now reports it; it ends if it does not overlap now, and the part to which it belonged
-/// reports it.
+/// The tracker sees a box while it touches the part. It therefore also reports pairs that only cross the
+/// part's bounds, and pairs that belong to another part that both boxes touch. The boxes before and now tell
+/// whether a pair is an event of the whole world. A pair begins if it did not overlap before; the part to
+/// which it belongs now reports it. A pair ends if it does not overlap now; the part to which it belonged
+/// before reports it.
 template <int D, typename Real>
 class FollowedPart {
  public:
   using Region = typename Partition<D, Real>::Region;
 
-  /// Events, by the rank that owns the first box.
+  /// Events, grouped by the rank that owns the first box.
   struct PartEvents {
     std::vector<std::vector<LargePair>> begun;
     std::vector<std::vector<LargePair>> ended;
@@ -51,12 +52,12 @@ class FollowedPart {
   FollowedPart(const Region& region, Tracker<D, Real> tracker)
       : region_(region), tracker_(std::move(tracker)) {}
 
-  /// A box that is in the part has changed; `owner` is the rank that owns it.
+  /// Updates a box of the part; `owner` is the rank that owns it.
   void change(const ChangedPartBox<D, Real>& box, std::uint32_t owner) {
     change_slot(slots_.at(box.id), box.now, owner);
   }
 
-  /// A box comes in.
+  /// Adds a box to the part.
   void change(const EnteringBox<D, Real>& box, std::uint32_t owner) {
     const std::uint32_t slot = new_slot();
     slots_.emplace(box.id, slot);
@@ -65,7 +66,7 @@ class FollowedPart {
     change_slot(slot, box.now, owner);
   }
 
-  /// Has the tracker take in the changes.
+  /// Passes the changes to the tracker.
   PartEvents follow(std::size_t ranks) {
     PartEvents events{std::vector<std::vector<LargePair>>(ranks), std::vector<std::vector<LargePair>>(ranks)};
     free_.reserve(free_.size() + changed_.size());
@@ -76,7 +77,7 @@ class FollowedPart {
     return events;
   }
 
-  /// What is now becomes what was before; boxes that have left are forgotten.
+  /// Makes the current boxes the previous ones, and forgets boxes that have left.
   void commit() noexcept {
     for (const BoxId id : changed_) {
       const std::uint32_t slot = index(id);
@@ -92,8 +93,8 @@ class FollowedPart {
   std::uint64_t pairs() const noexcept { return pairs_; }
 
  private:
-  /// Takes pairs of slots that the tracker tells of, and keeps those that belong to the part by `here`, where
-  /// they overlap, and do not overlap by `elsewhere`.
+  /// Receives the tracker's pairs of slots. Keeps pairs that overlap and belong to the part according to
+  /// `here`, and do not overlap according to `elsewhere`.
   class EventSink final : public PairSink {
    public:
     EventSink(const FollowedPart& part, const std::vector<Box<D, Real>>& here,
@@ -150,14 +151,14 @@ class FollowedPart {
   Region region_;
   Tracker<D, Real> tracker_;
   std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // by id
-  std::vector<std::uint64_t> ids_;                          // by slot, as all that follows
+  std::vector<std::uint64_t> ids_;                          // by slot, like the arrays below
   std::vector<std::uint32_t> owners_;
   std::vector<Box<D, Real>> before_;  // at the last update
-  std::vector<Box<D, Real>> now_;     // wherever it is
-  std::vector<Box<D, Real>> shown_;   // to the tracker: absent where it does not touch the part
+  std::vector<Box<D, Real>> now_;     // current bounds, also outside the part
+  std::vector<Box<D, Real>> shown_;   // as shown to the tracker: absent if it does not touch the part
   std::vector<std::uint32_t> free_;
   std::vector<BoxId> changed_;
-  std::uint64_t pairs_ = 0;  // that overlap in shown_
+  std::uint64_t pairs_ = 0;  // overlapping in shown_
 };
 
 }  // namespace broadside::mpi

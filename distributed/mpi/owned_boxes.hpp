@@ -1,4 +1,4 @@
-// The boxes that a rank of a distributed world owns: as they were at the last update, and as they are.
+// The boxes that a rank of a distributed world owns, at the last update and now.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ namespace broadside::mpi {
 template <int D, typename Real>
 struct OwnedBox {
   std::uint64_t id;
-  Box<D, Real> before;  ///< absent where it was not in the world
-  Box<D, Real> now;     ///< absent where it is removed
-  bool is_listed;       ///< among the changed ones
+  Box<D, Real> before;  ///< absent if it was not in the world
+  Box<D, Real> now;     ///< absent if removed
+  bool is_listed;       ///< in the list of changed boxes
   bool is_handed_over;  ///< to this rank, since the last update
 
   bool is_changed() const noexcept { return is_handed_over || !(before == now); }
@@ -27,7 +27,7 @@ struct OwnedBox {
   bool is_removed() const noexcept { return is_present(before) && !is_present(now); }
 };
 
-/// A map from ids to boxes, which lie in one array in no order: a removed box is replaced by the last one.
+/// A map from ids to boxes. The boxes are in an unordered array: the last box replaces a removed one.
 template <int D, typename Real>
 class OwnedBoxes {
  public:
@@ -62,8 +62,8 @@ class OwnedBoxes {
     ++absent_;
   }
 
-  /// Takes in a box that another rank hands over, and lists it as changed. Throws InvalidFrame if this rank
-  /// has another box of its id; one that was added and removed since the last update is replaced.
+  /// Takes over a box from another rank, and lists it as changed. Throws InvalidFrame if this rank has
+  /// another box with its id; a box that was added and removed since the last update is replaced.
   void take(OwnedBox<D, Real> box) {
     if (const auto found = slots_.find(box.id); found != slots_.end()) {
       OwnedBox<D, Real>& old = boxes_[found->second];
@@ -79,7 +79,7 @@ class OwnedBoxes {
     insert(box);
   }
 
-  /// Forgets boxes, so that none is listed twice if it comes back.
+  /// Forgets boxes, so that a returning box is not listed twice.
   void forget(std::span<const std::uint64_t> ids) noexcept {
     if (ids.empty()) return;
     for (const std::uint64_t id : ids) forget(id);
@@ -94,7 +94,7 @@ class OwnedBoxes {
         visit(boxes_[found->second]);
   }
 
-  /// What is now becomes what was before.
+  /// Makes the current boxes the previous ones.
   void commit() noexcept {
     for (const std::uint64_t id : changed_) {
       const auto found = slots_.find(id);
@@ -107,7 +107,7 @@ class OwnedBoxes {
     changed_.clear();
   }
 
-  /// The index of a box that is in the world, until boxes come or go. Throws InvalidHandle.
+  /// The index of a box in the world; valid until boxes are added or removed. Throws InvalidHandle.
   std::size_t slot_of(std::uint64_t id) const {
     const auto found = slots_.find(id);
     if (found == slots_.end() || !is_present(boxes_[found->second].now))
@@ -120,7 +120,6 @@ class OwnedBoxes {
     return found != slots_.end() && is_present(boxes_[found->second].now);
   }
 
-  /// The number of boxes in the world.
   std::size_t size() const noexcept { return boxes_.size() - absent_; }
 
   const OwnedBox<D, Real>& at(std::size_t slot) const noexcept { return boxes_[slot]; }
@@ -132,7 +131,7 @@ class OwnedBoxes {
       throw InvalidInput(0, "box " + std::to_string(id) + " has a NaN or min > max; expected min <= max");
   }
 
-  /// Appends a box of an id that is not there, and lists it as changed.
+  /// Appends a box with a new id, and lists it as changed.
   void insert(OwnedBox<D, Real> box) {
     box.is_listed = false;
     boxes_.push_back(box);
@@ -150,7 +149,7 @@ class OwnedBoxes {
     }
   }
 
-  /// Forgets a box, if it is there.
+  /// Forgets a box if it exists.
   void forget(std::uint64_t id) noexcept {
     const auto found = slots_.find(id);
     if (found == slots_.end()) return;
@@ -173,7 +172,7 @@ class OwnedBoxes {
   std::vector<OwnedBox<D, Real>> boxes_;
   std::unordered_map<std::uint64_t, std::size_t> slots_;
   std::vector<std::uint64_t> changed_;
-  std::size_t absent_ = 0;  // boxes that are removed, until commit()
+  std::size_t absent_ = 0;  // removed boxes, until commit()
 };
 
 }  // namespace broadside::mpi

@@ -21,7 +21,8 @@ struct Header {
   std::uint64_t checksum;
 };
 
-/// No block is larger. A header that says otherwise is damaged, and must not make us allocate that much.
+/// Upper limit of a block's size: a larger size in a header is corruption, and must not cause such an
+/// allocation.
 constexpr std::uint64_t max_block_bytes = std::uint64_t{1} << 30;
 
 struct Close {
@@ -55,7 +56,7 @@ void BlockWriter::append(std::span<const std::byte> bytes, std::span<const std::
   const Header header{bytes.size() + more.size(), checksum_of(bytes, more)};
   if (!write(file.get(), &header, sizeof(header)) || !write(file.get(), bytes.data(), bytes.size()) ||
       !write(file.get(), more.data(), more.size()) ||
-      std::fclose(file.release()) != 0)  // where quotas and network file systems report
+      std::fclose(file.release()) != 0)  // quotas and network file systems report errors here
     refuse();
   ++blocks_;
 }
@@ -69,13 +70,13 @@ bool BlockReader::next(std::vector<std::byte>& bytes) {
     is_at_end_ = true;
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path_, error);
-    // A file without a block was never written.
+    // A file without blocks was never written.
     if (error ? offset_ > 0 : size != offset_) refuse("has no end");
     return false;
   }
   const File file(std::fopen(path_.c_str(), "rb"));
   if (file == nullptr) {
-    // What is gone can be made again; for others, such as too many open files, that is no remedy.
+    // A missing file can be recreated; other errors, such as too many open files, would persist.
     if (errno == ENOENT) refuse("is missing");
     throw OutOfCoreError(path_.string() + ": cannot be read: " + std::strerror(errno));
   }
@@ -85,7 +86,7 @@ bool BlockReader::next(std::vector<std::byte>& bytes) {
       std::fread(&header, 1, sizeof(header), file.get()) != sizeof(header))
     refuse("ends early");
   if (header.bytes > max_block_bytes) refuse("has a damaged block");
-  // Nor must one that names more than the file has.
+  // A size beyond the end of the file is corruption, too.
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path_, error);
   if (error || header.bytes > size - std::min(size, offset_ + sizeof(header))) refuse("ends early");

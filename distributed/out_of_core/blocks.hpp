@@ -1,4 +1,4 @@
-// Files of blocks, each with a checksum, so that reading notices damage and truncation.
+// Files of blocks with checksums, which detect damage and truncation.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace broadside::out_of_core {
 
-/// A file does not hold what was written to it.
+/// Thrown if a file's contents are not what was written to it.
 class CorruptFile : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -21,10 +21,10 @@ class CorruptFile : public std::runtime_error {
 std::uint64_t checksum_of(std::span<const std::byte> bytes, std::span<const std::byte> more = {});
 
 /// Appends blocks to a file. The file is closed between blocks, so any number of writers can exist at once.
-/// Throws OutOfCoreError if writing fails.
+/// Throws OutOfCoreError if a write fails.
 class BlockWriter {
  public:
-  /// The first block replaces what the file held; until then the file is not touched.
+  /// The first block replaces the file's old contents; until then the file is not touched.
   explicit BlockWriter(std::filesystem::path path) : path_(std::move(path)) {}
 
   /// Writes `bytes` and then `more` as one block.
@@ -38,15 +38,15 @@ class BlockWriter {
   std::uint64_t blocks_ = 0;
 };
 
-/// Reads the blocks of a file in order. The file is closed between blocks. A copy reads on from the same
+/// Reads the blocks of a file in order. The file is closed between blocks. A copy continues at the same
 /// block.
 class BlockReader {
  public:
   /// `blocks` is the number of blocks that the file must have.
   BlockReader(std::filesystem::path path, std::uint64_t blocks) : path_(std::move(path)), left_(blocks) {}
 
-  /// Replaces `bytes` by the next block; false at the end. Throws CorruptFile, also where the file goes on
-  /// behind its last block; OutOfCoreError where it cannot be read.
+  /// Replaces `bytes` by the next block; false at the end. Throws CorruptFile, also for data after the last
+  /// block, and OutOfCoreError if the file cannot be read.
   bool next(std::vector<std::byte>& bytes);
 
  private:

@@ -15,7 +15,7 @@
 
 namespace broadside::out_of_core {
 
-/// Bytes of a box in a file: itself, and its id as a 32-bit distance from the first id of its block.
+/// Bytes per box in a file: the box, and its id as a 32-bit distance from the first id of its block.
 template <int D, typename Real>
 constexpr std::size_t bytes_per_box = sizeof(Box<D, Real>) + sizeof(std::uint32_t);
 
@@ -36,7 +36,7 @@ class BoxFileWriter {
     ++count_;
   }
 
-  /// Writes what has been collected.
+  /// Writes the collected boxes.
   void flush() {
     if (boxes_.empty()) return;
     block_.resize(sizeof(first_id_) + boxes_.size() * sizeof(Box<D, Real>));

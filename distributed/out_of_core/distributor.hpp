@@ -17,11 +17,11 @@
 
 namespace broadside::out_of_core {
 
-/// Several threads look up the parts; one writes, so that the ids in each file ascend.
+/// Several threads look up the parts; one thread writes, so that the ids in each file ascend.
 template <int D, typename Real>
 class Distributor {
  public:
-  /// `threads` is as in Workers: 0 means all of the standard executor's.
+  /// `threads` is as in Workers: 0 means all workers of the default executor.
   Distributor(const Partition<D, Real>& partition, std::vector<BoxFileWriter<D, Real>>& files,
               std::size_t threads)
       : partition_(partition), files_(files), executor_(standard_executor()) {
@@ -29,10 +29,10 @@ class Distributor {
     tasks_.resize(threads == 0 ? available : std::min(threads, available));
   }
 
-  /// `id(i)` is that of boxes[i]. Absent boxes touch nothing.
+  /// `id(i)` is the id of boxes[i]. Absent boxes touch no part.
   template <typename Id>
   void add(std::span<const Box<D, Real>> boxes, const Id& id) {
-    // A few at a time, since each box may touch many parts.
+    // A few at a time, because each box may touch many parts.
     constexpr std::size_t step = std::size_t{1} << 14;
     for (std::size_t first = 0; first < boxes.size(); first += step)
       add_few(boxes.subspan(first, std::min(step, boxes.size() - first)),

@@ -1,7 +1,7 @@
-// A join within a limit of memory: partitions the boxes into files, joins one part after the other, and
-// merges the sorted pairs of the parts.
+// A join within a memory limit: partitions the boxes into files, joins one part after another, and merges the
+// sorted pairs of the parts.
 //
-// Partition Based Spatial-Merge join: Patel and DeWitt, SIGMOD 1996. Pairs are not found twice, since each
+// Partition Based Spatial-Merge join: Patel and DeWitt, SIGMOD 1996. No pair is found twice, because each
 // belongs to one part: Dittrich and Seeger, ICDE 2000 ("reference point").
 #include "broadside/out_of_core.hpp"
 
@@ -113,9 +113,9 @@ class OutOfCoreJoin<D, Real>::Work {
           "OutOfCoreJoin: pairs were counted only, and cannot be visited; expected counts_only = false");
     const std::uint64_t all = pairs();
     check_runs();
-    finder_.reset();  // for the memory that it keeps between searches
+    finder_.reset();  // frees the memory that it keeps between searches
     std::uint64_t done = 0;
-    // A visitor may copy what it is given, which must be little.
+    // A visitor may copy its chunk, so chunks must be small.
     constexpr std::size_t max_visited = std::size_t{1} << 16;
     const std::function<void(std::span<const P>)> counted = [&](std::span<const P> pairs) {
       while (!pairs.empty()) {
@@ -190,15 +190,15 @@ class OutOfCoreJoin<D, Real>::Work {
     return region;
   }
 
-  /// How many parts to cut `boxes` boxes into. Half as many again as would just fit, since parts differ and
-  /// boxes on cuts are in several.
+  /// Number of parts for `boxes` boxes: 1.5 times the minimum that would fit, because parts differ in size
+  /// and boxes on cuts are in several parts.
   std::size_t parts_for(std::uint64_t boxes) const {
     const std::uint64_t max_boxes = part_join_.max_boxes();
     return static_cast<std::size_t>(
         std::min<std::uint64_t>(1 + boxes + boxes / 2, part_files_.max_parts() * max_boxes) / max_boxes + 1);
   }
 
-  /// Partitions all boxes of the sources, by cuts made from their first boxes.
+  /// Partitions all boxes of the sources, with cuts made from their first boxes.
   void read_all() {
     std::uint64_t estimated = sources_.estimated_boxes();
     check_space(estimated);
@@ -220,8 +220,8 @@ class OutOfCoreJoin<D, Real>::Work {
     manifest_ = std::move(read);
   }
 
-  /// Cuts made from the first boxes of either source. Where these are not typical of the others, parts come
-  /// out too large, and are cut again. Sets `estimated` if the sample has all boxes.
+  /// Cuts from the first boxes of both sources. If these are not typical, some parts become too large and are
+  /// cut again. Sets `estimated` if the sample contains all boxes.
   Partition<D, Real> first_partition(std::uint64_t& estimated) const {
     auto sample = sources_.sample(std::max<std::size_t>(part_join_.max_boxes() / 8, 4096));
     if (sample.is_all) estimated = sample.boxes.size();
@@ -233,12 +233,12 @@ class OutOfCoreJoin<D, Real>::Work {
     return Partition<D, Real>(thinned(std::move(sample.boxes)), parts);
   }
 
-  /// Limits the sample, so that making the cuts costs little beside reading.
+  /// Thins the sample, so that making the cuts costs little compared with reading.
   static std::vector<Box<D, Real>> thinned(std::vector<Box<D, Real>> sample) {
-    constexpr std::size_t most = std::size_t{1} << 16;
-    if (sample.size() <= most) return sample;
-    std::vector<Box<D, Real>> some(most);
-    for (std::size_t i = 0; i < most; ++i) some[i] = sample[i * sample.size() / most];
+    constexpr std::size_t max_size = std::size_t{1} << 16;
+    if (sample.size() <= max_size) return sample;
+    std::vector<Box<D, Real>> some(max_size);
+    for (std::size_t i = 0; i < max_size; ++i) some[i] = sample[i * sample.size() / max_size];
     return some;
   }
 
@@ -252,7 +252,7 @@ class OutOfCoreJoin<D, Real>::Work {
                          std::to_string(boxes) + " boxes, and more for pairs");
   }
 
-  /// Runs `step` on a part. If its files are corrupt, makes the part again from the source and retries once.
+  /// Runs `step` on a part. If the part's files are corrupt, recreates it from the source and retries once.
   template <typename Step>
   void with_recovery(std::size_t place, const Step& step) {
     try {
@@ -268,7 +268,7 @@ class OutOfCoreJoin<D, Real>::Work {
     }
   }
 
-  /// Takes the boxes of a part from the sources again.
+  /// Recreates a part's boxes from the sources.
   void make_again(std::size_t place, const CorruptFile& corrupt) {
     PartRecord& part = manifest_.parts[place];
     if (options_.warn) options_.warn(std::string(corrupt.what()) + "; part " + part.name + " is made again");
@@ -294,17 +294,18 @@ class OutOfCoreJoin<D, Real>::Work {
   }
 
   /// Cuts a part that is too large into several, by a sample of its own boxes. If that does not help, marks
-  /// it to be joined whole.
+  /// it to be joined as a whole.
   void split(std::size_t place) {
     const PartRecord part = manifest_.parts[place];
     const std::uint64_t count = part.boxes[0] + part.boxes[1];
     const Partition<D, Real> partition(sample_of(part), parts_for(count), 0, region_of(part));
     std::vector<PartRecord> parts;
     if (partition.size() > 1) parts = distribute(part, partition);
-    const bool is_help = partition.size() > 1 && std::ranges::all_of(parts, [&](const PartRecord& smaller) {
-                           return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
-                         });
-    if (is_help) {
+    const bool reduces_size =
+        partition.size() > 1 && std::ranges::all_of(parts, [&](const PartRecord& smaller) {
+          return smaller.boxes[0] + smaller.boxes[1] < count - count / 8;
+        });
+    if (reduces_size) {
       const auto at = manifest_.parts.erase(manifest_.parts.begin() + static_cast<std::ptrdiff_t>(place));
       manifest_.parts.insert(at, parts.begin(), parts.end());
     } else {
@@ -327,7 +328,7 @@ class OutOfCoreJoin<D, Real>::Work {
     return sample;
   }
 
-  /// Writes the boxes of a part to the files of the parts that it is cut into.
+  /// Writes the boxes of a part to the files of its subparts.
   std::vector<PartRecord> distribute(const PartRecord& part, const Partition<D, Real>& partition) const {
     std::vector<Box<D, Real>> boxes;
     std::vector<std::uint64_t> ids;
@@ -358,7 +359,7 @@ class OutOfCoreJoin<D, Real>::Work {
       folder_.remove_boxes(manifest_.parts[place], source);
   }
 
-  /// Reads all pairs once, so that corrupt runs are made again before any pair is visited.
+  /// Reads all pairs once, so that corrupt runs are recreated before any pair is visited.
   void check_runs() {
     for (std::size_t place = 0; place < manifest_.parts.size(); ++place)
       with_recovery(place, [&] {

@@ -39,7 +39,7 @@ void append_blocks(BlockWriter& writer, std::span<const P> pairs) {
 template <typename P>
 class RunWriter {
  public:
-  /// `memory` in bytes, half of which is for sorting. With `counts_only` pairs are counted and not kept.
+  /// `memory` is in bytes; half of it is for sorting. With `counts_only`, pairs are only counted.
   RunWriter(const WorkFolder& folder, PartRecord& part, std::uint64_t memory, bool counts_only)
       : folder_(folder),
         part_(part),
@@ -48,12 +48,12 @@ class RunWriter {
     part_.runs.clear();
     part_.pairs = 0;
     if (counts_only_) return;
-    // Sorting may swap the two, and neither should have to grow.
+    // Sorting may swap the two vectors, and neither should have to grow.
     pairs_.reserve(max_pairs_);
     scratch_.reserve(max_pairs_);
   }
 
-  /// May be called by several threads at once.
+  /// Thread-safe.
   void add(std::span<const P> pairs) {
     const std::lock_guard lock(mutex_);
     if (counts_only_) {
@@ -64,7 +64,7 @@ class RunWriter {
     pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
   }
 
-  /// Writes what has been collected.
+  /// Writes the collected pairs.
   void flush() {
     if (pairs_.empty()) return;
     sort_pairs(pairs_, scratch_);
@@ -90,11 +90,11 @@ struct PairRun {
   std::uint64_t blocks;
 };
 
-/// Visits the pairs of all runs in ascending order, in about `memory` bytes, or in a few blocks of each run
-/// where that is more.
+/// k-way merge: visits the pairs of all runs in ascending order, with about `memory` bytes, or a few blocks
+/// per run if that is more.
 ///
 /// Reads blocks into a pool, always the next block of the run whose last pooled pair is the lowest. Every
-/// pair up to that one is then in the pool: these are sorted and visited.
+/// pair up to that one is then in the pool; these are sorted and visited.
 template <typename P>
 void merge_at_once(std::span<const PairRun> runs, std::uint64_t memory,
                    const std::function<void(std::span<const P>)>& visit) {
@@ -116,16 +116,16 @@ void merge_at_once(std::span<const PairRun> runs, std::uint64_t memory,
     heads.push({pool.back(), run});
   };
   // Half of the memory is for sorting. Pairs that stay in the pool are sorted again, so the pool is several
-  // times as large as what can stay.
+  // times as large as the maximum that can stay.
   const std::size_t room =
       std::max<std::size_t>(memory / (2 * sizeof(P)), 4 * runs.size() * (run_block_bytes / sizeof(P)));
-  // Sorting may swap the two, and neither should have to grow.
+  // Sorting may swap the two vectors, and neither should have to grow.
   for (std::vector<P>* const pairs : {&pool, &scratch}) pairs->reserve(room + run_block_bytes / sizeof(P));
   for (std::size_t run = 0; run < runs.size(); ++run) {
     readers.emplace_back(runs[run].path, runs[run].blocks);
     pool_next(run);
   }
-  // The pool can be empty while a run goes on: all others are then finished.
+  // The pool can become empty before the last run ends: then all other runs have ended.
   while (!pool.empty() || !heads.empty()) {
     while (!heads.empty() && pool.size() < room) {
       const std::size_t run = heads.top().run;
@@ -140,20 +140,20 @@ void merge_at_once(std::span<const PairRun> runs, std::uint64_t memory,
   }
 }
 
-/// The most runs that are merged at once in this much memory.
+/// The maximum number of runs that this much memory can merge at once.
 constexpr std::size_t max_fan_in(std::uint64_t memory) {
   return std::max<std::size_t>(4, static_cast<std::size_t>(memory / (8 * run_block_bytes)));
 }
 
-/// Visits the pairs of all runs in ascending order, in about `memory` bytes. Where there are too many runs
-/// for that, first merges some of them into longer ones in the work folder.
+/// Visits the pairs of all runs in ascending order, with about `memory` bytes. If there are too many runs for
+/// that, it first merges some of them into longer ones in the work folder.
 template <typename P>
 void merge_runs(const WorkFolder& folder, std::vector<PairRun> runs, std::uint64_t memory,
                 const std::function<void(std::span<const P>)>& visit) {
   const std::size_t fan_in = max_fan_in(memory);
   std::vector<std::filesystem::path> merged;
   while (runs.size() > fan_in) {
-    // No more than are needed, so that what is left can be merged at once.
+    // Merges no more than necessary for the remaining runs to be merged at once.
     const std::size_t some = std::min(fan_in, runs.size() - fan_in + 1);
     merged.push_back(folder.merged_file(merged.size()));
     BlockWriter writer(merged.back());

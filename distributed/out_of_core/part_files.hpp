@@ -21,16 +21,16 @@ namespace broadside::out_of_core {
 template <int D, typename Real>
 class PartFiles {
  public:
-  /// `memory` in bytes; `threads` as in Workers. Boxes come from one source or from two.
+  /// `memory` is in bytes; `threads` is as in Workers. Boxes come from one source or from two.
   PartFiles(const WorkFolder& folder, std::size_t sources, std::uint64_t memory, std::size_t threads)
       : folder_(folder), sources_(sources), memory_(memory), threads_(threads) {}
 
-  /// How many parts a partition may have. With more, their blocks would be too small for a disk.
+  /// Maximum number of parts of a partition. With more, their blocks would be too small for a disk.
   std::uint64_t max_parts() const { return std::clamp<std::uint64_t>(memory_ >> 18, 4, 1024); }
 
-  /// Writes the boxes of each source to the files of the parts that they touch. Calls
-  /// for_each_piece(source, add), which is to call add(boxes, id) for pieces of its boxes, id(i) being that
-  /// of boxes[i]. Returns the parts that can have pairs, named `prefix` and a number.
+  /// Writes the boxes of each source to the files of the parts that they touch. Calls for_each_piece(source,
+  /// add), which must call add(boxes, id) for pieces of the source's boxes; id(i) is the id of boxes[i].
+  /// Returns the parts that can have pairs, named `prefix` plus a number.
   template <typename ForEachPiece>
   std::vector<PartRecord> write(const Partition<D, Real>& partition, const std::string& prefix,
                                 const ForEachPiece& for_each_piece) const {
@@ -49,7 +49,7 @@ class PartFiles {
     return parts;
   }
 
-  /// Writes a part's boxes of one source anew: those that visit_all(add) gives to add(box, id).
+  /// Rewrites a part's boxes of one source: the boxes that visit_all(add) passes to add(box, id).
   template <typename VisitAll>
   void rewrite(PartRecord& part, std::size_t source, const VisitAll& visit_all) const {
     folder_.remove_boxes(part, source);
@@ -82,7 +82,7 @@ class PartFiles {
                                                   std::size_t source) const {
     const std::size_t bytes = std::min<std::size_t>(memory_ / 4 / parts.size(), std::size_t{1} << 20);
     std::vector<BoxFileWriter<D, Real>> writers;
-    // A block is copied when it is written.
+    // Writing a block copies it.
     for (const PartRecord& part : parts)
       writers.emplace_back(folder_.box_file(part, source), bytes / (2 * bytes_per_box<D, Real>)+1);
     return writers;

@@ -22,7 +22,7 @@
 
 namespace broadside::out_of_core {
 
-/// Boxes of a part, in memory.
+/// Boxes of a part, loaded into memory.
 template <int D, typename Real>
 struct PartBoxes {
   std::vector<Box<D, Real>> boxes;
@@ -41,8 +41,8 @@ struct PartBoxes {
   }
 };
 
-/// Memory that a search takes for each box of a part, beside the box and its id, in bytes:
-/// docs/lab-notes.md has the measurements.
+/// A search's memory for each box of a part, in bytes, beyond the box and its id: docs/lab-notes.md has the
+/// measurements.
 template <int D, typename Real>
 constexpr std::uint64_t search_bytes_per_box = 2 * sizeof(Box<D, float>) + sizeof(Box<D, Real>) + 16;
 
@@ -91,17 +91,18 @@ class PairsOfIds final : public PairSink {
   std::vector<P> pairs_;
 };
 
-/// Joins one part after the other within a limit of memory.
+/// Joins one part after another within a memory limit.
 template <int D, typename Real>
 class PartJoin {
  public:
   using Region = typename Partition<D, Real>::Region;
 
-  /// `memory` in bytes. Boxes come from one source or from two. With `counts_only` no pairs are kept.
+  /// `memory` is in bytes. Boxes come from one source or from two. With `counts_only`, pairs are only
+  /// counted.
   PartJoin(const WorkFolder& folder, std::uint64_t memory, std::size_t sources, bool counts_only)
       : folder_(folder), memory_(memory), is_between_(sources == 2), counts_only_(counts_only) {}
 
-  /// How many boxes a part may have to be joined in one search. Half of the memory is for the boxes and
+  /// Maximum number of boxes of a part that is joined in one search. Half of the memory is for the boxes and
   /// their search; a quarter is for pairs.
   std::uint64_t max_boxes() const {
     constexpr std::uint64_t bytes =
@@ -111,37 +112,38 @@ class PartJoin {
 
   bool is_too_large(const PartRecord& part) const { return part.boxes[0] + part.boxes[1] > max_boxes(); }
 
-  /// Fills in the runs of `part`, pairs of type P. A part that is too large is joined piece by piece.
-  /// Throws CorruptFile and OutOfCoreError.
+  /// Fills in the runs of `part`, with pairs of type P. A part that is too large is joined in pieces. Throws
+  /// CorruptFile and OutOfCoreError.
   template <typename P>
   void join(PartRecord& part, const Region& region, Finder<D, Real>& finder) {
     RunWriter<P> runs(folder_, part, memory_ / 4, counts_only_);
     const bool is_in_pieces = is_too_large(part);
-    const std::uint64_t most = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
+    const std::uint64_t max_loaded = is_in_pieces ? max_boxes() / 2 : UINT64_MAX;
     const auto room = [&](std::size_t side) {
-      return static_cast<std::size_t>(std::min(part.boxes[side], most + (std::uint64_t{1} << 15)));
+      return static_cast<std::size_t>(std::min(part.boxes[side], max_loaded + (std::uint64_t{1} << 15)));
     };
     PartBoxes<D, Real> left;
     PartBoxes<D, Real> right;
     left.reserve(room(0));
     if (is_between_ || is_in_pieces) right.reserve(room(is_between_ ? 1 : 0));
-    for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]); load(reader, region, most, left);) {
+    for (BlockReader reader(folder_.box_file(part, 0), part.blocks[0]);
+         load(reader, region, max_loaded, left);) {
       if (!is_between_) join_one(left, finder, runs);
-      // Within one source: the pieces that follow this one. Between two: all pieces of the other.
+      // Within one source: the pieces after this one. Between two sources: all pieces of the other source.
       BlockReader others = is_between_ ? BlockReader(folder_.box_file(part, 1), part.blocks[1]) : reader;
-      while ((is_between_ || is_in_pieces) && load(others, region, most, right))
+      while ((is_between_ || is_in_pieces) && load(others, region, max_loaded, right))
         join_two(left, right, finder, runs);
     }
     runs.flush();
   }
 
  private:
-  /// Loads blocks until there are `most` boxes; false where none are left.
-  static bool load(BlockReader& reader, const Region& region, std::uint64_t most,
+  /// Loads blocks until there are `max_loaded` boxes; false if none are left.
+  static bool load(BlockReader& reader, const Region& region, std::uint64_t max_loaded,
                    PartBoxes<D, Real>& loaded) {
     std::vector<std::byte> block;
     loaded.clear();
-    while (loaded.boxes.size() < most && reader.next(block))
+    while (loaded.boxes.size() < max_loaded && reader.next(block))
       for_each_box<D, Real>(block, [&](const Box<D, Real>& box, std::uint64_t id) {
         loaded.boxes.push_back(box);
         loaded.ids.push_back(id);

@@ -1,4 +1,4 @@
-// The boxes that a join reads: from one source or from two, checked, and sampled for the first cuts.
+// The boxes that a join reads: from one source or from two, validated, and sampled for the first cuts.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +21,15 @@ class Sources {
 
   std::size_t size() const noexcept { return sources_.size(); }
 
-  /// The approximate number of boxes of all; 0 if unknown.
+  /// The approximate total number of boxes; 0 if unknown.
   std::uint64_t estimated_boxes() const {
     std::uint64_t estimated = 0;
     for (const detail::BoxPieces<D, Real>* const source : sources_) estimated += source->estimated_size();
     return estimated;
   }
 
-  /// Calls visit(boxes, first) for all boxes of a source, piece by piece; `first` is the id of boxes[0].
-  /// Returns their number.
+  /// Calls visit(boxes, first) for all boxes of a source, in pieces; `first` is the id of boxes[0]. Returns
+  /// the number of boxes.
   template <typename Visit>
   std::uint64_t for_each_piece(std::size_t source, const Visit& visit) const {
     std::uint64_t first = 0;
@@ -41,15 +41,15 @@ class Sources {
     return first;
   }
 
-  /// The first boxes of either source.
+  /// The first boxes of both sources.
   struct SampledBoxes {
     std::vector<Box<D, Real>> boxes;
-    bool is_all = true;  ///< there are no others
+    bool is_all = true;  ///< whether these are all boxes
   };
-  SampledBoxes sample(std::size_t most) const {
+  SampledBoxes sample(std::size_t max_boxes) const {
     SampledBoxes sample;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
-      const std::size_t max_yet = most * (source + 1) / sources_.size();
+      const std::size_t max_yet = max_boxes * (source + 1) / sources_.size();
       sources_[source]->visit([&](std::span<const Box<D, Real>> piece) {
         if (sample.boxes.size() < max_yet)
           sample.boxes.insert(sample.boxes.end(), piece.begin(), piece.end());

@@ -46,7 +46,7 @@ std::vector<double> bounds_of(const nlohmann::json& json, double where_null) {
   return bounds;
 }
 
-/// Whether a file of this name is a part's. Nothing else is ever removed.
+/// Whether a file of this name belongs to a part. No other files are ever removed.
 bool is_of_a_part(const std::string& name) {
   static const std::regex pattern(
       R"([0-9]+(\.[0-9]+)*\.((left|right)\.boxes|[0-9]+\.pairs)|merged\.[0-9]+\.pairs)");
@@ -89,15 +89,15 @@ void WorkFolder::lock() {
   while (true) {
     lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_ < 0) fail(path, "cannot be written", std::strerror(errno));
-    // The kernel releases the lock when the process ends, however it ends. Host names and clocks play no
-    // part.
+    // The kernel releases the lock when the process ends, however it ends. Host names and clocks are
+    // irrelevant.
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
       const int why = errno;
       ::close(std::exchange(lock_, -1));
       if (why != EWOULDBLOCK) fail(path_, "cannot be locked", std::strerror(why));
       throw OutOfCoreError(path_.string() + ": another join is using this folder; expected one at a time");
     }
-    // A join that ended in between has removed the file that is locked here.
+    // A join that has just ended may have removed the locked file.
     struct stat locked {};
     struct stat present {};
     if (::fstat(lock_, &locked) == 0 && ::stat(path.c_str(), &present) == 0 &&
@@ -236,11 +236,11 @@ void WorkFolder::remove() noexcept {
       std::filesystem::remove(path_ / name, error);
     std::filesystem::remove(path_, error);
   } catch (const std::exception&) {
-    // What cannot be removed stays; the join is done.
+    // Files that cannot be removed stay; the join is done.
   }
 }
 
-// A path may be any bytes, and JSON must be UTF-8.
+// A path may be any bytes, but JSON must be UTF-8.
 std::string identity_text(const std::string& identity) {
   std::string escaped;
   for (const char c : identity) {

@@ -15,21 +15,21 @@
 namespace broadside {
 namespace {
 
-/// The number of boxes of a sample that are joined at first, to see where the pairs are. If they have fewer
-/// pairs than these, more boxes are joined.
+/// The number of sampled boxes that are joined first, to see where the pairs are. If they have fewer pairs
+/// than this, more boxes are joined.
 constexpr std::size_t first_joined = 4096;
 constexpr std::size_t enough_pairs = 4096;
 constexpr std::size_t enough_pairs_per_part = 64;
 
-/// A limit, since boxes without extents stay as they are however often they are doubled.
+/// A limit, because boxes without extents never grow by doubling.
 constexpr int max_doublings = 16;
 
-/// The numbers of boxes and of pairs that a cut is chosen from, evenly of more. Its share is then off by
-/// about a hundredth, and samples for a thousand parts need not be sorted at each level. Pairs are chosen
-/// apart from boxes, since there are few, and each costs as much as many boxes.
+/// Maximum number of boxes, and of pairs, from which a cut is chosen; larger sets are sampled evenly. The
+/// cut's share is then off by about 1 %, and samples for a thousand parts need not be sorted at each level.
+/// Pairs are sampled separately from boxes, because there are few, and each costs as much as many boxes.
 constexpr std::size_t max_examined = std::size_t{1} << 14;
 
-/// An item that cuts share out: a box, or the point to which a pair belongs, with its cost.
+/// An item that cuts distribute: a box, or the reference point of a pair, with its cost.
 template <int D, typename Real>
 struct Weighted {
   Box<D, Real> box;
@@ -78,8 +78,8 @@ class Cutter {
     double cost;  // per part, of the costlier side
   };
 
-  /// The cut that makes the cost per part of the costlier side least; nothing if no cut makes both sides
-  /// cheaper than the whole.
+  /// The cut that minimises the cost per part of the costlier side; empty if no cut makes both sides cheaper
+  /// than the whole.
   std::optional<CutChoice> choose(const BoxesAndPairs& items, std::size_t parts_below,
                                   std::size_t parts_above) {
     examined_.clear();
@@ -94,10 +94,10 @@ class Cutter {
     return best;
   }
 
-  /// Adds at most max_examined items that stand for all.
+  /// Adds at most max_examined items, weighted to represent all.
   void examine(const Items& items) {
     const std::size_t step = items.size() / max_examined + 1;
-    // One from anywhere in each stretch: boxes may alternate. (Knuth's MMIX generator)
+    // A random item from each stretch, because boxes may alternate. (Knuth's MMIX generator)
     std::uint64_t random = 1;
     for (std::size_t begin = 0; begin < items.size(); begin += step) {
       random = random * 6364136223846793005U + 1442695040888963407U;
@@ -119,8 +119,8 @@ class Cutter {
     std::sort(minima_.begin(), minima_.end(), by_coordinate);
     std::sort(maxima_.begin(), maxima_.end(), by_coordinate);
     std::optional<CutChoice> best;
-    double below = 0;    // the cost of the items that begin below the cut
-    double above = all;  // the cost of the items that end at the cut or above
+    double below = 0;    // cost of the items that begin below the cut
+    double above = all;  // cost of the items that end at the cut or above
     std::size_t end = 0;
     for (std::size_t begin = 0; begin < minima_.size();) {
       const Real at = minima_[begin].first;
@@ -143,7 +143,7 @@ class Cutter {
   std::vector<std::pair<Real, double>> maxima_;
 };
 
-/// The box with twice its extents about its centre; infinite extents stay as they are.
+/// The box with twice its extents around its centre; infinite extents stay as they are.
 template <int D, typename Real>
 Box<D, Real> doubled(Box<D, Real> box) {
   for (std::size_t axis = 0; axis < D; ++axis) {
@@ -155,11 +155,11 @@ Box<D, Real> doubled(Box<D, Real> box) {
   return box;
 }
 
-/// The estimated cost of all pairs, as `enough` items or more if it finds as many pairs, each at the greater
-/// of its two minima.
+/// The estimated cost of all pairs, as at least `enough` items if it finds as many pairs, each at its
+/// reference point.
 ///
-/// A thin sample has few pairs, and each stands for very many. So its boxes are enlarged until they have
-/// enough pairs. If boxes are spread evenly, twice the extents make 2^D times the pairs.
+/// A thin sample has few pairs, and each represents very many. The boxes are therefore enlarged until they
+/// have enough pairs. If boxes are spread evenly, doubling the extents multiplies the number of pairs by 2^D.
 template <int D, typename Real>
 std::vector<Weighted<D, Real>> weighted_pairs(const std::vector<Weighted<D, Real>>& items,
                                               std::uint64_t boxes, std::size_t enough) {
@@ -174,18 +174,18 @@ std::vector<Weighted<D, Real>> weighted_pairs(const std::vector<Weighted<D, Real
     // Four times the boxes have sixteen times the pairs.
     step = (step + 3) / 4;
   }
-  double enlargement = 1;  // of a box's volume
+  double enlargement = 1;  // factor of a box's volume
   const bool is_thin = boxes > items.size();
   for (int doublings = 0; is_thin && doublings < max_doublings && pairs.size() < enough; ++doublings) {
     for (Box<D, Real>& box : joined) box = doubled(box);
     enlargement *= std::size_t{1} << D;
     pairs = find_pairs(joined, {.algorithm = algorithms().front().name});
   }
-  // Joining every `step`-th box finds one pair in step^2; and the items stand for all boxes.
+  // Joining every `step`-th box finds one of step^2 pairs, and the items represent all boxes.
   const double pair_cost = Partition<D, Real>::cost(0, 1) * static_cast<double>(step) *
                            static_cast<double>(step) * static_cast<double>(boxes) /
                            static_cast<double>(items.size()) / enlargement;
-  // Of very many pairs, some are enough to say where they are.
+  // Some of very many pairs suffice to show where they are.
   const std::size_t pair_step = std::max<std::size_t>(1, pairs.size() / (16 * enough));
   std::vector<Weighted<D, Real>> weighted;
   for (std::size_t i = 0; i < pairs.size(); i += pair_step) {
@@ -209,7 +209,7 @@ Partition<D, Real>::Partition(std::span<const Box<D, Real>> sample, std::size_t 
   typename Cutter<D, Real>::BoxesAndPairs items;
   if (parts > 1) {
     items[0].reserve(sample.size());
-    for (const Box<D, Real> box : sample)  // a copy, since another thread may change the caller's
+    for (const Box<D, Real> box : sample)  // a copy, because another thread may change the caller's box
       if (is_present(box) && space.touches(box)) items[0].push_back({box, 1});
     if (boxes > 0 && items[0].size() > 1)
       items[1] = weighted_pairs(items[0], boxes, std::max(enough_pairs, enough_pairs_per_part * parts));

@@ -1,6 +1,6 @@
-// Bullet's own simulation over Broadside: crates and balls rain onto a floor into a heap, out of which some
-// are taken, and a ray finds the top of what is left. The broad phase is the one line that differs from any
-// program with Bullet.
+// A Bullet simulation on Broadside: crates and balls rain onto the ground and form a heap, some of them are
+// removed, and a ray finds the top of the rest. Only one line differs from any other Bullet program: the
+// broad phase.
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -42,7 +42,7 @@ class Game {
     for (int i = 0; i < times; ++i) world_.stepSimulation(btScalar(1) / 60, 0);
   }
 
-  /// Where a ray from above first hits something.
+  /// Height at which a ray from above first hits something.
   btScalar height(btScalar x, btScalar z) const {
     const btVector3 from(x, 50, z);
     const btVector3 to(x, -50, z);
@@ -80,7 +80,7 @@ class Game {
   broadside::BulletBroadphase broadphase_;  // instead of btDbvtBroadphase
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // the floor first
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // the ground first
 };
 
 void play() {

@@ -1,6 +1,6 @@
-// FCL with Broadside as its broad phase: boxes and balls that fly about a room, their contacts, and how close
-// a drone that passes outside comes to any of them. Runs the same simulation with FCL's own tree, which must
-// see the same.
+// FCL with Broadside as its broad phase: boxes and balls fly about a room; the program reports their
+// contacts, and the closest approach of a drone that passes outside. It runs the same simulation with FCL's
+// own tree, and the results must agree.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -39,7 +39,7 @@ class Room {
   }
   fcl::CollisionObjectd* drone() { return &drone_; }
 
-  /// Everything flies on, and turns back at the walls.
+  /// All bodies move on and bounce off the walls.
   void step() {
     for (Body& body : bodies_) {
       fcl::Vector3d place = body.object->getTranslation() + body.velocity;
@@ -47,7 +47,7 @@ class Room {
         if (std::abs(place[axis]) > half_room) body.velocity[axis] = -body.velocity[axis];
       }
       body.object->setTranslation(place);
-      body.object->computeAABB();  // FCL leaves this to its users
+      body.object->computeAABB();  // FCL requires its users to do this
     }
     drone_.setTranslation(drone_.getTranslation() + fcl::Vector3d(0.05, 0, 0));
     drone_.computeAABB();
@@ -63,8 +63,8 @@ class Room {
   };
 
   void add(const std::shared_ptr<fcl::CollisionGeometryd>& shape) {
-    const auto anywhere = [this](double most) {
-      std::uniform_real_distribution<> value(-most, most);
+    const auto anywhere = [this](double max) {
+      std::uniform_real_distribution<> value(-max, max);
       return fcl::Vector3d(value(random_), value(random_), value(random_));
     };
     auto object = std::make_unique<fcl::CollisionObjectd>(shape);
@@ -80,15 +80,15 @@ class Room {
 };
 
 struct Seen {
-  int touching = 0;     ///< pairs of bodies whose shapes touch, in all frames
-  double closest = 99;  ///< that the drone came to a body
+  int touching = 0;     ///< pairs of touching shapes, over all frames
+  double closest = 99;  ///< smallest distance of the drone to a body
 };
 
-/// What a user's callback does: FCL's narrow phase on the two shapes.
+/// A user's callback: runs FCL's narrow phase on the two shapes.
 bool count_touching(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data) {
   fcl::CollisionResultd result;
   if (fcl::collide(first, second, fcl::CollisionRequestd(), result) > 0) ++static_cast<Seen*>(data)->touching;
-  return false;  // goes on
+  return false;  // continue
 }
 
 Seen simulate(Manager& manager) {
@@ -104,7 +104,7 @@ Seen simulate(Manager& manager) {
     manager.distance(room.drone(), &nearest, fcl::DefaultDistanceFunction<double>);
     if (nearest.result.min_distance < seen.closest) seen.closest = nearest.result.min_distance;
   }
-  manager.clear();  // the objects go with the room
+  manager.clear();  // the room's objects are destroyed next
   return seen;
 }
 

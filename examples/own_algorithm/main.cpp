@@ -1,4 +1,4 @@
-// A broad phase of your own, a sweep over the first axis, in the program: all verbs know it as "mine".
+// Adds your own broad phase to the program: a sweep over the first axis, which all verbs know as "mine".
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -17,8 +17,8 @@ class FirstAxisSweep final : public broadside::Searcher<D> {
   explicit FirstAxisSweep(const broadside::Settings& settings)
       : touching_counts_(settings.text("touching") == "yes") {}
 
-  // All that an algorithm must do. The boxes are valid and none is absent; the pairs may come in any order
-  // that depends on the boxes alone.
+  // An algorithm only has to implement this. The boxes are valid and none is absent. The pairs may come in
+  // any order that depends only on the boxes.
   std::optional<broadside::Statistics> search(const broadside::SearchInput<D>& input,
                                               broadside::PairSink& pairs) override {
     const auto boxes = input.boxes;
@@ -39,7 +39,7 @@ class FirstAxisSweep final : public broadside::Searcher<D> {
 
  private:
   bool touching_counts_;
-  std::vector<std::uint32_t> order_;  // kept between calls for its memory
+  std::vector<std::uint32_t> order_;  // kept between calls to reuse its memory
 };
 
 broadside::Algorithm mine() {
@@ -47,8 +47,8 @@ broadside::Algorithm mine() {
       .name = "mine",
       .summary = "boxes sorted along the first axis, each compared with those that start before it ends",
       .source = "examples/own_algorithm",
-      // A spec can set it: mine:touching=no. Pairs are then missing, which shows what `verify` does about a
-      // fault.
+      // Can be set in a spec: mine:touching=no. Pairs are then missing, which shows how `verify` reports an
+      // error.
       .tunables = {{.name = "touching",
                     .summary =
                         "whether boxes that touch on the first axis overlap; they do, so `no` is a fault",

@@ -1,4 +1,4 @@
-// What the README shows: all pairs in one call, and boxes followed frame after frame.
+// The example in the README: all pairs in one call, and boxes followed from frame to frame.
 #include <cstdio>
 #include <vector>
 

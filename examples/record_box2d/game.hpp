@@ -1,4 +1,4 @@
-// A game on Box2D: crates rain onto a ledge, pile up there, and are gone once they have fallen off.
+// A game on Box2D: crates rain onto a ledge, pile up there, and are removed once they have fallen off.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,10 @@ class Game {
     }
   }
 
-  /// How many slots there are for bodies.
+  /// The number of slots for bodies.
   std::size_t slots() const { return bodies_.size(); }
 
-  /// Whether there is a body in a slot; if so, `box` becomes its bounds.
+  /// Whether there is a body in a slot; if so, sets `box` to its bounds.
   bool bounds(std::size_t slot, b2AABB& box) const {
     const b2Body* const body = bodies_[slot];
     if (body == nullptr) return false;
@@ -57,6 +57,6 @@ class Game {
   }
 
   b2World world_{b2Vec2(0, -10)};
-  std::vector<b2Body*> bodies_;  // nullptr in a slot that is free
+  std::vector<b2Body*> bodies_;  // nullptr in a free slot
   int steps_ = 0;
 };

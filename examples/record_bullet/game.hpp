@@ -1,5 +1,5 @@
-// A game on Bullet: crates and balls rain onto a floor, pile up there, and are gone once they have fallen
-// off.
+// A game on Bullet: crates and balls rain onto a platform, pile up there, and are removed once they have
+// fallen off.
 #pragma once
 
 #include <cstddef>
@@ -33,10 +33,10 @@ class Game {
     }
   }
 
-  /// How many slots there are for bodies.
+  /// The number of slots for bodies.
   std::size_t slots() const { return bodies_.size(); }
 
-  /// Whether there is a body in a slot; if so, `min` and `max` become its bounds.
+  /// Whether there is a body in a slot; if so, sets `min` and `max` to its bounds.
   bool bounds(std::size_t slot, btVector3& min, btVector3& max) const {
     if (!bodies_[slot]) return false;
     bodies_[slot]->getAabb(min, max);
@@ -68,6 +68,6 @@ class Game {
   btDbvtBroadphase broadphase_;
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // empty in a slot that is free
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // empty in a free slot
   int steps_ = 0;
 };

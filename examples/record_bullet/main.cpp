@@ -12,7 +12,7 @@
 int main(int argc, char** argv) {
   const char* const path = argc > 1 ? argv[1] : "bullet.btrace";
   Game game;
-  // Bullet's scalars are floats or doubles: a trace holds either.
+  // Bullet's scalars are floats or doubles; a trace can hold either.
   broadside::Recorder<3, btScalar> recorder;
   recorder.open(path);
   for (int frame = 0; frame < 600; ++frame) {

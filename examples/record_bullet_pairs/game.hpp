@@ -1,5 +1,5 @@
-// A game on Bullet: balls rain into a box without a lid. Its broad phase can be broken as a fault in an
-// engine would break it: from some step on, it is not told any more where one of the balls is.
+// A game on Bullet: balls rain into a box without a lid. Its broad phase can be broken on purpose, in a way
+// that is typical of bugs in engines: from some step on, it no longer gets the updates of one ball.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
-/// Bullet's usual broad phase, which can be made to skip the updates of one proxy.
+/// Bullet's usual broad phase; it can skip the updates of one proxy.
 class SkippingBroadphase : public btDbvtBroadphase {
  public:
   void skip(const btBroadphaseProxy* proxy) { skipped_ = proxy; }
@@ -27,9 +27,9 @@ class Game {
   static constexpr std::size_t balls = 60;
 
   Game() {
-    // A pair ends in the step in which its boxes part, and not some steps later.
+    // Lets a pair end in the step in which its boxes part, and not some steps later.
     broadphase_.m_cupdates = 100;
-    // Then the box of a ball is not stretched along its way.
+    // Without this, the box of a ball would be stretched along its path.
     world_.getDispatchInfo().m_useContinuous = false;
     put(floor_, 0, btVector3(0, -1, 0));
     for (int side = -1; side <= 1; side += 2) {
@@ -50,10 +50,10 @@ class Game {
   Game(const Game&) = delete;
   Game& operator=(const Game&) = delete;
 
-  /// Looks for pairs of the boxes as they are, and then moves the bodies.
+  /// Finds the pairs of the current boxes, and then moves the bodies.
   void step() { world_.stepSimulation(btScalar(1) / 60, 0); }
 
-  /// From now on, the broad phase takes the body in this slot to be where it is now.
+  /// From now on, the broad phase keeps the current position of the body in this slot.
   void break_broadphase(std::size_t slot) { broadphase_.skip(bodies_[slot]->getBroadphaseProxy()); }
 
   const std::vector<std::unique_ptr<btRigidBody>>& bodies() const { return bodies_; }

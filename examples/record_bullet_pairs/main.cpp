@@ -1,6 +1,6 @@
-// Records a game on Bullet together with the pairs of Bullet's broad phase, for Broadside to check. Usage:
+// Records a game on Bullet, including the pairs of Bullet's broad phase, for Broadside to check. Usage:
 // example_record_bullet_pairs [FILE [SLOT STEP]]. With a slot and a step, the broad phase is broken on
-// purpose: from that step on, it is not told any more where the body in that slot is.
+// purpose: from that step on, it no longer gets the updates of the body in that slot.
 //
 // Then: broadside verify FILE
 #include <cstdint>
@@ -26,15 +26,16 @@ int main(int argc, char** argv) {
   const std::size_t broken_slot = argc > 3 ? std::strtoul(argv[2], nullptr, 10) : 0;
   const int broken_from = argc > 3 ? std::atoi(argv[3]) : -1;
 
-  // Bullet adds 0.02 to the box of a body. Its tree enlarges that by 0.05, and keeps it until the body leaves
-  // it, to the other side: then it reaches 0.1 beyond.
+  // Bullet adds 0.02 to the box of a body. Its tree enlarges that by 0.05 and keeps the enlarged box until
+  // the body leaves it. After the body has moved to the opposite side, the enlarged box extends 0.1 beyond
+  // the box.
   const double margin = 0.12;
   Game game;
   broadside::Recorder<3, btScalar> recorder;
   recorder.open(path, margin);
   for (int step = 0; step < 240; ++step) {
     if (step == broken_from) game.break_broadphase(broken_slot);
-    // A step looks for pairs before it moves the bodies: these are the boxes that it sees.
+    // A step finds pairs before it moves the bodies, so these are the boxes that it uses.
     for (const auto& body : game.bodies()) {
       const auto slot = static_cast<std::uint32_t>(body->getUserIndex());
       btVector3 min;

@@ -1,5 +1,5 @@
-// Rollback, as in networked games: the game runs on with a guess of what the other player does, and when the
-// truth arrives, late, it goes back to the frame it is about and plays those after it once more.
+// Rollback, as in networked games: the game continues with a predicted input of the other player. When the
+// real input arrives late, the game returns to the frame of that input and replays the frames after it.
 #include <array>
 #include <cstddef>
 #include <cstdio>
@@ -10,9 +10,9 @@
 namespace {
 
 constexpr std::size_t frames = 60;
-constexpr std::size_t delay = 7;  // frames until the other player's move is known
+constexpr std::size_t delay = 7;  // frames until the other player's input is known
 
-/// What the other player does in a frame; -1 or 1.
+/// The other player's real input in a frame; -1 or 1.
 int truth(std::size_t frame) { return frame / 10 % 2 == 0 ? 1 : -1; }
 
 /// Two boxes on a line, and walls to touch.
@@ -33,7 +33,7 @@ struct Game {
     world.move(player, translated(world.box(player), {0.25F * static_cast<float>(way), 0}));
   }
 
-  /// One frame; returns how many pairs began.
+  /// Runs one frame; returns how many pairs began.
   std::size_t step(std::size_t frame, int others_way) {
     move(players[0], frame % 3 == 0 ? 1 : -1);
     move(players[1], others_way);
@@ -45,8 +45,8 @@ struct Game {
 
 int main() {
   Game game;
-  std::vector<std::vector<std::byte>> before;  // each frame
-  std::vector<int> played;                     // what the other player was thought to do in it
+  std::vector<std::vector<std::byte>> before;  // snapshot before each frame
+  std::vector<int> played;                     // the other player's input as used in each frame
   std::size_t rollbacks = 0;
   for (std::size_t frame = 0; frame < frames + delay; ++frame) {
     if (frame >= delay && played[frame - delay] != truth(frame - delay)) {
@@ -55,7 +55,7 @@ int main() {
       const int known = truth(frame - delay);
       for (std::size_t again = frame - delay; again < played.size(); ++again) {
         before[again] = game.world.snapshot();
-        played[again] = known;  // and that it goes on so is the next guess
+        played[again] = known;  // predict that the input stays the same
         game.step(again, known);
       }
     }
@@ -65,7 +65,7 @@ int main() {
     game.step(frame, played.back());
   }
 
-  // Who had known it all along is where we are.
+  // Knowing all inputs from the start must lead to the same state.
   Game known;
   for (std::size_t frame = 0; frame < frames; ++frame) known.step(frame, truth(frame));
   const bool same = known.world.snapshot() == game.world.snapshot();

@@ -1,8 +1,8 @@
-// Which boxes overlap, from Rust: the functions of broadside.h that it calls, declared by hand, and a safe one over them.
+// Finds overlapping boxes from Rust: hand-written declarations of the functions of broadside.h, and a safe wrapper.
 use std::ffi::{c_char, c_int, c_void, CStr};
 use std::ptr;
 
-// As broadside.h has them.
+// As in broadside.h.
 const BROADSIDE_OK: i32 = 0;
 const BROADSIDE_TOO_SMALL: i32 = 8;
 const BROADSIDE_FLOAT_2D: i32 = 0;
@@ -47,7 +47,7 @@ extern "C" {
 /// A box: its minima, then its maxima.
 type Box2 = [f32; 4];
 
-/// Every pair of boxes that overlap or touch, or what is wrong with the boxes.
+/// Every pair of overlapping or touching boxes, or an error message about the boxes.
 fn find_pairs(boxes: &[Box2]) -> Result<Vec<Pair>, String> {
     let all = Boxes { kind: BROADSIDE_FLOAT_2D, first: boxes.as_ptr().cast(), count: boxes.len(), stride: 0 };
     let mut pairs = vec![Pair::default(); boxes.len()];

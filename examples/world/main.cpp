@@ -1,5 +1,5 @@
-// A small engine's view of World: a static level, bodies that fall, a cart and its trailer on a joint, and a
-// trigger that only players set off.
+// A World in a small engine: a static level, falling bodies, a cart with its trailer on a joint, and a
+// trigger that only players activate.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -13,11 +13,11 @@ using broadside::Handle;
 
 enum Category : unsigned { level = 1, body = 2, player = 4, trigger = 8 };
 
-/// What the game knows of a box: the box's user data is its place in the list of these.
+/// The game's record of a box; the box's user data is its index in the list of records.
 struct Entity {
   std::string name;
   Handle handle;
-  float fall = 0;  ///< a frame
+  float fall = 0;  ///< per frame
 };
 
 Box2 square(float x, float y) { return {{x, y}, {x + 1, y + 1}}; }
@@ -27,13 +27,14 @@ class Game {
   Game() {
     const broadside::Filter of_level{.category = level, .is_static = true};
     spawn("floor", {{-50, -1}, {50, 0}}, of_level);
-    spawn("wall", {{49, 0}, {50, 20}}, of_level);  // touches the floor, which is nobody's business
+    spawn("wall", {{49, 0}, {50, 20}},
+          of_level);  // it touches the ground, but their filters exclude the pair
     spawn("door", {{4, 0}, {6, 3}}, {.category = trigger, .mask = player});
     spawn("crate", square(5, 2), {.category = body}, 1);
     spawn("player", square(8, 0), {.category = player});
     const Handle cart = spawn("cart", square(20, 5), {.category = body}, 1);
     const Handle trailer = spawn("trailer", square(21, 5), {.category = body}, 1);
-    world_.ignore(cart, trailer);  // a joint holds them together
+    world_.ignore(cart, trailer);  // they are connected by a joint
   }
 
   void step() {
@@ -68,7 +69,7 @@ class Game {
     world_.move(entity.handle, translated(world_.box(entity.handle), {x, y}));
   }
 
-  /// Also of a box that was removed, while its last pairs end.
+  /// Also valid for a removed box while its last pairs end.
   Entity& entity_of(Handle handle) { return entities_[world_.user_data(handle)]; }
 
   void tell(const broadside::HandlePair& pair, const char* what) {

@@ -1,4 +1,5 @@
-// The house stands: no file includes what its floor may not, and every algorithm's file is in the registry.
+// Enforces the layering: no file includes a header that its folder may not use, and every algorithm's file is
+// in the registry.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ const fs::path project = BROADSIDE_SOURCE_DIR;
 
 bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
 
-/// The names under which the folders in `folder` should stand in the registry.
+/// The names under which the subfolders of `folder` should be registered.
 std::vector<std::string> names_of_folders(const std::string& folder) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(project / folder)) {
@@ -41,11 +42,11 @@ std::vector<std::string> registered_names(AlgorithmKind kind) {
   return names;
 }
 
-TEST(Architecture, NoFileIncludesWhatItsFloorMayNot) {
+TEST(Architecture, NoFileBreaksTheIncludeRules) {
   std::size_t files = 0;
-  for (const char* const floor :
+  for (const char* const folder :
        {"include", "src", "integrations", "distributed", "tools", "tests", "examples"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / floor)) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(project / folder)) {
       const fs::path& path = entry.path();
       if (!is_source(path)) continue;
       ++files;
@@ -67,7 +68,7 @@ TEST(IncludeRules, SeeEveryFormOfInclude) {
       ElementsAre("<vector>", "\"core/a.hpp\"", "NAME"));
 }
 
-TEST(IncludeRules, LetThroughWhatAFloorMayInclude) {
+TEST(IncludeRules, AllowPermittedIncludes) {
   EXPECT_THAT(breaches("include/broadside/a.hpp", "#include <span>\n#include \"broadside/box.hpp\"\n"),
               IsEmpty());
   EXPECT_THAT(breaches("src/kernels/a.cpp", "#include \"broadside/pair.hpp\"\n#include \"kernels/run.hpp\""),

@@ -1,4 +1,4 @@
-// Which file may include what: each floor of the house only the one below.
+// The include rules: which folder may include which headers.
 #include "includes.hpp"
 
 #include <algorithm>
@@ -8,14 +8,13 @@
 namespace broadside::architecture {
 namespace {
 
-/// What the files in a folder (and the folders in it) may include: texts that match `allowed` from end to
-/// end.
+/// Permitted includes of the files in a folder and its subfolders: each must match `allowed` completely.
 struct Rule {
   std::string_view folder;
   std::string allowed;
 };
 
-/// The first rule whose folder a path lies in is the one that counts.
+/// The first rule that matches a path's folder applies.
 const std::vector<Rule>& rules() {
   const std::string standard = "<[a-z_0-9]+>";
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
@@ -24,7 +23,7 @@ const std::vector<Rule>& rules() {
   const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
                            R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
-  // A name that a user may have meant is an inline function of the library's.
+  // The suggestion of names that a user may have meant is an inline function of the library.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
                           R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
@@ -34,7 +33,7 @@ const std::vector<Rule>& rules() {
       {"bindings/c/", library},
       {"bindings/python/", library + R"(|"bindings/python/[a-z]+\.hpp"|<nanobind/.*>)" +
                                R"(|"lab/((advise|formats|report|scenes)/[a-z_]+|catalogue)\.hpp")"},
-      // An integration sees its engine.
+      // An integration includes its engine.
       {"integrations/bullet/", library + engines},
       {"src/core/tbb_executor", library + R"(|<tbb/[a-z_]+\.h>)"},
       {"src/core/thread_pool", core + R"(|<unistd\.h>)"},
@@ -84,14 +83,14 @@ const std::vector<Rule>& rules() {
        lab +
            R"(|"bench/[a-z_]+\.hpp"|"(core|kernels)/[a-z_]+\.hpp"|<benchmark/benchmark\.h>|<hwy/targets\.h>)"},
       {"examples/record_", R"(<broadside/recorder\.hpp>|"game\.hpp"|)" + standard + engines},
-      // As a user writes it.
+      // Examples include what users would include.
       {"examples/bullet/", standard + R"(|<broadside/[a-z_]+\.hpp>)" + engines},
       {"examples/fcl_", standard + R"(|<broadside/[a-z_]+\.hpp>|<fcl/.*>)"},
       {"examples/", standard + R"(|<broadside/[a-z_]+\.hpp>)"},
       {"tests/integrations/fcl/", library + "|<fcl/.*>|<gtest/.*>|<gmock/.*>"},
       {"tests/consumer/bullet/", standard + R"(|<broadside/bullet\.hpp>)" + engines},
       {"tests/integrations/", library + engines + R"(|<(gmock|gtest)/.*>|"[a-z_]+\.hpp"|"tests/support/.*")"},
-      // Tests look into every room but the faces, and at the engines and the peers through the lab alone;
+      // Tests may use every folder except the bindings, and reach engines and peers only through the lab.
       // CGAL is their oracle.
       {"tests/",
        R"((?!["<](cli/|box2d|bullet|bt[A-Z]|Bullet[A-Z]|assimp|boost/|geos|embree|ode/|fcl/|chipmunk/)).*)"},

@@ -1,4 +1,4 @@
-// Which file may include what: the rules of docs/architecture.md, as a function of two texts.
+// The include rules of docs/architecture.md, as a function of two texts.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace broadside::architecture {
 
-/// What the file's lines include, as written, with the quotes or the angle brackets.
+/// The include directives of a file, as written, with quotes or angle brackets.
 std::vector<std::string> includes_of(std::string_view text);
 
-/// A sentence for each include in `text` that `path` (relative to the project, with slashes) may not have;
-/// and one if no rule covers the path.
+/// A sentence for each include in `text` that the file `path` (relative to the project, with slashes) must
+/// not have; also one if no rule covers the path.
 std::vector<std::string> breaches(std::string_view path, std::string_view text);
 
 }  // namespace broadside::architecture

@@ -1,5 +1,5 @@
-// RapidCheck's generators of boxes, and how it prints them: small whole numbers first, so that a failing
-// input shrinks to one that a person can draw.
+// RapidCheck generators of boxes, and their printing. Small whole numbers come first, so that a failing input
+// shrinks to one that can be drawn by hand.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace broadside {
 
-/// RapidCheck finds this by the namespace of its argument.
+/// RapidCheck finds this function by argument-dependent lookup.
 template <int D>
 void showValue(const Box<D>& box, std::ostream& out) {
   if (is_absent(box)) {
@@ -31,7 +31,7 @@ void showValue(const Box<D>& box, std::ostream& out) {
 
 namespace laws {
 
-/// Boxes on a small lattice: they touch, coincide and degenerate all the time. One in ten is absent.
+/// Boxes on a small lattice, which often touch, coincide and degenerate. One in ten is absent.
 template <int D>
 rc::Gen<Box<D>> lattice_box() {
   const auto present = rc::gen::map(rc::gen::container<std::array<int, 2 * D>>(rc::gen::inRange(0, 8)),
@@ -47,7 +47,7 @@ rc::Gen<Box<D>> lattice_box() {
   return rc::gen::weightedOneOf<Box<D>>({{9, present}, {1, rc::gen::just(absent_box<D>())}});
 }
 
-/// Boxes whose coordinates are any floats but NaN: of all magnitudes, denormal, special, infinite.
+/// Boxes with arbitrary float coordinates except NaN: all magnitudes, denormal, special and infinite values.
 template <int D>
 rc::Gen<Box<D>> any_box() {
   constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// Histories of boxes that come, move, jump and go, for the law of trackers.
+// Histories of boxes that are added, move, jump and are removed, for the equivalence test of trackers.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace broadside::laws {
 
-/// A history and what is hard about it.
+/// A history, and why it is difficult.
 template <int D>
 struct NamedHistory {
   std::string name;
   lab::History<D> history;
 };
 
-/// All hard histories that are within the algorithm's declared limits.
+/// All difficult histories within the algorithm's declared limits.
 template <int D>
 std::vector<NamedHistory<D>> hard_histories(const Algorithm& algorithm);
 

@@ -1,4 +1,4 @@
-// What a law is tested on: one algorithm in one dimension, for each that the catalogue holds.
+// Parameters of the equivalence tests: one algorithm in one dimension, for each algorithm in the catalogue.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 namespace broadside::laws {
 
-/// Whether the tests run under a sanitizer, where sizes are reduced.
+/// Whether the tests run under a sanitizer, with reduced sizes.
 inline constexpr bool sanitized = BROADSIDE_SANITIZED != 0;
 
-/// `size`, or a small part of it under a sanitizer. `cost` is what the test's time grows with: 1 for n, 2 for
+/// `size`, or a small part of it under a sanitizer. `cost` is the exponent of the test's time: 1 for n, 2 for
 /// n squared.
 constexpr std::size_t reduced(std::size_t size, int cost = 2) {
   return sanitized ? size / (cost == 1 ? 10 : 4) : size;
@@ -34,17 +34,17 @@ struct LawCase {
   int dimension;
 };
 
-/// Each of these algorithms, in every dimension that it does.
+/// Each of these algorithms, in every dimension that it supports.
 std::vector<LawCase> cases_of(std::span<const Algorithm> algorithms);
 
 /// The library's algorithms that can use several threads.
 std::vector<LawCase> threaded_cases();
 
-/// Every algorithm of the catalogue, in every dimension that it does. Of the library's own alone where the
-/// tests run on a chosen instruction set: no other uses the kernels.
+/// Every algorithm of the catalogue, in every dimension that it supports. On a chosen instruction set only
+/// the library's algorithms, because no others use the kernels.
 const std::vector<LawCase>& law_cases();
 
-/// Those of the law cases that `takes` accepts, a predicate over LawCase.
+/// The law cases that the predicate `takes` accepts.
 template <typename Takes>
 std::vector<LawCase> law_cases_if(Takes takes) {
   std::vector<LawCase> cases = law_cases();
@@ -55,7 +55,7 @@ std::vector<LawCase> law_cases_if(Takes takes) {
 inline bool is_own(const LawCase& law_case) { return law_case.algorithm->kind == AlgorithmKind::own; }
 inline bool is_peer(const LawCase& law_case) { return law_case.algorithm->kind == AlgorithmKind::peer; }
 
-/// The law cases of what is built on our interface, and not those of the peers: they share its checks.
+/// The law cases of algorithms written for our interface, without the peers, which share its checks.
 inline std::vector<LawCase> law_cases_without_peers() {
   return law_cases_if([](const LawCase& law_case) { return !is_peer(law_case); });
 }
@@ -64,15 +64,16 @@ inline std::vector<LawCase> law_cases_without_peers() {
 std::string name(const LawCase& law_case);
 void PrintTo(const LawCase& law_case, std::ostream* out);
 
-/// Whether the tests run on one instruction set instead of the best one: BROADSIDE_INSTRUCTION_SET names it.
+/// Whether the tests run on a chosen instruction set instead of the best one: BROADSIDE_INSTRUCTION_SET names
+/// it.
 bool is_instruction_set_chosen();
 
-/// The base of the tests of every law.
+/// Base class of all equivalence tests.
 class Law : public testing::TestWithParam<LawCase> {
  protected:
   const Algorithm& algorithm() const { return *GetParam().algorithm; }
 
-  /// The algorithm's spec with no value given.
+  /// The algorithm's spec with default values.
   Spec spec() const { return {algorithm().name, {}}; }
 
   /// Calls `body.operator()<D>()` with the case's dimension.
@@ -85,7 +86,7 @@ class Law : public testing::TestWithParam<LawCase> {
   }
 };
 
-/// The names of INSTANTIATE_TEST_SUITE_P.
+/// Test names for INSTANTIATE_TEST_SUITE_P.
 inline std::string case_name(const testing::TestParamInfo<LawCase>& info) { return name(info.param); }
 
 }  // namespace broadside::laws

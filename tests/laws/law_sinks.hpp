@@ -1,4 +1,4 @@
-// Sinks of the laws: one that fails when it is full, and one that hashes an order.
+// Sinks for the equivalence tests: one that fails when it is full, and one that hashes the order of pairs.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct SinkIsFull final : std::runtime_error {
   SinkIsFull() : std::runtime_error("the sink is full") {}
 };
 
-/// Collects `room` pairs and throws at the next.
+/// Collects up to `room` pairs, and throws at the next one.
 class LimitedCollector final : public PairSink {
  public:
   explicit LimitedCollector(std::size_t room) : room_(room) {}
@@ -38,7 +38,7 @@ class LimitedCollector final : public PairSink {
   std::vector<Pair> pairs_;
 };
 
-/// Hashes pairs as a sequence: another order, another hash.
+/// Hashes pairs as a sequence: another order gives another hash.
 class OrderHasher final : public PairSink {
  public:
   std::uint64_t hash = 0;

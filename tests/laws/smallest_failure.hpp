@@ -1,4 +1,4 @@
-// The law as GoogleTest assertions that report a small input on which it fails.
+// The equivalence test as GoogleTest assertions that report a small failing input.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace broadside::laws {
 
-/// Success if a finder made from `spec` gives exactly the overlapping pairs of `boxes`; otherwise what
-/// differs first, for as few of the boxes as the failure can be seen with.
+/// Success if a finder made from `spec` gives exactly the overlapping pairs of `boxes`; otherwise reports the
+/// first difference, for a minimal subset of boxes that still fails.
 template <int D>
 testing::AssertionResult finds_the_pairs(const Algorithm& algorithm, const Spec& spec,
                                          std::vector<Box<D>> boxes);
 
-/// Success if a tracker made from `spec` gives exactly the events of `history`; otherwise what differs first,
-/// for as few steps and changes as the failure can be seen with.
+/// Success if a tracker made from `spec` gives exactly the events of `history`; otherwise reports the first
+/// difference, for a minimal sequence of steps and changes that still fails.
 template <int D>
 testing::AssertionResult tracks_the_pairs(const Algorithm& algorithm, const Spec& spec,
                                           lab::History<D> history);

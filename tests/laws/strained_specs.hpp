@@ -1,4 +1,4 @@
-// Specs that give an algorithm's tunables the values that are hardest on it.
+// Specs that set an algorithm's tunables to their most difficult values.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace broadside::laws {
 
-/// One spec for each tunable and value: the ends of its range, each choice, and numbers of every magnitude
+/// One spec for each tunable and value: the ends of its range, each choice, and numbers of every magnitude in
 /// between. Values that the algorithm refuses in this dimension are left out.
 std::vector<Spec> strained_specs(const LawCase& law_case);
 

@@ -1,4 +1,4 @@
-// Boxes, pairs and ids as unit tests write them.
+// Boxes, pairs and ids for unit tests.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 using Ids = std::vector<BoxId>;
 using Pairs = std::vector<Pair>;
 
-/// The unit square from `x` to `x + 1`: it overlaps the one at `x + 1`, which it touches.
+/// A unit square from `x` to `x + 1`; it touches, and so overlaps, the one at `x + 1`.
 inline Box2 at(float x) { return {{x, 0}, {x + 1, 1}}; }
 
 inline Pair pair(std::uint32_t first, std::uint32_t second) { return {BoxId{first}, BoxId{second}}; }

@@ -1,4 +1,4 @@
-// Executors as engines may have them, for tests.
+// Executors with the behaviours of various engines, for tests.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace broadside::laws {
 
-/// Runs tasks one after the other in the calling thread, the last one first.
+/// Runs tasks one after another in the calling thread, in reverse order.
 class ReverseExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 3; }
@@ -28,7 +28,7 @@ class ReverseExecutor final : public Executor {
   std::size_t runs = 0;
 };
 
-/// Runs each task in a thread of its own, all at the same time, and none in the calling one.
+/// Runs each task in a thread of its own, all concurrently, and none in the calling thread.
 class ThreadExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 4; }
@@ -39,7 +39,7 @@ class ThreadExecutor final : public Executor {
   }
 };
 
-/// Runs the first task in the calling thread, and the others in threads of their own meanwhile.
+/// Runs the first task in the calling thread, and the others concurrently in threads of their own.
 class TeamExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 2; }
@@ -62,11 +62,11 @@ class ClosedExecutor final : public Executor {
   void run(std::size_t, const std::function<void(std::size_t)>&) override { throw ExecutorIsClosed(); }
 };
 
-/// What is no std::exception.
+/// An exception that is not a std::exception.
 struct NotAnException {};
 
-/// Runs tasks one after the other in the calling thread; one of its runs throws, before its tasks or after
-/// half of them.
+/// Runs tasks one after another in the calling thread; one of its runs throws, before its tasks or after half
+/// of them.
 class FailingExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 3; }
@@ -83,7 +83,7 @@ class FailingExecutor final : public Executor {
   bool is_half_way = false;
 };
 
-/// Begins tasks in another order at each run, some in the calling thread and some in threads of their own.
+/// Starts tasks in another order in each run, some in the calling thread and some in threads of their own.
 class ShufflingExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 4; }
@@ -105,8 +105,8 @@ class ShufflingExecutor final : public Executor {
   std::minstd_rand random_;
 };
 
-/// Runs tasks one after the other in the calling thread, and more of them from within where idle() is called:
-/// as a thread of a job system does that takes up other work while it waits.
+/// Runs tasks one after another in the calling thread, and runs more of them when idle() is called inside a
+/// task, as a thread of a job system picks up other work while it waits.
 class NestingExecutor final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 3; }
@@ -118,7 +118,7 @@ class NestingExecutor final : public Executor {
     job_ = job.outer;
   }
 
-  /// Runs a task of each run() that this thread is in.
+  /// Runs one task of each run() that is active in this thread.
   void idle() {
     for (Job* job = job_; job != nullptr; job = job->outer) {
       if (job->left > 0) run_one(*job);
@@ -140,7 +140,7 @@ class NestingExecutor final : public Executor {
   Job* job_ = nullptr;
 };
 
-/// `threads` workers of this executor, which share even one box.
+/// `threads` workers of this executor; even a single box is shared out.
 inline Workers with(Executor& executor, std::size_t threads) {
   return {.threads = threads, .executor = &executor, .boxes_per_thread = 1};
 }

@@ -1,4 +1,4 @@
-// A folder of its own for each test that reads and writes files.
+// A separate folder for each test that reads and writes files.
 #pragma once
 
 #include <cstddef>
@@ -20,17 +20,17 @@ namespace broadside::lab {
 /// A file of a fuzzer's corpus.
 inline std::string corpus(const std::string& name) { return project_text("tests/fuzz/corpus/" + name); }
 
-/// Names the case of an extension, such as ".csv".
+/// Test name for an extension, such as ".csv".
 inline std::string without_dot(const testing::TestParamInfo<std::string>& info) {
   return info.param.substr(1);
 }
 
-/// Tests with a folder of their own.
+/// Base class of tests with a folder of their own.
 class Files : public testing::Test {
  protected:
   Files() {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    // Tests of one name run side by side: in two suites, or in two builds.
+    // Tests of the same name may run concurrently: in two suites, or in two builds.
     folder_ = testing::TempDir() + "broadside_" + test.test_suite_name() + "_" + test.name() + "_" +
               std::to_string(getpid());
     std::filesystem::remove_all(folder_);
@@ -51,10 +51,10 @@ class Files : public testing::Test {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
   }
 
-  /// What read_file says of a file that it refuses: whatever is wrong, it names the file, and takes no memory
-  /// for what the file only claims to hold.
+  /// The error message of read_file for an invalid file. Checks that it names the file, and that the reader
+  /// does not allocate memory for contents that the file only claims to have.
   std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) const {
-    formats();  // which is made once and kept
+    formats();  // created once and kept
     const AllocationMeter meter;
     try {
       read_file(file, options);

@@ -9,7 +9,7 @@
 
 namespace broadside::laws {
 
-/// All that a search of `boxes` gives, in its order; between two sets if `left_count` is not 0.
+/// All pairs of a search of `boxes`, in its order; between two sets if `left_count` is not 0.
 template <int D, typename Real>
 std::vector<Pair> found(Finder<D, Real>& finder, const std::vector<Box<D, Real>>& boxes,
                         std::size_t left_count = 0) {

@@ -1,4 +1,4 @@
-// The instruction sets that the kernels were compiled for, by name, so that tests can run on each of them.
+// The instruction sets for which the kernels were compiled, by name, so that tests can run on each of them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace broadside {
 
-/// Whether there is an instruction set of that name for processors of this kind.
+/// Whether such an instruction set exists for this kind of processor.
 inline bool is_instruction_set(std::string_view name) {
   for (int bit = 0; bit < 63; ++bit) {
     const std::string_view known = hwy::TargetName(std::int64_t{1} << bit);
@@ -21,7 +21,7 @@ inline bool is_instruction_set(std::string_view name) {
   return false;
 }
 
-/// Has all kernels run on the instruction set `name`, one of instruction_sets(), while it lives. Not while
+/// While it exists, makes all kernels use the instruction set `name`, one of instruction_sets(). Not while
 /// another thread finds pairs.
 class OnInstructionSet {
  public:

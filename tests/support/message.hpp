@@ -1,4 +1,4 @@
-// The text of an exception, for tests of what users get to read.
+// The text of an exception, for tests of error messages.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace broadside {
 
-/// The text of the `Error` that `action` throws; a failure and no text if it throws none.
+/// The text of the `Error` that `action` throws; if it throws none, a test failure and an empty text.
 template <typename Error, typename Action>
 std::string message_of(Action action) {
   try {

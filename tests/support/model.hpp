@@ -1,4 +1,4 @@
-// The scalar model that kernels and structures are held to: boxes drawn at random, and what they overlap by
+// The scalar model that kernels and structures are compared with: random boxes, and their overlaps by
 // definition.
 #pragma once
 
@@ -32,7 +32,7 @@ void in_each_dimension(Body body) {
   body.template operator()<3>();
 }
 
-/// The same on every instruction set that the processor has.
+/// The same on every instruction set that the processor supports.
 template <typename Body>
 void on_each_instruction_set(Body body) {
   for (const std::string& name : instruction_sets()) {
@@ -44,11 +44,11 @@ void on_each_instruction_set(Body body) {
   }
 }
 
-/// How boxes are drawn: on a lattice, so that they touch and coincide.
+/// How random boxes are generated: on a lattice, so that they touch and coincide.
 struct BoxKind {
   int places = 60;  ///< minima are whole numbers below this one
   int max_extent = 10;
-  std::size_t infinite_one_in = 40;  ///< sides that are infinite; 0: none
+  std::size_t infinite_one_in = 40;  ///< fraction of infinite sides, one in this many; 0: none
 };
 
 template <int D>
@@ -71,10 +71,10 @@ std::vector<Box<D>> random_boxes(Rng& rng, std::size_t count, const BoxKind& kin
   return boxes;
 }
 
-/// Doubles whose nearest floats the box has, so that boxes that touch may be apart.
+/// Doubles that round to the box's floats, so that touching boxes may be apart in double precision.
 template <int D>
 Box<D, double> near_double(Rng& rng, const Box<D>& box) {
-  // At once no more than half the distance to the next float, and more than a double's.
+  // Offsets by at most half the distance to the next float, and by more than a double's precision.
   const auto near = [&rng](float value) {
     return std::isinf(value) ? value : value + rng.whole(-1, 1) * 0x1p-40 * std::max(1.0F, std::abs(value));
   };
@@ -88,7 +88,7 @@ Box<D, double> near_double(Rng& rng, const Box<D>& box) {
 
 inline Pair ordered(std::size_t a, std::size_t b) { return {BoxId(std::min(a, b)), BoxId(std::max(a, b))}; }
 
-/// The pairs that overlap, in order; between the first `left_count` boxes and the others if it is not 0.
+/// The overlapping pairs in order; between the first `left_count` boxes and the others if it is not 0.
 template <int D, typename Real>
 std::vector<Pair> overlapping_pairs(const std::vector<Box<D, Real>>& boxes, std::size_t left_count = 0) {
   std::vector<Pair> pairs;
@@ -100,7 +100,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box<D, Real>>& boxes, std:
   return pairs;
 }
 
-/// What `search(sink)` writes, as it comes.
+/// The output of `search(sink)`, in its order.
 template <typename Search>
 std::vector<Pair> written_pairs(Search search) {
   std::vector<Pair> pairs;
@@ -110,7 +110,7 @@ std::vector<Pair> written_pairs(Search search) {
   return pairs;
 }
 
-/// The same in order.
+/// The same, sorted.
 template <typename Search>
 std::vector<Pair> sorted_pairs(Search search) {
   std::vector<Pair> pairs = written_pairs(search);
@@ -118,7 +118,7 @@ std::vector<Pair> sorted_pairs(Search search) {
   return pairs;
 }
 
-/// A box that changes, as the interface makes it. A box that was or is absent is nan_box().
+/// A changed box, in the form that the interface uses. A box that was or is absent is nan_box().
 template <int D>
 core::MovedBox<D> moved_box(std::size_t id, const Box<D>& before, const Box<D>& now,
                             bool filter_changed = false) {
@@ -136,7 +136,7 @@ core::MovedBox<D> moved_box(std::size_t id, const Box<D>& before, const Box<D>& 
   return moved;
 }
 
-/// What moved boxes change.
+/// Events of moved boxes.
 struct Changes {
   std::set<Pair> begun;
   std::set<Pair> ended;
@@ -144,7 +144,7 @@ struct Changes {
 
   friend bool operator==(const Changes&, const Changes&) = default;
 
-  /// Adds what one moved box changes with `others`, by id, where boxes that move are marked in `moves`.
+  /// Adds the events of one moved box with `others`, by id; `moves` marks the boxes that move.
   template <int D>
   void add(const core::MovedBox<D>& moved, std::span<const Box<D>> others,
            const std::vector<std::uint8_t>& moves) {
@@ -161,7 +161,7 @@ struct Changes {
   }
 };
 
-/// What `find(sinks)` writes.
+/// The output of `find(sinks)`.
 template <typename Find>
 Changes written_changes(const std::vector<std::uint8_t>& moves, Find find) {
   std::vector<Pair> begun;

@@ -1,4 +1,4 @@
-// A pipe, for tests of what comes piece by piece and cannot be read twice.
+// A pipe, for tests of input that arrives in pieces and cannot be read twice.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class Pipe {
  public:
   explicit Pipe(std::string text)
       : writer_([this, text = std::move(text)] {
-          // In pieces, as a program writes that computes in between.
+          // In pieces, like the output of a program that computes in between.
           for (std::size_t begin = 0; begin < text.size(); begin += 1000) {
             const std::string piece = text.substr(begin, 1000);
             if (::write(ends_[1], piece.data(), piece.size()) != static_cast<ssize_t>(piece.size())) break;

@@ -1,4 +1,4 @@
-// Recordings with pairs, for tests of what is said about them.
+// Recordings with pairs, for tests of their analysis.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace broadside {
 
-/// A recording in 2D of six frames. Box 0 is the floor; box 1 falls onto it, touches it in frames 3 and 4,
-/// and is 2 above it in frame 5; box 2 stands apart. `report(recorder, frame)` says what the engine reports.
+/// A recording in 2D of six frames. Box 0 is the ground; box 1 falls onto it, touches it in frames 3 and 4,
+/// and is 2 above it in frame 5; box 2 is far away. `report(recorder, frame)` records the engine's pairs.
 template <typename Report>
 std::string falling_box(const Report& report, double margin = 0.25) {
   std::string bytes;
@@ -37,7 +37,7 @@ std::string falling_box(const Report& report, double margin = 0.25) {
   return bytes;
 }
 
-/// What an engine reports that is right.
+/// Correct reports of an engine.
 inline void report_rightly(Recorder2& recorder, std::size_t frame) {
   if (frame == 3 || frame == 4) recorder.add_pair(1, 0);
 }

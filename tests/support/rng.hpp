@@ -1,4 +1,5 @@
-// Random numbers for tests: those of the scenes, which are the same with every compiler and standard library.
+// Random numbers for tests: the scenes' generator, which gives the same numbers with every compiler and
+// standard library.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +19,13 @@ class Rng : private lab::Random {
   /// A number from 0 to `count` - 1.
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(lab::Random::below(count)); }
 
-  /// A whole number, both ends included.
-  int whole(int least, int most) { return least + static_cast<int>(below(std::size_t(most - least + 1))); }
+  /// A whole number from `min` to `max`, inclusive.
+  int whole(int min, int max) { return min + static_cast<int>(below(std::size_t(max - min + 1))); }
 
-  /// A number of [0, 1) with 24 random bits.
+  /// A number in [0, 1) with 24 random bits.
   float unit() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
 
-  float between(float least, float most) { return least + (most - least) * unit(); }
+  float between(float min, float max) { return min + (max - min) * unit(); }
 
   bool one_in(std::size_t count) { return below(count) == 0; }
 

@@ -1,4 +1,4 @@
-// Boxes scattered evenly.
+// Uniformly scattered boxes.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace broadside {
 
-/// Boxes with sides of up to 3, which begin between 0 and `world` on each axis.
+/// Boxes with sides of up to 3 and minima between 0 and `world` on each axis.
 template <int D>
 std::vector<Box<D>> scattered_boxes(std::size_t count, float world = 10, std::uint64_t seed = 1) {
   Rng rng(seed);

@@ -1,4 +1,4 @@
-// Searchers and followers as tests use them: a stub, and the library's own.
+// Searchers and followers for tests: a stub, and the library's own.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace broadside {
 
-/// Calls a function with what a searcher gets to see.
+/// Calls a function with the arguments of a search.
 class StubSearcher final : public Searcher<2> {
  public:
   using Search = std::function<std::optional<Statistics>(const SearchInput<2>&, PairSink&)>;
@@ -28,7 +28,7 @@ class StubSearcher final : public Searcher<2> {
   Search search_;
 };
 
-/// The algorithm's searcher, with nothing set.
+/// The algorithm's searcher, with default settings.
 template <int D>
 std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm) {
   return algorithm.in<D>().searcher(Settings({algorithm.name, {}}, algorithm.tunables));
@@ -38,7 +38,7 @@ std::unique_ptr<Searcher<D>> searcher_of(std::string_view name) {
   return searcher_of<D>(*find_algorithm(name));
 }
 
-/// The algorithm's first follower, likewise.
+/// The algorithm's first follower, with default settings.
 template <int D>
 std::unique_ptr<Follower<D>> follower_of(std::string_view name) {
   const Algorithm& algorithm = *find_algorithm(name);

@@ -16,14 +16,14 @@ template <int D, typename Real = float>
 struct Tape {
   Tape() { recorder.open_with(write()); }
 
-  /// One that takes pairs as well.
+  /// A tape that also records pairs.
   explicit Tape(double margin) { recorder.open_with(write(), margin); }
 
   bool set(std::uint32_t slot, const std::vector<Real>& box) {
     return recorder.set(slot, box.data(), box.data() + D);
   }
 
-  /// Ends the frame and returns how many bytes it took.
+  /// Ends the frame and returns its number of bytes.
   std::size_t end_frame() {
     const std::size_t before = bytes.size();
     EXPECT_TRUE(recorder.end_frame());

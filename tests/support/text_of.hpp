@@ -16,7 +16,7 @@ inline std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The text of a file of the project, such as "README.md", which must be there.
+/// The text of a file of the project, such as "README.md"; the file must exist.
 inline std::string project_text(const std::string& path) {
   const std::filesystem::path file = std::filesystem::path(BROADSIDE_SOURCE_DIR) / path;
   EXPECT_TRUE(std::filesystem::exists(file)) << path;

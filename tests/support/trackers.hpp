@@ -1,4 +1,4 @@
-// Trackers as unit tests use them: a stub, what an update reports, a sink that fails.
+// Trackers for unit tests: a stub, the events of an update, a failing sink.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 
 namespace broadside {
 
-/// What an update reports.
+/// Events of an update.
 struct PairEvents {
   Pairs begun;
   Pairs ended;
@@ -25,7 +25,7 @@ struct PairEvents {
   friend bool operator==(const PairEvents&, const PairEvents&) = default;
 };
 
-/// Of a Tracker or a ShadowTracker.
+/// For a Tracker or a ShadowTracker.
 template <typename AnyTracker>
 PairEvents update(AnyTracker& tracker, const Frame<2>& frame) {
   PairEvents events;
@@ -40,7 +40,7 @@ PairEvents update(AnyTracker& tracker, const std::vector<Box2>& boxes, const Ids
   return update(tracker, Frame<2>{boxes, changed});
 }
 
-/// Calls a function with the change that a follower gets to see.
+/// Calls a function with the change that a follower gets.
 class StubFollower final : public Follower<2> {
  public:
   using Follow = std::function<void(const Change<2>&, PairSink&, PairSink&)>;

@@ -1,11 +1,11 @@
-// Memory that a test only takes must look used, or a compiler may leave its allocation out (clang does).
+// Makes memory appear used; otherwise a compiler may omit an unused allocation (clang does).
 #pragma once
 
 namespace broadside {
 
 inline const void* volatile last_used = nullptr;
 
-/// Makes the compiler believe that somebody looks at what is here.
+/// Makes the compiler assume that this memory is read.
 inline void use(const void* memory) { last_used = memory; }
 
 }  // namespace broadside

@@ -1,4 +1,4 @@
-// Algorithms that are wrong on purpose, for tests of what must not go unseen.
+// Deliberately wrong algorithms, for tests of error detection.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@
 
 namespace broadside::lab {
 
-/// Changes the sorted pairs of a search, which are not none, given how many such there were before; or
-/// throws.
+/// Changes the sorted pairs of a search, or throws. It is called only for searches with pairs, with the
+/// number of such searches before.
 using Spoil = std::function<void(std::vector<Pair>&, std::size_t searches)>;
 
-/// Brute force, spoilt.
+/// Brute force with modified pairs.
 template <int D>
 class SpoiltSearcher final : public Searcher<D> {
  public:
@@ -38,7 +38,7 @@ class SpoiltSearcher final : public Searcher<D> {
   std::size_t searches_ = 0;
 };
 
-/// Brute force under another name, spoilt.
+/// Brute force under another name, with modified pairs.
 inline Algorithm spoilt(std::string name, const Spoil& spoil) {
   Algorithm algorithm;
   algorithm.name = std::move(name);
@@ -55,7 +55,7 @@ inline Algorithm repeats_a_pair() {
   return spoilt("repeats", [](std::vector<Pair>& pairs, std::size_t) { pairs.push_back(pairs.front()); });
 }
 
-/// Puts a pair that does not overlap in the place of one that does, so that their number is right.
+/// Replaces an overlapping pair by one that does not overlap, so that the number of pairs stays correct.
 inline void mistakes_per_pair(std::vector<Pair>& pairs) {
   const auto last = static_cast<std::uint32_t>(pairs.size());
   for (std::uint32_t j = 1; j <= last; ++j) {

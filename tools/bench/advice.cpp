@@ -1,7 +1,7 @@
-// What advice is worth: advice [quick|long] [BUDGET] [SCENES]. For each case of a plan of the comparison (of
-// the long one those of 5,000 to 100,000 boxes), advice is asked for on the first seed's boxes alone; later,
-// and on all seeds of the comparison, everything that could have been advised is measured in turns. Printed
-// is the time of what was named over the best of all.
+// Measures how good `advise` is: advice [quick|long] [BUDGET] [SCENES]. For each case of a comparison plan
+// (of the long plan, only cases of 5,000 to 100,000 boxes), it asks for advice on the boxes of the first
+// seed. It then measures everything that could have been advised in alternating rounds, on all seeds of the
+// comparison, and prints the time of the advised algorithm over the best time.
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
@@ -22,7 +22,7 @@
 namespace broadside::bench {
 namespace {
 
-/// An algorithm this many times slower than the best, as advice itself measured it, is not measured again.
+/// Algorithms that advice itself measured as slower than the best by this factor are not measured again.
 constexpr double margin_of_rivals = 2;
 
 template <int D>
@@ -40,7 +40,7 @@ lab::Advice advise(const lab::Catalogue& catalogue, const lab::CaseRequest& requ
   return lab::advise(catalogue, request.scene, history, options);
 }
 
-/// One line of the table; the ratio.
+/// Prints one line of the table and returns its ratio.
 double measure(const lab::Catalogue& catalogue, const lab::CaseRequest& request, double budget) {
   const lab::Advice advice =
       request.dimension == 2 ? advise<2>(catalogue, request, budget) : advise<3>(catalogue, request, budget);

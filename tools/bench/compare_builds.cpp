@@ -1,8 +1,8 @@
-// Two builds of the program against each other: compare_builds OLD NEW [ROUNDS] [ARGUMENTS OF compare ...].
-// Runs `OLD compare` and `NEW compare` in turns, ROUNDS times each (default: 5), every run a process of its
-// own with an order drawn anew, and prints the time of the new build over that of the old one for each case
-// and algorithm: the median over the rounds, with a 95 % bootstrap interval. Processes differ among
-// themselves (where memory lies, say), so that one of each says little.
+// Compares two builds of the program: compare_builds OLD NEW [ROUNDS] [ARGUMENTS OF compare ...]. Runs `OLD
+// compare` and `NEW compare` in turns, ROUNDS times each (default: 5). Every run is a new process, and the
+// order is drawn anew for each round. For each case and algorithm it prints the time of the new build over
+// that of the old one: the median over the rounds, with a 95 % bootstrap interval. Processes differ among
+// themselves, for example in memory layout, so a single process of each build proves little.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -31,15 +31,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Single quotes: no shell reads anything into what they hold.
+/// Single quotes: a shell expands nothing inside them.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
 }
 
-/// The median times of one run of `program compare`, by case and algorithm; an algorithm that was skipped is
-/// left out.
+/// Median times of one run of `program compare`, by case and algorithm. Skipped algorithms are left out.
 std::map<std::string, double> times_of(const std::string& program,
                                        const std::vector<std::string>& arguments) {
   const std::filesystem::path file =
@@ -84,7 +83,7 @@ void run(const std::vector<std::string>& programs, std::size_t rounds,
   columns.add({"case and algorithm", "old ms", "new ms", "new over old"});
   std::vector<lab::RatiosBySeed> pairs;
   for (const auto& [name, both] : times) {
-    // Near the budget, an algorithm is skipped in some runs.
+    // An algorithm near the budget is skipped in some runs.
     if (both[0].size() != rounds || both[1].size() != rounds) continue;
     pairs.emplace_back(both[1], both[0], 1);
     columns.add(

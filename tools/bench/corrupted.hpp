@@ -1,5 +1,5 @@
-// Algorithms whose output is corrupted on purpose, once: a pair dropped, doubled, or swapped for another.
-// They say how much of what can go wrong `broadside compare` sees.
+// Algorithms with one deliberate fault in their output: a pair dropped, duplicated, or swapped for another.
+// They measure how many faults `broadside compare` detects.
 #pragma once
 
 #include <algorithm>
@@ -23,25 +23,24 @@
 
 namespace broadside::bench {
 
-/// What happens to one pair: of a search's pairs, or of a frame's events. Tracker delivers each event of a
-/// frame once whatever an algorithm writes, so a doubled event is one that comes again in the next frame.
+/// What happens to one pair of a search or one event of a frame. Tracker delivers each event once per frame
+/// whatever an algorithm writes, so a "doubled" event is one that is repeated in the next frame.
 enum class CorruptionKind { dropped, doubled, swapped };
 
-/// A corruption, drawn by its number, and how far it is.
+/// A corruption, derived from its number, and its progress.
 struct Corruption {
   Corruption(std::uint64_t number, std::size_t of_calls)
       : random(number), call(random() % of_calls), fault(static_cast<CorruptionKind>(random() % 3)) {}
 
   std::mt19937_64 random;
-  std::size_t
-      call;  ///< the first search or update, counted over all, in which there may be a pair to corrupt
+  std::size_t call;  ///< index of the first search or update at which a pair may be corrupted
   CorruptionKind fault;
-  std::size_t calls = 0;  ///< that were made
+  std::size_t calls = 0;  ///< searches or updates so far
   bool is_applied = false;
-  std::vector<Pair> again{};  ///< what the next frame reports once more
+  std::vector<Pair> again{};  ///< events to repeat in the next frame
 };
 
-/// Corrupts one of the sorted pairs of `boxes` boxes, of which there is at least one.
+/// Corrupts one of the sorted pairs of `boxes` boxes. `pairs` must not be empty.
 inline void corrupt(std::vector<Pair>& pairs, CorruptionKind fault, std::size_t boxes,
                     std::mt19937_64& random) {
   const Pair from{BoxId(random() % boxes), BoxId(random() % boxes)};
@@ -64,7 +63,7 @@ inline void corrupt(std::vector<Pair>& pairs, CorruptionKind fault, std::size_t 
     pairs.erase(found);
 }
 
-/// The pairs that `write` gives a sink, sorted, each once.
+/// The pairs that `write` gives a sink, sorted and without duplicates.
 template <typename Write>
 std::vector<Pair> sorted_pairs(const Write& write) {
   std::vector<Pair> pairs;
@@ -80,7 +79,7 @@ inline void add_all(const std::vector<Pair>& pairs, PairSink& sink) {
   for (const Pair pair : pairs) sink.add(pair.first, pair.second);
 }
 
-/// Searches by another algorithm; `spoil` may change the pairs.
+/// Wraps another algorithm's searches; `spoil` may change the pairs.
 template <int D, typename Spoil>
 class SpoiltSearcher final : public Searcher<D> {
  public:
@@ -103,7 +102,7 @@ std::unique_ptr<Searcher<D>> spoilt_searcher(const std::string& base, Spoil spoi
   return std::make_unique<SpoiltSearcher<D, Spoil>>(base, std::move(spoil));
 }
 
-/// Follows boxes by another algorithm's tracker, and corrupts the events of one frame.
+/// Wraps another algorithm's tracker and corrupts the events of one frame.
 template <int D>
 class CorruptedFollower final : public Follower<D> {
  public:
@@ -132,7 +131,7 @@ class CorruptedFollower final : public Follower<D> {
   void spoil(std::vector<Pair>& begins, std::vector<Pair>& ends) {
     Corruption& corruption = corruption_;
     for (const Pair pair : std::exchange(corruption.again, {})) {
-      // Where it happens to be an event of this frame as well, nothing is wrong yet.
+      // If the pair begins in this frame anyway, the repeat is no error yet.
       if (std::ranges::find(begins, pair) != begins.end())
         corruption.again.push_back(pair);
       else
@@ -158,13 +157,13 @@ class CorruptedFollower final : public Follower<D> {
   std::size_t boxes_;
 };
 
-/// The corruptions of one algorithm, by number. Trials on fewer boxes are let alone.
+/// The corruptions of one algorithm, by number. Trials on fewer boxes are not corrupted.
 class Corrupted {
  public:
   Corrupted(std::string base, std::size_t boxes, std::size_t calls)
       : base_(std::move(base)), boxes_(boxes), calls_(calls) {}
 
-  /// The algorithm as "corrupted_NAME:number=7". Must not outlive this object.
+  /// The algorithm as "corrupted_NAME:number=7". It must not outlive this object.
   Algorithm algorithm() {
     Algorithm algorithm;
     algorithm.name = "corrupted_" + base_;
@@ -207,18 +206,18 @@ class Corrupted {
   std::map<std::uint64_t, Corruption> all_;
 };
 
-/// How many corruptions there were, and how many of them were seen.
-struct Caught {
+/// How many corruptions were applied, and how many were detected.
+struct CorruptionCounts {
   std::size_t applied = 0;
   std::size_t caught = 0;
 
-  void add(const Caught& other) {
+  void add(const CorruptionCounts& other) {
     applied += other.applied;
     caught += other.caught;
   }
 };
 
-/// Rounds that each corrupted algorithm takes part in, after an untimed one.
+/// Rounds of each corrupted algorithm, after one untimed round.
 inline constexpr std::size_t corruption_rounds = 4;
 
 inline lab::Effort corruption_effort(std::size_t definition_boxes) {
@@ -228,10 +227,11 @@ inline lab::Effort corruption_effort(std::size_t definition_boxes) {
   return effort;
 }
 
-/// Lets `compare` measure the algorithm called `base` under corruptions `first` to `first + count - 1`, each
-/// of one search or frame in one of the rounds. A corruption is caught if its measurement has failed.
-inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest& request, std::uint64_t first,
-                                std::size_t count, std::size_t definition_boxes) {
+/// Lets `compare` measure the algorithm `base` under corruptions `first` to `first + count - 1`, each in one
+/// search or frame of one of the rounds. A corruption is detected if its measurement has failed.
+inline CorruptionCounts compare_corrupted(const std::string& base, const lab::CaseRequest& request,
+                                          std::uint64_t first, std::size_t count,
+                                          std::size_t definition_boxes) {
   Corrupted corrupted(base, request.boxes, (corruption_rounds + 1) * (request.frames + 1));
   lab::Catalogue catalogue;
   catalogue.add(corrupted.algorithm());
@@ -244,7 +244,7 @@ inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest&
   options.plan = {request};
   options.effort = corruption_effort(definition_boxes);
   const lab::Comparison comparison = lab::compare(catalogue, options);
-  Caught result;
+  CorruptionCounts result;
   for (std::size_t i = 0; i < count; ++i) {
     if (!corrupted.at(first + i).is_applied) continue;
     ++result.applied;
@@ -253,10 +253,10 @@ inline Caught compare_corrupted(const std::string& base, const lab::CaseRequest&
   return result;
 }
 
-/// The same where the reference has the very fault of the algorithm that is compared with it, in every search
-/// and frame: only the boxes that are sampled by the definition can tell.
-inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, std::uint64_t first,
-                                               std::size_t count) {
+/// As above, but the reference has the same fault as the compared algorithm, in every search and frame. Only
+/// the boxes that are checked by definition can reveal it.
+inline CorruptionCounts compare_with_corrupted_reference(const lab::CaseRequest& request, std::uint64_t first,
+                                                         std::size_t count) {
   lab::Case measured;
   measured.scene = request.scene;
   measured.seeds = {1};
@@ -267,7 +267,7 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
   const std::vector<History<2>> inputs = {lab::make_history<2>(
       named.scene, named.spec,
       {.boxes = request.boxes, .seed = 1, .frames = request.frames, .moving = request.moving})};
-  Caught result;
+  CorruptionCounts result;
   for (std::uint64_t number = first; number < first + count; ++number) {
     bool is_applied = false;
     const auto faulty = [&](std::string name) {
@@ -276,11 +276,11 @@ inline Caught compare_with_corrupted_reference(const lab::CaseRequest& request, 
       algorithm.in_2d.searcher = [&is_applied, number, &request](const Settings&) {
         return spoilt_searcher<2>("grid", [&is_applied, number, &request](std::vector<Pair>& pairs,
                                                                           std::size_t boxes) {
-          // The same place in the array each time, so that it is the same pair while that holds.
+          // The same place in the array each time, hence the same pair as long as the array stays the same.
           std::mt19937_64 random(number);
           const auto fault = static_cast<CorruptionKind>(random() % 3);
           if (boxes != request.boxes || pairs.empty()) return;
-          // A tracker that finds anew takes no pair twice.
+          // A tracker that searches from scratch accepts no pair twice.
           corrupt(pairs,
                   request.frames > 0 && fault == CorruptionKind::doubled ? CorruptionKind::dropped : fault,
                   boxes, random);

@@ -1,7 +1,7 @@
-// What checking is worth: corruptions [COUNT] (default: 10,000). Corrupts the output of finders and trackers
-// at random, a pair dropped, doubled or swapped for another in one search or frame, and counts how many of
-// these `compare` catches: where it checks by the definition, where it cross-checks, and where the reference
-// has the same fault. Ends with 1 if one of an algorithm's own faults is missed.
+// Measures how well results are checked: corruptions [COUNT] (default: 10,000). Corrupts the output of
+// searches and trackers at random (a pair dropped, duplicated or swapped in one search or frame) and counts
+// how many corruptions `compare` detects: when it checks by definition, when it cross-checks, and when the
+// reference has the same fault. Exits with 1 if a fault of an algorithm alone is missed.
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::size_t at_once = 25;
 
-/// `count` corruptions shared out among algorithms, dimensions and scenes.
-Caught corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) {
+/// Distributes `count` corruptions over algorithms, dimensions and scenes.
+CorruptionCounts corrupt_own(std::size_t count, bool moves, std::size_t definition_boxes) {
   const std::vector<std::string> algorithms = {"grid", "bvh", "sweep_and_prune", "quadtree", "brute_force"};
   const std::vector<std::string> scenes = {"uniform", "clustered"};
-  Caught all;
-  // Some find nothing to corrupt: no event, or no frame in which to report one again.
+  CorruptionCounts all;
+  // Some corruptions find no pair or event to corrupt, or no later frame to repeat one in.
   for (std::size_t done = 0, turn = 0; all.applied < count; ++turn) {
     const std::size_t some = std::min(at_once, count - all.applied);
     lab::CaseRequest request{.scene = scenes[turn % 2], .dimension = turn / 2 % 2 == 0 ? 2 : 3, .boxes = 300};
@@ -44,7 +44,7 @@ int run(std::size_t count) {
   lab::AlignedColumns columns("<>>>");
   columns.add({"what was corrupted", "corruptions", "caught", ""});
   bool all_caught = true;
-  const auto add = [&](const std::string& what, const Caught& caught) {
+  const auto add = [&](const std::string& what, const CorruptionCounts& caught) {
     columns.add({what, lab::grouped(caught.applied), lab::grouped(caught.caught),
                  fmt::format("{:.1f} %", 100.0 * static_cast<double>(caught.caught) /
                                              static_cast<double>(std::max<std::size_t>(caught.applied, 1)))});

@@ -1,7 +1,8 @@
-// What boxes of doubles cost over the same boxes as floats: double_boxes [BOXES [ROUNDS [ALGORITHM]]].
+// Measures the cost of boxes of doubles over the same boxes as floats: double_boxes [BOXES [ROUNDS
+// [ALGORITHM]]].
 //
-// Every way of asking for pairs is timed with floats and with doubles in turns, round by round, and after
-// each call its pairs are compared, as a set, with those of all other calls.
+// Every way of requesting pairs is timed with floats and with doubles in alternating rounds. After each call
+// its pairs are compared, as a set, with those of all other calls.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -30,11 +31,11 @@ namespace {
 
 constexpr std::array<std::string_view, 3> own_algorithms = {"grid", "sweep_and_prune", "quadtree"};
 
-/// Takes as many doubles as floats can tell apart to others, in the same order, that no float holds. So the
-/// boxes' pairs stay the same, and each of them has to be found in double.
+/// Scales coordinates to doubles that no float holds, and keeps their order: distinct floats stay distinct.
+/// The pairs therefore stay the same, and each has to be found in double precision.
 constexpr double scale = 3.14159265358979324;
 
-/// How pairs are asked for.
+/// The ways of requesting pairs.
 enum class Call { once, kept_finder, between };
 constexpr std::array<Call, 3> calls = {Call::once, Call::kept_finder, Call::between};
 
@@ -43,7 +44,7 @@ std::string_view name(Call call) {
   return names[static_cast<std::size_t>(call)];
 }
 
-/// A set of pairs, as far as a hash can tell.
+/// A set of pairs, represented by a hash and a count.
 struct HashedPairs {
   std::uint64_t count = 0;
   std::uint64_t hash = 0;
@@ -64,7 +65,7 @@ class PrecisionSide {
   PrecisionSide(std::span<const Box<D, Real>> boxes, std::string_view algorithm, Call call)
       : boxes_(boxes), algorithm_(algorithm), call_(call), finder_(algorithm) {}
 
-  /// Asks once; returns the pairs. The times go to the samples if `keep`.
+  /// Runs one call and returns its pairs. Its times are recorded if `keep`.
   HashedPairs run(bool keep) {
     using Clock = std::chrono::steady_clock;
     std::vector<Pair> pairs = std::move(pairs_);
@@ -83,10 +84,10 @@ class PrecisionSide {
     return set;
   }
 
-  /// Seconds by the clock on the wall.
+  /// Seconds of wall-clock time.
   std::span<const double> samples() const { return samples_; }
 
-  /// Time of the processor, which other programs disturb less; in an unspecified unit.
+  /// Processor time, in an unspecified unit; other programs disturb it less than wall-clock time.
   std::span<const double> busy_samples() const { return busy_samples_; }
 
  private:
@@ -138,8 +139,8 @@ std::vector<Box<D, double>> scaled(std::span<const Box<D>> boxes) {
   return result;
 }
 
-/// Times the calls in one dimension and prints a line for each. Throws std::runtime_error if two sets of
-/// pairs differ that should not.
+/// Times the calls in one dimension and prints a line for each. Throws std::runtime_error if sets of pairs
+/// that should be equal differ.
 template <int D>
 void compare_precisions(std::span<const std::string_view> algorithms, std::size_t count, std::size_t rounds) {
   const std::vector<Box<D>> floats = uniform_boxes<D>(count);

@@ -1,9 +1,8 @@
-// Broadside as FCL's broad phase against FCL's dynamic tree: fcl_manager [FRAMES [SCENE]].
+// Compares Broadside as FCL's broad phase with FCL's dynamic tree: fcl_manager [FRAMES [SCENE]].
 //
-// Both managers hold the same objects, are told of the same moves and collide all objects, frame by frame, in
-// turns, in one thread, in milliseconds of processor time. The callback adds up a hash of the pairs it gets,
-// which must come to the same. Then both are asked about objects one by one, with callbacks that cost next to
-// nothing.
+// Both managers hold the same objects, get the same moves and collide all objects, frame by frame, in turns,
+// in one thread; times are milliseconds of processor time. The callback hashes its pairs, and the hashes must
+// agree. Then both managers answer queries of single objects, with callbacks that cost almost nothing.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -34,7 +33,7 @@
 #include "lab/scenes/motion.hpp"
 #include "lab/scenes/scene.hpp"
 
-// FCL's tree of doubles compiled with this program's flags: faster than Debian's library, which checks
+// FCL's tree of doubles, compiled with this program's flags. Debian's library is slower, because it checks
 // Eigen's assertions.
 template class fcl::AABB<double>;
 template class fcl::DynamicAABBTreeCollisionManager<double>;
@@ -42,8 +41,8 @@ template class fcl::DynamicAABBTreeCollisionManager<double>;
 namespace broadside::bench {
 namespace {
 
-/// Milliseconds of processor time since construction. All is in one thread, and what else the machine does
-/// disturbs it less than the time of day.
+/// Milliseconds of processor time since construction. Everything runs in one thread, and other programs
+/// disturb processor time less than wall-clock time.
 class ProcessorClock {
  public:
   double milliseconds() const { return static_cast<double>(std::clock() - begin_) * 1e3 / CLOCKS_PER_SEC; }
@@ -52,7 +51,7 @@ class ProcessorClock {
   std::clock_t begin_ = std::clock();
 };
 
-/// An object that is nothing but its box.
+/// A geometry that consists of its box alone.
 template <typename S>
 class BoxObject final : public fcl::CollisionObject<S> {
  public:
@@ -69,8 +68,8 @@ class BoxObject final : public fcl::CollisionObject<S> {
   }
 };
 
-/// The pairs a callback got, as a set. An object is known by its place in memory, so that nothing is timed
-/// but the broad phases: a callback that reads objects waits for their memory.
+/// The pairs passed to a callback, as a set. An object is identified by its address and never read: reading
+/// objects would add their cache misses to the times.
 template <typename S>
 class CallbackPairs {
  public:
@@ -98,18 +97,19 @@ class CallbackPairs {
   std::uint64_t hash_ = 0;
 };
 
-/// The least distance of centres that a distance query found, and its callbacks.
-struct LeastDistance {
+/// The smallest distance of centres found by a distance query, and its callbacks.
+struct MinDistance {
   std::uint64_t calls = 0;
   double distance = std::numeric_limits<double>::infinity();
 
-  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data, double& least) {
-    if (first == second) return false;  // FCL's tree asks about it
-    auto& query = *static_cast<LeastDistance*>(data);
+  static bool take(fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data,
+                   double& min_distance) {
+    if (first == second) return false;  // FCL's tree reports the object itself
+    auto& query = *static_cast<MinDistance*>(data);
     ++query.calls;
     query.distance =
         std::min(query.distance, (first->getAABB().center() - second->getAABB().center()).norm());
-    least = query.distance;
+    min_distance = query.distance;
     return false;
   }
 };
@@ -138,14 +138,14 @@ struct ManagerSide {
   }
 };
 
-/// What one query of one object takes, in microseconds, and how many callbacks.
+/// Microseconds and number of callbacks of one query by one object.
 struct QueryCost {
   double collide_us;
   double distance_us;
   double calls;
 };
 
-/// Asks about some of the objects; what was found goes to `found`.
+/// Queries some of the objects; results go to `found`.
 QueryCost query_cost(const fcl::BroadPhaseCollisionManagerd& manager,
                      const std::vector<fcl::CollisionObjectd*>& objects,
                      std::vector<std::pair<std::uint64_t, double>>& found) {
@@ -161,8 +161,8 @@ QueryCost query_cost(const fcl::BroadPhaseCollisionManagerd& manager,
   const double collided = watch.milliseconds();
   std::uint64_t calls = 0;
   for (std::size_t i = 0; i < queries; ++i) {
-    LeastDistance query;
-    manager.distance(asked(i), &query, LeastDistance::take);
+    MinDistance query;
+    manager.distance(asked(i), &query, MinDistance::take);
     found[i].second = query.distance;
     calls += query.calls;
   }
@@ -198,7 +198,7 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
   const lab::NamedScene named = lab::find_scene(scene);
   std::vector<Box<3, S>> boxes;
   for (const Box3& box : lab::make_history<3>(named.scene, named.spec, {.boxes = count}).boxes) {
-    // In doubles, coordinates that no float holds.
+    // In doubles, use coordinates that no float holds.
     constexpr S scale = static_cast<S>(3.14159265358979324);
     Box<3, S>& scaled = boxes.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -215,7 +215,7 @@ void compare(std::string_view scene, std::size_t count, double moving, std::size
   for (const Box<3, S>& box : boxes) pointers.push_back(&objects.emplace_back(geometry, box));
 
   auto tree = std::make_unique<fcl::DynamicAABBTreeCollisionManager<S>>();
-  tree->tree_init_level = 2;  // sorted by Morton codes: as in FCL's own tests
+  tree->tree_init_level = 2;  // build by sorted Morton codes, as FCL's own tests do
   ManagerSide<S> fcl_side{std::move(tree)};
   ManagerSide<S> own_side{std::make_unique<FclCollisionManager<S>>()};
   for (ManagerSide<S>* side : {&fcl_side, &own_side}) {

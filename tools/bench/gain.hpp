@@ -1,8 +1,8 @@
-// What two threads gain over one: the same work by one thread and by two, in turns, and two copies by one
-// thread each at once, which shows what the machine has to give. All must find the same.
+// Measures the speedup of two threads: the same work by one thread and by two, in turns. Two single-threaded
+// copies at once show how much the machine can give. All runs must find the same pairs.
 //
-// What more cores would give is computed, not measured: one thread does all, and the time in what several
-// would share is divided by their number.
+// The speedup with more cores is computed, not measured: one thread does all the work, and the time in
+// parallel tasks is divided by the number of cores.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@
 
 namespace broadside::bench {
 
-/// Runs all tasks in the calling thread, as if there were sixteen, and takes the time.
+/// Runs all tasks in the calling thread, reports sixteen workers, and measures the time in tasks.
 class Accountant final : public Executor {
  public:
   std::size_t threads() const noexcept override { return 16; }
@@ -38,24 +38,24 @@ class Accountant final : public Executor {
     shared_ms_ += watch.milliseconds();
   }
 
-  /// The time in tasks since the last call.
+  /// Time in tasks since the last call.
   double take_shared_ms() { return std::exchange(shared_ms_, 0); }
 
  private:
   double shared_ms_ = 0;
 };
 
-/// Work that is done again and again.
+/// Repeatable work.
 class Work {
  public:
   virtual ~Work() = default;
 
-  /// Gets ready for a round. Not timed.
+  /// Prepares a round. Not timed.
   virtual void prepare(std::size_t round) = 0;
 
   virtual void run() = 0;
 
-  /// What the last run() found.
+  /// Hash of the results of the last run().
   virtual std::uint64_t hash() const = 0;
 };
 
@@ -72,7 +72,7 @@ inline double milliseconds_of(const std::function<void()>& run) {
   return watch.milliseconds();
 }
 
-/// Adds a row: `make(workers)` makes the same work for these.
+/// Adds a row. `make(workers)` creates the same work for these workers.
 inline void add_gain(const std::string& name,
                      const std::function<std::unique_ptr<Work>(const Workers&)>& make, std::size_t rounds,
                      lab::AlignedColumns& columns) {
@@ -102,18 +102,18 @@ inline void add_gain(const std::string& name,
         throw std::runtime_error(
             fmt::format("{}: found other pairs than one thread; expected the same", name));
     }
-    if (round == 0) continue;  // memory was taken in it
+    if (round == 0) continue;  // the first round allocates memory
     ones.push_back(one_ms);
     gains.push_back(one_ms / two_ms);
     copies_gain.push_back(2 * one_ms / copies_ms);
     shared.push_back(accountant.take_shared_ms() / accounted_ms);
   }
   const double gain = lab::median(gains);
-  const double most = lab::median(copies_gain);
+  const double max_gain = lab::median(copies_gain);
   const double part = lab::median(shared);
   const auto with = [part](double threads) { return fmt::format("{:.1f}", 1 / (1 - part + part / threads)); };
   columns.add({name, lab::rounded(lab::median(ones)), fmt::format("{:.2f}", gain),
-               fmt::format("{:.2f}", most), fmt::format("{:.2f}", gain / most),
+               fmt::format("{:.2f}", max_gain), fmt::format("{:.2f}", gain / max_gain),
                fmt::format("{:.0f} %", part * 100), with(8), with(16)});
 }
 

@@ -1,4 +1,4 @@
-// The frame of a benchmark's main().
+// Error handling and arguments shared by the benchmarks' main() functions.
 #pragma once
 
 #include <charconv>
@@ -14,7 +14,7 @@
 
 namespace broadside::bench {
 
-/// What `run()` returns; where it throws, `failure`, after a line on standard error.
+/// Returns the result of `run()`. If it throws, prints a line on standard error and returns `failure`.
 template <typename Run>
 int guarded(const char* program, int failure, Run run) {
   try {
@@ -25,10 +25,10 @@ int guarded(const char* program, int failure, Run run) {
   }
 }
 
-/// The argument at `place` as a number; `standard` where there are fewer arguments. Throws
-/// std::invalid_argument for what is no number.
-inline std::size_t number_at(int count, char** arguments, int place, std::size_t standard) {
-  if (count <= place) return standard;
+/// The argument at `place` as a number, or `default_value` if there are fewer arguments. Throws
+/// std::invalid_argument if it is not a number.
+inline std::size_t number_at(int count, char** arguments, int place, std::size_t default_value) {
+  if (count <= place) return default_value;
   const std::string_view text = arguments[place];
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -37,9 +37,9 @@ inline std::size_t number_at(int count, char** arguments, int place, std::size_t
   return number;
 }
 
-/// The argument at `place`; `standard` where there are fewer arguments.
-inline std::string text_at(int count, char** arguments, int place, const std::string& standard) {
-  return count > place ? arguments[place] : standard;
+/// The argument at `place`, or `default_value` if there are fewer arguments.
+inline std::string text_at(int count, char** arguments, int place, const std::string& default_value) {
+  return count > place ? arguments[place] : default_value;
 }
 
 }  // namespace broadside::bench

@@ -1,8 +1,9 @@
-// The SIGMOD 2025 join table's uniform data, joined: join_table [BOXES [ALGORITHMS [ROUNDS]]].
+// Joins the uniform data of the SIGMOD 2025 join table: join_table [BOXES [ALGORITHMS [ROUNDS]]].
 //
-// Two sets of as many boxes each (lab/scenes/join_table.hpp), as doubles, which is what the table's data is,
-// and as floats. A call takes both arrays and counts the pairs across, building included; the least time of
-// the rounds counts. Where the number of pairs is published, a call that finds another one fails.
+// Two sets of BOXES boxes each (lab/scenes/join_table.hpp), as doubles, which is the type of the table's
+// data, and as floats. A call takes both arrays, builds its structures and counts the pairs across the sets;
+// the shortest time of the rounds is reported. If the number of pairs is published, a call that finds another
+// number fails.
 #include "lab/scenes/join_table.hpp"
 
 #include <algorithm>
@@ -27,7 +28,7 @@
 namespace broadside::bench {
 namespace {
 
-/// By the number of boxes in each set; without an entry, what the first call finds is expected.
+/// By the number of boxes in each set. Sizes without an entry expect the count of the first call.
 std::map<std::size_t, std::uint64_t> expected_pairs = {{1'000'000, 40'428}, {10'000'000, 4'040'818}};
 
 template <typename Real>
@@ -50,19 +51,19 @@ void measure(std::size_t count, const std::vector<lab::Entry>& entries, std::siz
   for (const lab::Entry& entry : entries) {
     if (!entry.algorithm->has_dimension(2)) continue;
     Finder<2, Real> finder(*entry.algorithm, entry.spec);
-    double least = std::numeric_limits<double>::infinity();
+    double min_ms = std::numeric_limits<double>::infinity();
     for (std::size_t round = 0; round < rounds; ++round) {
       PairCounter pairs;
       const lab::Stopwatch watch;
       finder.find_between(left, right, pairs);
-      least = std::min(least, watch.milliseconds());
+      min_ms = std::min(min_ms, watch.milliseconds());
       const std::uint64_t expected = expected_pairs.try_emplace(count, pairs.count()).first->second;
       if (pairs.count() != expected)
         throw std::runtime_error(fmt::format("{}: {} pairs; expected {}", entry.spec.text(),
                                              lab::grouped(pairs.count()), lab::grouped(expected)));
     }
     fmt::print("{:<6}  {:<30} {:>14} {:>10.1f}\n", sizeof(Real) == sizeof(float) ? "float" : "double",
-               entry.spec.text(), lab::grouped(expected_pairs[count]), least);
+               entry.spec.text(), lab::grouped(expected_pairs[count]), min_ms);
     std::fflush(stdout);
   }
 }

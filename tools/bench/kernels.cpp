@@ -1,8 +1,8 @@
-// The kernels alone, by the number of boxes in a run and by instruction set: kernels
+// The kernels alone, by the length of a run of boxes and by instruction set: kernels
 // [--benchmark_filter=...].
 //
-// Runs are made so that a box has some eight candidates on the swept axis, whatever their size. A time is
-// that of a whole call; pairs of boxes compared and pairs found, a second, stand beside it.
+// A box has about eight candidates on the swept axis, whatever the length of the run. Times are those of a
+// whole call; box pairs tested per second and pairs found per second are printed beside them.
 #include <algorithm>
 #include <cstdint>
 #include <string>

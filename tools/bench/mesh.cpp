@@ -1,6 +1,6 @@
-// Dense joins: the pairs of a mesh's elements that may touch between two times: mesh BEFORE AFTER [ROUNDS
-// [ALGORITHM]]. Vertices with faces, and edges with edges. Both computing the boxes and finding the pairs are
-// timed: what two threads gain over one (see bench/gain.hpp), and what doubles cost over floats.
+// Dense joins: pairs of mesh elements that may touch between two times: mesh BEFORE AFTER [ROUNDS
+// [ALGORITHM]]. Pairs are vertex-face and edge-edge. Both the computation of the boxes and the search are
+// timed: the speedup of two threads (see bench/gain.hpp), and the cost of doubles over floats.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -85,7 +85,7 @@ class Joining final : public Work {
  private:
   using Boxes = std::vector<Box<3, Real>>;
 
-  /// Computes the bounds of each element at both times, as a caller with as many threads would.
+  /// Computes the bounds of each element over both times, with as many threads as the search.
   void sweep(const lab::MeshElements& elements, Boxes& boxes) const {
     boxes.resize(elements.size());
     const std::size_t half = threads_ == 2 ? boxes.size() / 2 : 0;

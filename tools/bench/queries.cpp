@@ -1,7 +1,7 @@
-// Queries to an index of boxes, against other libraries': queries [BOXES [QUERIES [ROUNDS]]].
+// Queries to an index of boxes, compared with other libraries: queries [BOXES [QUERIES [ROUNDS]]].
 //
-// All answer the same batches of queries in turns, in one thread, and must find the same, as a set, before
-// anything is timed. Building is not in the times of queries; it has a line of its own.
+// All libraries answer the same batches of queries in turns, in one thread. Their results must agree, as
+// sets, before anything is timed. Building is excluded from the query times and has a line of its own.
 #include "lab/peers/queries.hpp"
 
 #include <algorithm>
@@ -31,11 +31,11 @@ namespace {
 
 using lab::peers::Answers;
 
-/// Something that answers a batch.
+/// A library that answers a batch of queries.
 struct QueryRacer {
   std::string name;
   std::function<Answers()> ask;
-  std::vector<double> samples{};  // ns a query
+  std::vector<double> samples{};  // ns per query
 };
 
 void race(const std::string& what, std::vector<QueryRacer> participants, std::size_t queries,
@@ -115,7 +115,7 @@ class BenchedQueries {
     return point;
   }
 
-  /// Queries as large as some box, `times` as long on each axis.
+  /// Query boxes: copies of scene boxes, `times` as long on each axis.
   void boxes(const std::string& what, float times) {
     std::vector<Box<D>> queries(queries_);
     for (Box<D>& query : queries) {
@@ -132,7 +132,7 @@ class BenchedQueries {
     race(fmt::format("{}D {}", D, what), participants, queries.size(), rounds_);
   }
 
-  /// From one place that is in no box to another place.
+  /// Rays from a place outside all boxes to another place.
   std::vector<Ray<D>> make_rays() {
     std::vector<Ray<D>> rays(queries_);
     for (Ray<D>& ray : rays) {
@@ -168,7 +168,7 @@ class BenchedQueries {
     return answers;
   }
 
-  /// What one mover costs the index, drifting a fifth of a box, and jumping anywhere.
+  /// Cost of one mover to the index, for a drift of a fifth of a box and for a jump anywhere.
   void move_one() {
     for (const bool jumps : {false, true}) {
       std::vector<double> samples;

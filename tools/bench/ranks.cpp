@@ -1,6 +1,6 @@
-// What ranks gain, send and share: mpirun -n RANKS ranks [BOXES [ROUNDS [SCENE ...]]]. For 1, 2, 4, 8 ... of
-// the ranks, by turns: the hash of the pairs, which must be the same, the bytes that a box costs, the work of
-// the rank with the most over the mean, and how many times as fast as one rank.
+// Speedup, communication and balance of MPI ranks: mpirun -n RANKS ranks [BOXES [ROUNDS [SCENE ...]]]. For
+// 1, 2, 4, 8 ... ranks in turns, it prints the hash of the pairs, which must be the same, the bytes sent per
+// box, the largest work of a rank over the mean, and the speedup over one rank.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -36,7 +36,7 @@ int size_of(MPI_Comm comm) {
   return size;
 }
 
-/// Ranks that have nothing to do wait here without using a core, as MPI's own barriers do.
+/// Idle ranks wait here without using a core; MPI's own barriers would spin.
 void wait_for_all() {
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibarrier(MPI_COMM_WORLD, &request);
@@ -46,10 +46,10 @@ void wait_for_all() {
   }
 }
 
-/// The first ranks of the program, by themselves.
+/// A communicator of the first ranks of the program.
 struct Group {
   int ranks = 1;
-  MPI_Comm comm = MPI_COMM_NULL;  ///< on the others: the comm of those
+  MPI_Comm comm = MPI_COMM_NULL;  ///< on the other ranks: their own communicator
   std::uint64_t pairs = 0;
   std::uint64_t hash = 0;
   mpi::Summary summary{};
@@ -77,7 +77,7 @@ std::span<const Box> own_of(const Group& group, const std::vector<Box>& boxes) {
   return std::span(boxes).subspan(place(rank), place(rank + 1) - place(rank));
 }
 
-/// Joins once, untimed, for what is counted.
+/// Joins once, untimed, for the counts.
 template <typename Box>
 void look(Group& group, const std::vector<Box>& boxes) {
   if (group.is_member()) {
@@ -93,7 +93,7 @@ void look(Group& group, const std::vector<Box>& boxes) {
   wait_for_all();
 }
 
-/// Joins once, from when all ranks begin until the last one has its pairs.
+/// Times one join, from the common start until the last rank has its pairs.
 template <typename Box>
 void measure(Group& group, const std::vector<Box>& boxes) {
   if (group.is_member()) {
@@ -115,7 +115,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// How many times as fast as the one rank, round by round.
+/// Speedup over one rank, round by round.
 std::vector<double> gains(const Group& one, const Group& several) {
   std::vector<double> gains;
   for (std::size_t round = 0; round < several.milliseconds.size(); ++round)
@@ -186,7 +186,7 @@ int run_all(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   using namespace broadside::bench;
-  int provided = MPI_THREAD_SINGLE;  // more is needed: a rank searches by several threads
+  int provided = MPI_THREAD_SINGLE;  // not enough: a rank searches with several threads
   MPI_Init_thread(&count, &arguments, MPI_THREAD_FUNNELED, &provided);
   const int status = guarded("ranks", 3, [&] { return run_all(count, arguments); });
   if (status != 0) MPI_Abort(MPI_COMM_WORLD, status);

@@ -1,7 +1,7 @@
-// The memory that each of our own algorithms takes for many boxes: scale [BOXES [SCENE [ALGORITHMS]]].
+// Memory of each of our algorithms for many boxes: scale [BOXES [SCENE [ALGORITHMS]]].
 //
-// One call each, of a finder made for it, whose pairs are hashed and not kept: so what is counted is what the
-// call takes above the boxes that go in and the pairs that come out. All must find the same pairs.
+// One call each, by a new finder. The pairs are hashed and not kept, so the figure is the memory of the call
+// beyond its input and output. All must find the same pairs.
 #include <cstdint>
 #include <cstdio>
 #include <stdexcept>
@@ -30,7 +30,7 @@ void measure(const lab::NamedScene& named, std::size_t boxes, const std::string&
   const auto count = static_cast<double>(input.boxes.size());
   std::uint64_t expected = 0;
   for (const lab::Entry& entry : catalogue.select(algorithms)) {
-    // It would compare each box with each.
+    // Quadratic: it compares each box with every other.
     if (algorithms == "own" && entry.spec.text() == "brute_force") continue;
     PairHasher pairs;
     const lab::AllocationMeter meter;

@@ -1,8 +1,8 @@
-// Whether a World grows: soak [FRAMES [SPEC]], of 100,000 boxes; 1 % of them are replaced in each frame.
+// Tests whether a World grows over time: soak [FRAMES [SPEC]], with 100,000 boxes, 1 % of them replaced in
+// each frame.
 //
-// Prints what the world holds and what the process does, over what they were after the first frames, when
-// slots are in use again; and compares the pairs now and then with those of a search from nothing, through
-// another algorithm.
+// Prints the memory of the world and of the process, over the values after the first frames, when slots are
+// being reused. Now and then it compares the pairs with those of a search from scratch by another algorithm.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t count = 100'000;
 constexpr std::size_t replaced = count / 100;
 
-/// The bytes of the process that are in memory; 0 where the system does not say.
+/// Resident bytes of the process; 0 if the system does not tell.
 double resident_bytes() {
   std::ifstream file("/proc/self/statm");
   double total = 0;

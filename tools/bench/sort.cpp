@@ -1,6 +1,6 @@
 // The radix sort alone, beside std::sort, from 1,000 to 10,000,000 keys: sort [--benchmark_filter=...].
 //
-// Writing the keys is in each time, as they have to be written anew for each sort.
+// Each time includes writing the keys, because each sort needs them anew.
 #include <algorithm>
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-// What several threads gain over one, in searches and in updates: threads [ROUNDS [SCENE [BOXES_FOLLOWED
+// Speedup of several threads over one, in searches and in updates: threads [ROUNDS [SCENE [BOXES_FOLLOWED
 // [BOXES_SEARCHED]]]]. See bench/gain.hpp.
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// broadside advise: which algorithm suits somebody's boxes, and why.
+// broadside advise: recommends an algorithm for given boxes, and says why.
 #include "lab/advise/advise.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 
 struct AdviseArguments {
   std::vector<std::string> inputs;
-  std::string input;  ///< the one that there is
+  std::string input;  ///< exactly one
   InputOptions read;
   std::string boxes;
   std::optional<double> moving;
@@ -45,7 +45,7 @@ struct AdviseArguments {
 using AnyHistory =
     std::variant<lab::History<2>, lab::History<3>, lab::History<2, double>, lab::History<3, double>>;
 
-/// What is advised on.
+/// The boxes and motion that advice is given on.
 struct AdvisedHistory {
   std::string name;
   std::string warning;
@@ -57,12 +57,12 @@ bool asks_for_motion(const AdviseArguments& arguments) {
 }
 
 lab::SceneRequest request_of(const AdviseArguments& arguments) {
-  constexpr std::size_t standard_frames = 20;
+  constexpr std::size_t default_frames = 20;
   lab::SceneRequest request;
-  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.boxes = arguments.boxes.empty() ? default_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
   if (asks_for_motion(arguments))
-    request.frames = arguments.frames.empty() ? standard_frames : read_count("--frames", arguments.frames);
+    request.frames = arguments.frames.empty() ? default_frames : read_count("--frames", arguments.frames);
   request.moving = arguments.moving.value_or(request.moving);
   request.drift = arguments.motion.drift_or_standard();
   request.teleport = arguments.motion.teleport_or_standard();
@@ -78,7 +78,7 @@ AnyHistory whole(lab::FrameReader<D, Real>& frames, std::string& warning) {
 
 AdvisedHistory read_file(const AdviseArguments& arguments) {
   lab::ReadOptions options = read_options(arguments.read, arguments.input);
-  // What is set moving is of floats.
+  // Generated motion is in floats.
   if (asks_for_motion(arguments)) {
     if (options.precision == lab::Precision::float64)
       throw Unusable("--precision is double for boxes that are set moving; expected float");
@@ -107,7 +107,7 @@ AdvisedHistory make_scene(const AdviseArguments& arguments, const lab::NamedScen
   const int dimension = arguments.read.dimension != 0  ? arguments.read.dimension
                         : named.scene.has_dimension(2) ? 2
                                                        : 3;
-  // Scenes that move by themselves have nothing to show while they are still.
+  // Scenes that move by themselves show nothing in a single frame.
   constexpr std::size_t frames_of_motion = 30;
   const bool moves = dimension == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d);
   if (moves && request.frames == 0) request.frames = frames_of_motion;

@@ -1,4 +1,4 @@
-// Whether the options that were given mean something to the scenes and files that they were given with.
+// Checks whether the given options apply to the scenes and files they were given with.
 #include "cli/applicability.hpp"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ bool has_seed(const lab::Scene& scene) { return !scene.fixed_seed; }
 bool moves_by_itself(const lab::Scene& scene) { return scene.history_2d || scene.history_3d; }
 bool is_still(const lab::Scene& scene) { return !moves_by_itself(scene); }
 
-/// An option, the scenes that it means something to, and what is said of one and of several others.
+/// An option, the scenes it applies to, and the messages about one scene and about several that it does not
+/// apply to.
 struct Rule {
   std::string_view option;
   bool (*applies)(const lab::Scene&);
@@ -46,7 +47,7 @@ constexpr std::array rules = {
     Rule{"--teleport", is_still, mover, movers},
 };
 
-/// The value that an option was given, as it was written; empty where it was not given, or the verb has none.
+/// The text of an option's value; empty if it was not given, or the verb does not have it.
 std::optional<std::string> value_of(const CLI::App& verb, std::string_view option) {
   const CLI::Option* const found = verb.get_option_no_throw(std::string(option));
   if (found == nullptr || found->count() == 0) return std::nullopt;
@@ -59,15 +60,16 @@ bool is_flag(const CLI::App& verb, std::string_view option) {
 
 /// "scene 'a'", "scenes 'a', 'b' and 'c'", "scenes 'a', 'b', 'c' and 9 others".
 std::string names_of(std::span<const lab::NamedScene> scenes) {
-  constexpr std::size_t most = 3;
+  constexpr std::size_t max_names = 3;
   if (scenes.size() == 1)
     return fmt::format("{} '{}'", is_read_from_file(scenes[0].scene) ? "file" : "scene", scenes[0].spec.name);
   std::string names = "scenes ";
-  for (std::size_t i = 0; i < std::min(scenes.size(), most); ++i) {
+  for (std::size_t i = 0; i < std::min(scenes.size(), max_names); ++i) {
     const bool is_last = i + 1 == scenes.size();
     names += fmt::format("{}'{}'", i == 0 ? "" : is_last ? " and " : ", ", scenes[i].spec.name);
   }
-  return scenes.size() > most ? fmt::format("{} and {} others", names, scenes.size() - most) : names;
+  return scenes.size() > max_names ? fmt::format("{} and {} others", names, scenes.size() - max_names)
+                                   : names;
 }
 
 bool is_number(std::string_view text) {

@@ -89,7 +89,7 @@ void check(const CompareArguments& arguments) {
   check(arguments.files);
 }
 
-/// Refuses options that mean nothing to what is compared, and says which scenes ignore one.
+/// Refuses options that apply to nothing that is compared, and reports scenes that ignore an option.
 void check_applies(const CLI::App& verb, const CompareArguments& arguments, const lab::FindScene& find,
                    const lab::Catalogue& catalogue) {
   std::vector<lab::NamedScene> scenes;
@@ -107,7 +107,7 @@ void check_applies(const CLI::App& verb, const CompareArguments& arguments, cons
   check_threads(arguments.entries, catalogue.select(arguments.entries.algorithms));
 }
 
-/// The boxes of the largest search that is checked by the definition, from the text of --check.
+/// Number of boxes of the largest search that is checked by definition, from the text of --check.
 std::size_t definition_boxes(const std::string& text) {
   constexpr std::string_view name = "definition=";
   if (!text.starts_with(name))
@@ -115,7 +115,7 @@ std::size_t definition_boxes(const std::string& text) {
   return read_count("--check definition", text.substr(name.size()));
 }
 
-/// Where to find what the lines leave out.
+/// Says where the details are that the lines leave out.
 std::string details_hint(const ResultFiles& files) {
   return fmt::format(
       "details: --details prints each case's table; {}\n",

@@ -1,4 +1,4 @@
-// broadside completion: what completes the program's command lines in a shell.
+// broadside completion: generates shell completions.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -18,7 +18,7 @@
 namespace broadside::cli {
 namespace {
 
-/// The first clause of a text, without the point at its end.
+/// The first clause of a text, without the full stop at its end.
 std::string first_clause(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool ends = i + 1 == text.size() || text[i + 1] == ' ';
@@ -27,20 +27,20 @@ std::string first_clause(const std::string& text) {
   return text;
 }
 
-/// An option as shells complete it.
+/// An option for shell completion.
 struct CompletedOption {
   std::vector<std::string> letters;  ///< without the dash
   std::vector<std::string> names;    ///< without the dashes
   std::string summary;
   bool has_value;
-  std::vector<std::string> values;  ///< that are known; else a value is a file's name
+  std::vector<std::string> values;  ///< known values; if empty, the value is a file name
 };
 
 struct CompletedVerb {
   std::string name;
   std::string summary;
   std::vector<CompletedOption> options;
-  std::vector<std::string> values;  ///< likewise, of arguments that are no options
+  std::vector<std::string> values;  ///< known values of positional arguments
 };
 
 std::vector<std::string> algorithm_names() {
@@ -77,7 +77,7 @@ CompletedVerb completed(const CLI::App& app) {
   return verb;
 }
 
-/// The program's verbs; `help` takes their names, and `completion` those of the shells.
+/// The program's verbs. `help` accepts their names, and `completion` those of the shells.
 std::vector<CompletedVerb> completed_verbs(const CLI::App& program) {
   std::vector<CompletedVerb> verbs;
   std::vector<std::string> names;
@@ -92,7 +92,7 @@ std::vector<CompletedVerb> completed_verbs(const CLI::App& program) {
   return verbs;
 }
 
-/// The text in single quotes, as every shell here reads it.
+/// The text in single quotes, which every shell here understands.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -142,7 +142,7 @@ complete -o filenames -F _{0} {0}
                      fmt::join(algorithm_names(), " "), cases);
 }
 
-/// The text as _arguments and _describe of zsh read it.
+/// The text escaped for _arguments and _describe of zsh.
 std::string zsh_text(const std::string& text) {
   std::string result;
   for (const char c : text)

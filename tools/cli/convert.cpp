@@ -36,7 +36,7 @@ Exit run(const ConvertArguments& arguments) {
     throw Unusable(fmt::format("--ids with format {}, which holds no ids; expected csv", format.name));
   options.ids = arguments.ids;
   options.finds_ids = format.keeps_ids;
-  // Rounded on the way out instead, where it is counted.
+  // Round while writing instead, where the rounding is counted.
   const std::optional<lab::Precision> precision = std::exchange(options.precision, std::nullopt);
   lab::BoxFile file = lab::open_file(arguments.file, options);
   const lab::Converted converted = lab::convert(std::move(file), arguments.output, format, precision);

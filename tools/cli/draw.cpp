@@ -1,4 +1,4 @@
-// broadside draw: a scene's boxes and what algorithms lay over them, as a picture.
+// broadside draw: a picture of a scene's boxes and of an algorithm's structures over them.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -28,15 +28,15 @@ namespace {
 
 constexpr std::size_t drawn_boxes = 300;
 
-/// Of more boxes a picture is a black square, and too large a file.
+/// With more boxes, a picture is a black square and too large a file.
 constexpr std::size_t max_boxes = 20'000;
 
-/// Of a scene that is made; a file has as many as it has.
+/// For generated scenes; a file has as many as it has.
 constexpr std::size_t max_frames = 10'000;
 
 struct DrawArguments {
   std::vector<std::string> scenes;
-  std::string scene;  ///< the one that there is
+  std::string scene;  ///< exactly one
   std::string algorithms;
   InputOptions input;
   std::string output;
@@ -46,7 +46,7 @@ struct DrawArguments {
   std::string frame;
 };
 
-/// Every algorithm that is asked for by name; of a group, the ones that lay something over boxes.
+/// The algorithms requested by name; of a group, only those that draw something over the boxes.
 std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::string& list, int dimension) {
   std::vector<lab::Entry> chosen;
   if (list.empty()) return chosen;
@@ -82,7 +82,7 @@ std::vector<lab::Entry> entries(const lab::Catalogue& catalogue, const std::stri
   return chosen;
 }
 
-/// The frame that is asked for, counted from 0.
+/// The requested frame, counted from 0.
 std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
   if (arguments.frame.empty()) return 0;
   const std::size_t frame = read_index("--frame", arguments.frame);
@@ -92,7 +92,7 @@ std::size_t frame_of(const DrawArguments& arguments, const lab::Scene& scene) {
   return frame;
 }
 
-/// A picture is SVG whatever its name says.
+/// Refuses names of other kinds, because pictures are always SVG.
 void check_is_svg(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension.empty() || CLI::detail::to_lower(extension) == ".svg") return;

@@ -1,4 +1,4 @@
-// What --help prints, in lines that the terminal holds.
+// Formats --help to the width of the terminal.
 #include "cli/help.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_width = 80;
+constexpr std::size_t default_width = 80;
 constexpr std::size_t min_width = 40;
 constexpr std::size_t max_width = 100;  // longer lines are hard to read
 
@@ -27,11 +27,11 @@ std::size_t terminal_width() {
     std::from_chars(text.data(), text.data() + text.size(), width);
   }
   if (width == 0) width = lab::platform::terminal_width();
-  return width == 0 ? standard_width : std::clamp(width, min_width, max_width);
+  return width == 0 ? default_width : std::clamp(width, min_width, max_width);
 }
 
-/// The words of `text` in lines of at most `width`; the first begins in column `column`, the others
-/// in column `indent`.
+/// The words of `text` in lines of at most `width` columns. The first line begins in column `column`, the
+/// others in column `indent`.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
   std::string lines;
   std::istringstream words(text);
@@ -98,7 +98,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  // Indented lines are not wrapped: they are commands to be copied.
+  // Indented lines are commands to copy, so they are not wrapped.
   std::string footer;
   std::istringstream lines(app->get_footer());
   for (std::string line; std::getline(lines, line);)
@@ -118,7 +118,7 @@ void add_examples(CLI::App& verb, const std::vector<Example>& examples) {
   std::string footer = "Examples:";
   for (const Example& example : examples)
     footer += fmt::format("\n  {} {}\n      {}", program_name(), example.command, example.what);
-  // What the program says of all its verbs comes last.
+  // The program's footer about all verbs comes last.
   verb.footer(footer + "\n\n" + verb.get_footer());
 }
 

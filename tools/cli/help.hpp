@@ -1,4 +1,4 @@
-// What --help prints, in lines that the terminal holds.
+// Formats --help to the width of the terminal.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace broadside::cli {
 
-/// CLI11's help with every text wrapped to the width of the terminal (COLUMNS, where it is set; 80 where
-/// neither tells), at most 100. An option is shown under its first name alone.
+/// CLI11's help with every text wrapped to the width of the terminal, at most 100 columns. COLUMNS overrides
+/// the width; it is 80 if unknown. An option is shown under its first name only.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter();
@@ -22,7 +22,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override;
 
  protected:
-  /// What is shown of an option: how it is written, such as "-o, --output FILE", and what it does.
+  /// Text of an option: its spelling, such as "-o, --output FILE", and its description.
   struct OptionText {
     std::string name;
     std::string text;
@@ -35,14 +35,14 @@ class HelpFormatter : public CLI::Formatter {
   std::size_t width_;
 };
 
-/// Ends a verb's help with examples: a command a line, under it what it does.
+/// An example at the end of a verb's help: a command on one line, its effect below.
 struct Example {
   std::string command;  ///< without the program's name
   std::string what;
 };
 void add_examples(CLI::App& verb, const std::vector<Example>& examples);
 
-/// The program's arguments, in which `help` and `help VERB` have become --help and VERB --help.
+/// The program's arguments, with `help` and `help VERB` replaced by --help and VERB --help.
 std::vector<std::string> without_help_verb(const std::vector<std::string>& arguments);
 
 }  // namespace broadside::cli

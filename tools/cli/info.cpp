@@ -1,4 +1,4 @@
-// broadside info: what a file of boxes, or a scene, holds.
+// broadside info: describes a file of boxes or a scene.
 #include <memory>
 #include <string>
 

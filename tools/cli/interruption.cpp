@@ -1,4 +1,4 @@
-// What the program does at Ctrl-C (SIGINT), at SIGTERM and at SIGHUP.
+// Handles Ctrl-C (SIGINT), SIGTERM and SIGHUP.
 #include "cli/interruption.hpp"
 
 #include <atomic>
@@ -18,15 +18,15 @@ namespace {
 std::atomic<bool> noted = false;
 std::atomic<OnSignal> reaction = OnSignal::end;
 std::atomic<const std::string*> said_at_interruption = nullptr;
-std::atomic<bool> is_on_terminal = false;  // where a line of progress may stand
+std::atomic<bool> is_on_terminal = false;  // where a progress line may be visible
 static_assert(std::atomic<OnSignal>::is_always_lock_free, "a signal's handler must not wait");
 
-/// Nothing can be done about a message that is not taken.
+/// A failed write is ignored: there is no other place to report it.
 void write_message(std::string_view text) {
   lab::platform::write(lab::platform::standard_error, text.data(), text.size());
 }
 
-/// Ends the program from a signal's handler.
+/// Ends the program from a signal handler.
 [[noreturn]] void end(Exit exit) {
   lab::platform::remove_unfinished_file();
   std::_Exit(static_cast<int>(exit));
@@ -56,7 +56,7 @@ void handle() {
 }  // namespace
 
 void say_at_interruption(const std::string& what) {
-  // A signal may be reading a former text, so all of them are kept.
+  // A signal handler may be reading an earlier text, so all texts are kept.
   static std::forward_list<std::string> texts;
   said_at_interruption = what.empty() ? nullptr : &texts.emplace_front(printable(what));
 }

@@ -1,4 +1,4 @@
-// broadside list: the algorithms, scenes and file formats there are, and what can be set.
+// broadside list: the algorithms, scenes and file formats, and their settings.
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -22,7 +22,7 @@ namespace {
 
 std::string range_of(const Tunable& tunable) {
   const std::string min = fmt::format("from {:g}", tunable.min);
-  // Bounds that only keep a value a float say nothing to a reader.
+  // Bounds that only keep a value within a float are of no use to readers.
   constexpr double largest = std::numeric_limits<float>::max();
   constexpr double smallest = std::numeric_limits<float>::min();
   std::string range = tunable.min <= -largest ? "" : tunable.min == smallest ? "above 0" : min;
@@ -37,8 +37,8 @@ std::string values_of(const Tunable& tunable) {
   return range.empty() ? kind : kind + " " + range;
 }
 
-/// Prints `begin` and then the text's words, in lines that a terminal of usual width holds; each line of the
-/// text begins where the first does.
+/// Prints `begin` and then the text, wrapped for a terminal of usual width. Each line of the text is aligned
+/// with its first.
 void print_wrapped(const std::string& begin, std::string_view text) {
   constexpr std::size_t widest = 110;
   print(begin);
@@ -59,7 +59,7 @@ void print_wrapped(const std::string& begin, std::string_view text) {
   print("\n");
 }
 
-/// An algorithm or a scene: a line for itself and one for each of its tunables.
+/// An algorithm or scene: one line for itself and one for each of its tunables.
 struct ListedItem {
   std::string name;
   std::string kind;

@@ -1,15 +1,15 @@
-# Has HELP2MAN write PROGRAM's manual to FOLDER/man1, compressed by GZIP, and PROGRAM its completions to FOLDER. Without
-# HELP2MAN there are completions alone.
+# Lets HELP2MAN write PROGRAM's man pages to FOLDER/man1, compressed by GZIP, and lets PROGRAM write its shell
+# completions to FOLDER. Without HELP2MAN, only completions are written.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER}/man1)
 
-# Writes what a command prints to a file.
+# Writes the output of a command to a file.
 function(write_output file)
   execute_process(COMMAND ${ARGN} OUTPUT_FILE ${file} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# Makes a page of the manual out of what `PROGRAM ARGN --help` prints. help2man calls the page after what it runs.
+# Makes a man page from the output of `PROGRAM ARGN --help`. help2man names the page after the command it runs.
 function(write_page name what)
   file(CONFIGURE OUTPUT ${FOLDER}/${name} CONTENT "#!/bin/sh\nexec '${PROGRAM}' ${ARGN} \"$@\"\n" @ONLY)
   file(CHMOD ${FOLDER}/${name} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)

@@ -1,4 +1,4 @@
-// broadside measure: a list of cases, each with its own algorithms, as JSON with every sample.
+// broadside measure: measures a list of cases, each with its own algorithms, and writes every sample as JSON.
 #include <memory>
 #include <string>
 #include <utility>

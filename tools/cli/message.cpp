@@ -1,4 +1,4 @@
-// What the program says on standard error.
+// Output on standard error.
 #include "cli/message.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ const char* program_name() noexcept { return name_of_program.c_str(); }
 
 void say(std::string_view text) {
   const std::string line = fmt::format("{}: {}\n", name_of_program, printable(text));
-  // Nothing can be done about a message that is not taken.
+  // A failed write is ignored: there is no other place to report it.
   std::fputs(line.c_str(), stderr);
 }
 
@@ -86,9 +86,9 @@ void ProgressLine::show(std::string_view what, double done) {
   if (!is_due()) return;
   const double passed = std::chrono::duration<double>(shown_ - begin_).count();
   const double fraction = std::clamp(done, 0.0, 1.0);
-  // First, since a long line is cut.
+  // Numbers first, because a long line is cut.
   std::string text = fmt::format("{:.0f} %", std::floor(100 * fraction));
-  // What little was done in less than a second does not tell how the rest will go.
+  // Progress of less than a second is too little to extrapolate from.
   if (fraction > 0 && passed >= 1)
     text += fmt::format(", {} left", roughly(passed * (1 - fraction) / fraction));
   write(fmt::format("{}: {}", text, what));
@@ -111,7 +111,7 @@ void ProgressLine::write(std::string_view what) {
     return;
   }
   is_shown_ = true;
-  // A longer line would wrap and could not be written over.
+  // A longer line would wrap and could not be overwritten.
   fmt::print(stderr, "\r\x1b[K{}", printable(what.substr(0, 78)));
 }
 
@@ -119,12 +119,12 @@ void ProgressLine::clear() {
   if (!is_shown_) return;
   fmt::print(stderr, "\r\x1b[K");
   is_shown_ = false;
-  shown_ = {};  // what comes next is shown at once
+  shown_ = {};  // show the next text at once
 }
 
 std::string roughly(double seconds) {
-  constexpr double most = 1e9;  // a guess beyond a human life is none
-  const auto whole = static_cast<std::int64_t>(std::ceil(std::min(seconds, most)));
+  constexpr double max_seconds = 1e9;  // an estimate beyond a human life is useless
+  const auto whole = static_cast<std::int64_t>(std::ceil(std::min(seconds, max_seconds)));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
   return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);

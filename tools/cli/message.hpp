@@ -1,4 +1,4 @@
-// What the program says on standard error: messages, progress, and that it cannot use what was given.
+// Output on standard error: messages, progress, and errors about unusable arguments and files.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 namespace broadside::cli {
 
-/// Text that may quote a file or an argument, with its control characters written out as \n, \t or \x1b: what
-/// a file holds is not to steer a terminal.
+/// Text that may quote a file or an argument, with control characters escaped as \n, \t or \x1b, so that file
+/// contents cannot control a terminal.
 std::string printable(std::string_view text);
 
 /// The name by which this program was called, without its folder; "broadside" until it is set. A
@@ -17,30 +17,30 @@ std::string printable(std::string_view text);
 void set_program_name(const std::string& name);
 const char* program_name() noexcept;
 
-/// Writes "PROGRAM: TEXT" and a line's end to stderr, the text made printable.
+/// Writes "PROGRAM: TEXT" and a newline to stderr, after printable(TEXT).
 void say(std::string_view text);
 
-/// Likewise each line of a text that holds several messages, such as a reader's warnings; nothing if empty.
+/// say() for each line of a text with several messages, such as a reader's warnings; nothing if empty.
 void say_lines(std::string_view text);
 
-/// Prints text to standard output. Throws Unusable where it is not taken.
+/// Prints text to standard output. Throws Unusable if the write fails.
 void print(std::string_view text);
 
-/// Throws Unusable if not all that was printed has been taken.
+/// Throws Unusable if printed text could not be written.
 void flush_output();
 
 /// Where progress is shown.
 enum class ShowProgress {
-  on_terminal,  ///< where stderr is one
-  always,       ///< elsewhere as lines of their own
+  on_terminal,  ///< only if stderr is a terminal
+  always,       ///< also elsewhere, as separate lines
   never,
 };
 
-/// From here on; until then it is on_terminal.
+/// Sets where progress is shown; the default is on_terminal.
 void show_progress(ShowProgress where);
 
-/// What long work is at, on stderr: on a terminal one line, which is gone when this object is; elsewhere, if
-/// it is asked for, a line each second.
+/// Progress of long work on stderr. On a terminal, one line that disappears with this object; elsewhere, if
+/// requested, one line per second.
 class ProgressLine {
  public:
   ProgressLine() = default;
@@ -48,17 +48,17 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Shows this from now on; at most ten times a second.
+  /// Shows this from now on; updates at most ten times per second.
   void show(std::string_view what);
 
-  /// Likewise, with the fraction that is done, from 0 to 1, in percent and, after a second, how long the rest
-  /// will take if it goes on as it did since this object was made.
+  /// Also shows the completed fraction, from 0 to 1, in percent and, after a second, the remaining time,
+  /// extrapolated from the time since this object was made.
   void show(std::string_view what, double done);
 
   void clear();
 
  private:
-  /// Whether there is anything to be shown now.
+  /// Whether an update should be shown now.
   bool is_due();
   void write(std::string_view what);
 
@@ -67,10 +67,10 @@ class ProgressLine {
   std::chrono::steady_clock::time_point shown_{};
 };
 
-/// How long something will take, in whole seconds: "12 s", "3 min 20 s", "2 h 5 min".
+/// A duration in rounded units: "12 s", "3 min 20 s", "2 h 5 min".
 std::string roughly(double seconds);
 
-/// An argument or a file that cannot be used; its text names the thing, the value found and what is expected.
+/// An argument or a file that cannot be used; the text names the thing, the value found and the expected one.
 class Unusable : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-// broadside pairs --memory, where the library for it is missing.
+// Stub of broadside pairs --memory for builds without the out-of-core library.
 #include "cli/message.hpp"
 #include "cli/out_of_core.hpp"
 

@@ -1,4 +1,4 @@
-// Options that verbs share.
+// Options shared by verbs.
 #include "cli/options.hpp"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ void check(const MotionOptions& options) {
 
 namespace {
 
-/// Shows how far a file has been read; the line goes with the reader.
+/// Shows how far a file has been read; the line disappears with the reader.
 lab::Progress progress_of(const std::string& path) {
   const std::string name = path.empty()  ? "files"
                            : path == "-" ? "standard input"

@@ -29,7 +29,7 @@
 namespace broadside::cli {
 namespace {
 
-/// How a file is read, each time it is.
+/// How to read a file, for each pass.
 struct FileToRead {
   std::string path;
   lab::ReadOptions options;
@@ -37,7 +37,7 @@ struct FileToRead {
 
 lab::BoxFile open(const FileToRead& file) {
   lab::ReadOptions options = file.options;
-  // A reader does not count what it rounds.
+  // Rounding in the reader would not be counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
   lab::BoxFile opened = lab::open_file(file.path, options);
@@ -46,7 +46,7 @@ lab::BoxFile open(const FileToRead& file) {
   return opened;
 }
 
-/// The boxes of a file's first frame, piece by piece.
+/// The boxes of a file's first frame, in pieces.
 template <int D, typename Real>
 class FileBoxes final : public BoxSource<D, Real> {
  public:
@@ -84,8 +84,8 @@ class FileBoxes final : public BoxSource<D, Real> {
     frames_.emplace(open(file).frames);
   }
 
-  // The first pass only samples the boxes, and the second reads them all: it is the one that says what is
-  // wrong with the file.
+  // Only the second pass reports warnings about the file: the first one only samples the boxes, and the
+  // second reads them all.
   static constexpr int told_pass = 2;
 
   FileToRead file_;
@@ -94,7 +94,7 @@ class FileBoxes final : public BoxSource<D, Real> {
   int pass_ = 0;
 };
 
-/// A file that can be read again, and that does not need more memory than there may be.
+/// Throws unless the file can be read twice, within the memory limit.
 void check_file(const std::string& path, const lab::BoxFile& file, std::uint64_t memory) {
   const bool is_regular = path != "-" && std::filesystem::is_regular_file(path);
   if (!is_regular || !lab::compression_extension_of(path).empty())
@@ -111,7 +111,7 @@ void check_file(const std::string& path, const lab::BoxFile& file, std::uint64_t
                     file.name, lab::grouped(bytes), file.format->name));
 }
 
-/// Tells a file, and how it is read, from others.
+/// Identifies a file together with its read options.
 std::string identity_of(const FileToRead& file, const InputOptions& input) {
   const auto modified = std::chrono::file_clock::to_sys(std::filesystem::last_write_time(file.path));
   const auto second = std::chrono::floor<std::chrono::seconds>(modified);
@@ -132,14 +132,14 @@ std::string identity_of(const FileToRead& file, const InputOptions& input) {
   return text;
 }
 
-/// Beside the output, or the first file.
+/// Beside the output or, without one, beside the first file.
 std::filesystem::path work_folder_of(const PairsArguments& arguments) {
   if (!arguments.work.empty()) return arguments.work;
   const bool has_output = !arguments.counts && !lab::is_written_directly(arguments.output);
   return (has_output ? arguments.output : arguments.files[0]) + ".work";
 }
 
-/// The work folder is removed, or holds nothing but the join's files.
+/// The output must not lie in the work folder, which is removed, or holds only the join's own files.
 void check_output(const PairsArguments& arguments, const std::filesystem::path& work) {
   if (arguments.counts || lab::is_written_directly(arguments.output)) return;
   const auto folder = std::filesystem::absolute(arguments.output).parent_path();
@@ -159,7 +159,7 @@ class JoinProgress {
     if (stage != stage_) {
       stage_ = stage;
       line_.emplace();
-      // Once all boxes are read, a part that is corrupt may be read again.
+      // All boxes may be read once more later, to repair a corrupt part.
       is_read_ |= stage != OutOfCoreStage::reading;
       say_at_interruption(fmt::format("{} is left, and the same command {}", folder_,
                                       is_read_ ? "resumes from it" : "starts over in it"));
@@ -252,7 +252,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
   std::vector<lab::Precision> precisions;
   for (const std::string& path : arguments.files) {
     files.push_back({path, read_options(arguments.input, path)});
-    files.back().options.progress = {};  // the join says what it is at
+    files.back().options.progress = {};  // the join reports its own progress
     const lab::BoxFile file = open(files.back());
     check_file(path, file, options.memory);
     dimensions.push_back(lab::dimension_of(file.frames));

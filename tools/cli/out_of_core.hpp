@@ -10,7 +10,7 @@ namespace broadside::cli {
 /// Whether this build has Broadside::out_of_core.
 bool has_out_of_core() noexcept;
 
-/// Joins the files within the limit of memory, and writes or counts the pairs. Throws Unusable, FileError and
+/// Joins the files within the memory limit, and writes or counts the pairs. Throws Unusable, FileError and
 /// OutOfCoreError.
 Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry);
 

@@ -1,4 +1,4 @@
-// broadside pairs: joins a file, or two, and writes the pairs of boxes that overlap.
+// broadside pairs: joins one file or two, and writes the pairs of overlapping boxes.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -39,7 +39,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
   if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
-  // Rounded once the frame is there instead, where it is counted.
+  // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
   lab::FrameOfFile read = lab::read_frame(lab::open_file(path, options), frame);
@@ -50,7 +50,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   return read;
 }
 
-/// The pairs within one set of boxes or between two, of files or of a swept mesh's parts.
+/// The pairs within one set of boxes or between two sets, from files or from the parts of a swept mesh.
 class PairsCommand {
  public:
   PairsCommand(const PairsArguments& arguments, const lab::Catalogue& catalogue)
@@ -68,7 +68,7 @@ class PairsCommand {
 
   bool is_between() const { return sets_.size() == 2; }
 
-  /// Says how many pairs were found up to now; how many there will be is not known.
+  /// Shows the number of pairs so far; the total is not known.
   void show(std::uint64_t pairs) {
     constexpr std::uint64_t pairs_per_report = std::uint64_t{1} << 20;
     if (pairs - shown_pairs_ < pairs_per_report) return;
@@ -77,7 +77,7 @@ class PairsCommand {
         fmt::format("joining by {}: {}", entry_.spec.text(), lab::counted(pairs, "pair", "pairs")));
   }
 
-  /// The ids to write instead of numbers, if that is asked for.
+  /// The ids to write instead of numbers, if requested.
   lab::PairIds ids() const {
     if (arguments_.ids.empty()) return {};
     return {&sets_.front().labels->ids, &sets_.back().labels->ids};
@@ -97,7 +97,7 @@ class PairsCommand {
     progress_.clear();
   }
 
-  /// What was joined and how, and how long it took.
+  /// Summary of the join: inputs, algorithm and time.
   std::string text(std::uint64_t pairs) const {
     std::string sets;
     if (arguments_.is_swept) sets = fmt::format("{} to {}: ", arguments_.files[0], arguments_.files[1]);
@@ -133,7 +133,7 @@ class PairsCommand {
     if (arguments_.right != arguments_.left) add(arguments_.right);
   }
 
-  /// What the pairs are exact in, or what was rounded before they were found.
+  /// The precision in which the pairs are exact, or how many coordinates were rounded.
   std::string precision_text() const {
     const std::string_view precision = name(lab::precision(sets_[0].boxes));
     const auto imported =
@@ -169,7 +169,7 @@ class PairsCommand {
   const PairsArguments& arguments_;
   lab::Entry entry_;
   std::vector<lab::FrameOfFile> sets_;
-  std::vector<lab::MeshElements> elements_;  // of each set, where pairs with a shared vertex are left out
+  std::vector<lab::MeshElements> elements_;  // of each set, if pairs with a shared vertex are left out
   lab::Rounding rounding_;
   ProgressLine progress_;
   std::uint64_t shown_pairs_ = 0;

@@ -1,4 +1,4 @@
-// The arguments of `broadside pairs`, and whether they go together.
+// The arguments of `broadside pairs`, and checks of their combinations.
 #include "cli/pairs_arguments.hpp"
 
 #include <algorithm>
@@ -145,8 +145,8 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (std::ranges::count(arguments.files, "-") > 1)
     throw Unusable("standard input twice; expected it to be one of the two files");
   for (const std::string& file : arguments.files) check_is_no_scene(file);
-  // A pipe can be read only once: a second reader would wait for ever. std::filesystem::equivalent()
-  // does not compare pipes.
+  // A pipe can be read only once; a second reader would wait forever. std::filesystem::equivalent() does not
+  // compare pipes.
   std::error_code fault;
   const auto place = [&fault](const std::string& file) { return std::filesystem::canonical(file, fault); };
   if (arguments.files.size() == 2 && std::filesystem::exists(arguments.files[0], fault) &&
@@ -161,7 +161,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (!arguments.within.empty()) read_distance(arguments.within);
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
-  // Known before the files are read.
+  // This check needs no file to be read.
   entry_of(arguments, catalogue);
   check_ids(arguments);
   if (arguments.counts) {

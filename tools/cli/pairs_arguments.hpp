@@ -1,4 +1,4 @@
-// The arguments of `broadside pairs`, and whether they go together.
+// The arguments of `broadside pairs`, and checks of their combinations.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace broadside::cli {
 struct PairsArguments {
   std::vector<std::string> files;
   InputOptions input;
-  std::vector<std::string> ids;  // of both files, or of each
+  std::vector<std::string> ids;  // one for both files, or one for each
   std::string within;
   std::string algorithm{default_algorithm};
   std::string threads{};  ///< empty: as the spec says
@@ -25,27 +25,28 @@ struct PairsArguments {
   std::string to;
   std::string order = "sorted";
   bool counts = false;
-  std::string memory;  // a limit, with which the join works on disk
-  std::string work;    // the folder for that
+  std::string memory;  // a limit that makes the join work on disk
+  std::string work;    // the work folder of such a join
   bool is_swept = false;
   std::string left;  // parts of a swept mesh
   std::string right;
   bool excludes_shared = false;
 };
 
-/// The part of a mesh that `text` names. Throws Unusable, naming `option`, if it names none.
+/// The part of a mesh that `text` names. Throws Unusable, naming `option`, if there is no such part.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
 
 /// The distance of --within. Throws Unusable if it is invalid.
 double read_distance(const std::string& text);
 
-/// The bytes of --memory. Throws Unusable if it is invalid or too little.
+/// The bytes of --memory. Throws Unusable if the value is invalid or too small.
 std::uint64_t read_memory(const std::string& text);
 
-/// The algorithm with its number of threads. Throws Unusable if it is not one, or cannot use several.
+/// The algorithm with its number of threads. Throws Unusable if there is no such algorithm, or it cannot use
+/// several.
 lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
-/// Throws Unusable if the arguments contradict each other, as far as that is known before a file is read.
+/// Throws Unusable for contradictory arguments, as far as they can be detected before a file is read.
 void check(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 }  // namespace broadside::cli

@@ -1,4 +1,4 @@
-// Reads the arguments of a program with verbs, and explains those that cannot be used.
+// Parses the arguments of a program with verbs, and explains arguments that cannot be used.
 #include "cli/parse.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace broadside::cli {
 namespace {
 
-/// The verb that was called, or the program where there was none.
+/// The verb that was called, or the program if there was none.
 const CLI::App& called(const CLI::App& program) {
   const std::vector<CLI::App*> verbs = program.get_subcommands();
   return verbs.empty() ? program : *verbs.front();
@@ -40,7 +40,7 @@ std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.get_name(true, false) : option.get_name();
 }
 
-/// An option of earlier versions and what to use now; docs/migration.md has all of them.
+/// An option of earlier versions and its replacement; docs/migration.md lists them all.
 struct RemovedOption {
   std::string_view verb;
   std::string_view name;
@@ -53,7 +53,7 @@ constexpr RemovedOption removed_options[] = {
     {"compare", "--samples", "--json, which has every sample"},
 };
 
-/// An argument that neither an option nor a position takes.
+/// Message about an argument that is neither a known option nor an expected positional argument.
 std::string about_extra(const CLI::App& verb, const std::string& argument) {
   if (!argument.starts_with('-'))
     return fmt::format(
@@ -73,7 +73,7 @@ std::string about_extra(const CLI::App& verb, const std::string& argument) {
                                        : "an option of " + verb.get_name());
 }
 
-/// The option whose value could not be read as a number; null if it is none of the verb's.
+/// The option whose value could not be read as a number; null if it is none of the verb's options.
 const CLI::Option* unreadable_option(const CLI::App& verb, const std::string& message) {
   for (const CLI::Option* const option : verb.get_options()) {
     if (option->count() > 0 && message.find(option->get_name()) != std::string::npos) return option;
@@ -99,7 +99,7 @@ void check_verb(const std::vector<std::string>& arguments, const CLI::App& progr
 /// The message for arguments that CLI11 refused with `error`.
 Unusable explained(const CLI::ParseError& error, const CLI::App& program) {
   const CLI::App& verb = called(program);
-  // An option that is unknown tells more than one that is missing because of it.
+  // An unknown option is more informative than a missing one that it caused.
   const std::vector<std::string> extras = program.remaining(true);
   std::string what = error.what();
   if (!extras.empty()) {

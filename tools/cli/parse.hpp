@@ -1,4 +1,4 @@
-// Reads the arguments of a program with verbs.
+// Parses the arguments of a program with verbs.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace broadside::cli {
 
-/// Parses `arguments`, of which the first is the program. Returns the text of --help or --version if one of
-/// them was asked for. Throws Unusable, which names the argument and what was expected.
+/// Parses `arguments`; the first one is the program. Returns the text of --help or --version if requested.
+/// Throws Unusable, which names the argument and the expected value.
 std::optional<std::string> parse(CLI::App& program, const std::vector<std::string>& arguments);
 
 }  // namespace broadside::cli

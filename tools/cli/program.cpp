@@ -1,4 +1,4 @@
-// The command-line program: runs a verb, and turns what it throws into an exit status and a message.
+// The command-line program: runs a verb, and turns exceptions into an exit status and a message.
 #include "broadside/program.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 
 using broadside::cli::Exit;
 
-/// Says which of the algorithms that are named have another name by now.
+/// Tells the current name of each algorithm that is requested by a former name.
 void explain_former_names(std::span<const std::string> arguments) {
   for (const std::string& argument : arguments) {
     for (std::size_t begin = 0; begin < argument.size();) {
@@ -71,7 +71,7 @@ Exit run(const std::vector<std::string>& given, const broadside::lab::Catalogue&
   };
   program.add_subcommand(
       "help", fmt::format("Shows this help, or a verb's: {} help pairs.", broadside::cli::program_name()));
-  // A verb without a group is not shown: it is for programs.
+  // Verbs without a group are not shown: they are for programs.
   for (CLI::App* const verb : program.get_subcommands([](CLI::App*) { return true; }))
     verb->group(verb->get_group().empty() ? "" : "Verbs");
   if (const std::optional<std::string> text = broadside::cli::parse(program, arguments)) {

@@ -1,4 +1,4 @@
-// The files that results are written to.
+// Output files for results.
 #include "cli/result_files.hpp"
 
 #include <array>

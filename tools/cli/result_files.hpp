@@ -1,4 +1,4 @@
-// The files that results are written to: --json and --report.
+// Output files for results: --json and --report.
 #pragma once
 
 #include <functional>
@@ -10,25 +10,25 @@
 
 namespace broadside::cli {
 
-/// Empty: not asked for.
+/// Paths; empty if not requested.
 struct ResultFiles {
   std::string json;
   std::string report;
 
   bool any() const { return !json.empty() || !report.empty(); }
 
-  /// All of them, for a message.
+  /// All paths, for a message.
   std::string names() const;
 };
 
 /// Adds --json and --report to a verb.
 void add_result_files(CLI::App& verb, ResultFiles& files);
 
-/// Throws Unusable, before hours of work, if one of the files cannot be made, if two are one, or if this
-/// program can make no page.
+/// Throws Unusable, before hours of work, if a file cannot be created, if two files are the same, or if this
+/// program cannot make reports.
 void check(const ResultFiles& files);
 
-/// Writes the files that are asked for, each whole or not at all. The page is made only if it is one of them.
+/// Writes the requested files, each completely or not at all. The report page is generated only if requested.
 /// Throws FileError.
 void write(const ResultFiles& files, const std::string& json, const std::function<lab::PageContent()>& page);
 

@@ -1,4 +1,4 @@
-// broadside scene: makes a scene's boxes and writes them to a file.
+// broadside scene: generates a scene's boxes and writes them to a file.
 #include "lab/scenes/scene.hpp"
 
 #include <memory>
@@ -25,7 +25,7 @@ namespace {
 
 struct SceneArguments {
   std::vector<std::string> scenes;
-  std::string scene;  ///< the one that there is
+  std::string scene;  ///< exactly one
   InputOptions input;
   std::string output;
   std::string to;
@@ -37,7 +37,7 @@ struct SceneArguments {
   std::optional<std::uint64_t> seed;
 };
 
-/// Refuses options that mean nothing to the scene.
+/// Refuses options that do not apply to the scene.
 void check(const SceneArguments& arguments, const CLI::App& verb, const lab::NamedScene& named) {
   check_options(verb, {&named, 1});
   check_moves(verb, {&named, 1});
@@ -52,7 +52,7 @@ void write(const SceneArguments& arguments, const lab::NamedScene& named, const 
   const bool moves = (D == 2 ? bool(named.scene.history_2d) : bool(named.scene.history_3d)) ||
                      arguments.moving.value_or(0) > 0;
   lab::SceneRequest request;
-  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.boxes = arguments.boxes.empty() ? default_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
   request.moving = arguments.moving.value_or(0);
   request.drift = arguments.motion.drift_or_standard();
@@ -101,7 +101,7 @@ Verb add_scene(CLI::App& program) {
   verb->add_option("--to", arguments->to, "The format to write, by its name or an extension")
       ->type_name("NAME");
   verb->add_option("-n", arguments->boxes,
-                   fmt::format("Number of boxes, such as 1000, 100k or 1e6 (default: {})", standard_boxes));
+                   fmt::format("Number of boxes, such as 1000, 100k or 1e6 (default: {})", default_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (default: 2 where the scene has it)")
       ->check(is_dimension);
   verb->add_option("--moving", arguments->moving, "Fraction of the boxes that move, from 0 to 1");

@@ -1,4 +1,4 @@
-// The scenes and files that a verb works on.
+// The scenes and files of a verb.
 #include "cli/scene_arguments.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace broadside::cli {
 namespace {
 
-constexpr std::size_t standard_frames = 20;  // of a scene that moves by itself
+constexpr std::size_t default_frames = 20;  // for scenes that move by themselves
 
 template <int D>
 lab::AnyFrameReader make_frames(const lab::NamedScene& named, const lab::SceneRequest& request) {
@@ -68,7 +68,7 @@ void add_boxes(CLI::App& verb, BoxArguments& arguments) {
       ->required();
   add_input_options(verb, arguments.input);
   verb.add_option("-n", arguments.boxes,
-                  fmt::format("Number of boxes of a scene, such as 1000, 100k (default: {})", standard_boxes))
+                  fmt::format("Number of boxes of a scene, such as 1000, 100k (default: {})", default_boxes))
       ->type_name("NUMBER");
   verb.add_option("--seed", arguments.seed, "Seed of a scene (default: 1)")->check(is_seed);
 }
@@ -84,9 +84,9 @@ lab::BoxFile open_boxes(const CLI::App& verb, const BoxArguments& arguments) {
                                                        : 3;
   check_dimension(dimension);
   lab::SceneRequest request;
-  request.boxes = arguments.boxes.empty() ? standard_boxes : read_count("-n", arguments.boxes);
+  request.boxes = arguments.boxes.empty() ? default_boxes : read_count("-n", arguments.boxes);
   request.seed = arguments.seed.value_or(request.seed);
-  if (named.scene.history_2d || named.scene.history_3d) request.frames = standard_frames;
+  if (named.scene.history_2d || named.scene.history_3d) request.frames = default_frames;
   return {named.spec.text(), nullptr,
           dimension == 2 ? make_frames<2>(named, request) : make_frames<3>(named, request)};
 }

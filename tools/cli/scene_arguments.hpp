@@ -1,4 +1,4 @@
-// The scenes and files that a verb works on: by their place on the command line, or by --scenes.
+// The scenes and files of a verb: by position on the command line, or by --scenes.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@
 
 namespace broadside::cli {
 
-/// How many boxes a scene has where -n is not given.
-inline constexpr std::size_t standard_boxes = 10'000;
+/// Number of boxes of a scene if -n is not given.
+inline constexpr std::size_t default_boxes = 10'000;
 
 /// Adds them under the positional name `name`, and as --scenes.
 CLI::Option* add_scenes(CLI::App& verb, const std::string& name, std::vector<std::string>& scenes,
                         const std::string& help);
 
-/// Each of them: an argument may hold several with commas between, unless it is a file's name. Throws
-/// Unusable for a number, which is no scene but most likely an option's second value.
+/// All of them: an argument may list several, separated by commas, unless it is a file name. Throws Unusable
+/// for a number, which is most likely an option's second value and not a scene.
 std::vector<std::string> each_of(const std::vector<std::string>& arguments);
 
 /// The only one. Throws Unusable if there are several.
 std::string only_one_of(const std::vector<std::string>& arguments);
 
-/// Whether the name or path is read as a file rather than made as a scene.
+/// Whether the name or path is read as a file rather than generated as a scene.
 bool is_file(const std::string& name);
 
 /// A file or a scene that a verb reads frame by frame.
@@ -39,10 +39,10 @@ struct BoxArguments {
   std::optional<std::uint64_t> seed;
 };
 
-/// Adds the file or scene, the options that say how a file is read, and -n and --seed.
+/// Adds the file or scene, the options for reading a file, and -n and --seed.
 void add_boxes(CLI::App& verb, BoxArguments& arguments);
 
-/// Opens what was given. Throws Unusable, FileError and InvalidSpec, also for options that mean nothing to
+/// Opens the file or scene. Throws Unusable, FileError and InvalidSpec, also for options that do not apply to
 /// it.
 lab::BoxFile open_boxes(const CLI::App& verb, const BoxArguments& arguments);
 

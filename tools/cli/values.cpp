@@ -1,4 +1,4 @@
-// Values on the command line that CLI11 does not read by itself.
+// Parses values on the command line that CLI11 does not parse by itself.
 #include "cli/values.hpp"
 
 #include <algorithm>
@@ -29,9 +29,10 @@ std::size_t read_count(const std::string& option, const std::string& text) {
     number *= unit;
     if (unit > 0) ++rest;
   }
-  // From 2^53 on a double leaves out whole numbers; no machine holds that many boxes.
-  constexpr double most = 9007199254740992.0;
-  if (error != std::errc() || rest != end || !(number >= 1 && number <= most) || number != std::floor(number))
+  // Beyond 2^53, doubles skip whole numbers; no machine holds that many boxes.
+  constexpr double max_count = 9007199254740992.0;
+  if (error != std::errc() || rest != end || !(number >= 1 && number <= max_count) ||
+      number != std::floor(number))
     throw Unusable(option + " is '" + text + "'; expected a whole number from 1, such as 1000, 100k or 1e6");
   return static_cast<std::size_t>(number);
 }
@@ -51,9 +52,10 @@ std::vector<std::size_t> read_counts(const std::string& option, const std::vecto
 }
 
 std::size_t read_threads(const std::string& text) {
-  constexpr std::size_t most = 1024;
+  constexpr std::size_t max_threads = 1024;
   const std::size_t threads = read_index("--threads", text);
-  if (threads > most) throw Unusable("--threads is " + text + "; expected at most " + std::to_string(most));
+  if (threads > max_threads)
+    throw Unusable("--threads is " + text + "; expected at most " + std::to_string(max_threads));
   if (threads != 1 && standard_executor() == nullptr)
     throw Unusable("--threads is " + text + "; expected 1: this program was built without threads");
   return threads;
@@ -102,7 +104,7 @@ void check_writable(const std::string& option, const std::string& path) {
     throw Unusable(
         fmt::format("{} is '{}', which is read-only; expected a file that may be written, or another name",
                     option, path));
-  // An old file is replaced by a new one, which needs the folder as well.
+  // Replacing an existing file needs write access to its folder as well.
   if (!lab::is_written_directly(path) && !lab::platform::may_write(folder))
     throw Unusable(fmt::format(
         "{} is '{}', but nothing can be written to '{}'; expected a folder that can be written to", option,

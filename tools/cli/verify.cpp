@@ -1,5 +1,5 @@
-// broadside verify: the law on a file, and where an algorithm or an engine breaks it, a small file that shows
-// how.
+// broadside verify: runs the equivalence test on a file. If an algorithm or an engine fails, writes a small
+// file that shows the failure.
 #include <cstdio>
 #include <memory>
 #include <string>

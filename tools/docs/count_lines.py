@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Lines of code by part of the house, for one revision or several: tools/docs/count_lines.py [REVISION ...]
+"""Counts lines of code by part of the project, for one revision or several: tools/docs/count_lines.py [REVISION ...]
 
-Counts every line of tracked source files. Folders that were moved count for the part that they belong to today.
+Counts every line of tracked source files. Moved folders count for the part to which they belong today.
 """
 
 from __future__ import annotations

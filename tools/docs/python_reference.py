@@ -1,4 +1,4 @@
-"""Writes the reference of the Python package, docs/python-api.md, from its docstrings: python reference.py [FILE]."""
+"""Writes the reference of the Python package, docs/python-api.md, from its docstrings: python_reference.py [FILE]."""
 
 from __future__ import annotations
 

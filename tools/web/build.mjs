@@ -1,9 +1,9 @@
 // Bundles the TypeScript of this folder.
 //
-//   node build.mjs --page FILE.cpp   the report's page, as a C++ source that holds it
-//   node build.mjs --html FILE.html  the page itself, without a document
-//   node build.mjs --tests [FOLDER]  the tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
-//   node build.mjs --playground FOLDER [ENGINE]  the playground, with the engine of build/playground/engine or another
+//   node build.mjs --page FILE.cpp   the report page, embedded in a C++ source file
+//   node build.mjs --html FILE.html  the report page itself, without a document
+//   node build.mjs --tests [FOLDER]  tests of charts and report, to FOLDER/*.test.mjs (default: build/web/tests)
+//   node build.mjs --playground FOLDER [ENGINE]  the playground, with build/playground/engine or ENGINE
 //   node build.mjs --playground-tests FOLDER     its tests, and in FOLDER/page the page that they open
 import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, writeFileSync } from "node:fs";
 import { basename, dirname, join } from "node:path";
@@ -15,7 +15,7 @@ import { buildPlayground } from "./playground/build.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-/** The page in two halves, between which the document goes. */
+/** The page in two halves; the document goes between them. */
 async function page() {
   const { outputFiles: [script] } = await build({
     entryPoints: [join(here, "report/main.ts")],
@@ -32,7 +32,7 @@ async function page() {
     entryPoints: [join(here, "report/page.css")], minify: true, write: false, charset: "utf8", logLevel: "warning",
   });
   const licence = "/*! With Apache ECharts and ZRender: Apache-2.0 and BSD-3-Clause. */";
-  // A script ends where its text says so, were it in a string.
+  // "</script" would end the script, even inside a string.
   const safe = script.text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
   const parts = readFileSync(join(here, "report/page.html"), "utf8")
     .replace("/*STYLE*/", () => style.text.trim())
@@ -42,13 +42,13 @@ async function page() {
   return parts;
 }
 
-/** A text as C++ literals, none longer than compilers must take. */
+/** A text as C++ string literals, none longer than compilers must accept. */
 function literals(text) {
-  const most = 30000;
+  const maxLength = 30000;
   const bytes = Buffer.from(text, "utf8");
   const lines = [];
   for (let begin = 0; begin < bytes.length;) {
-    let end = Math.min(begin + most, bytes.length);
+    let end = Math.min(begin + maxLength, bytes.length);
     while (end < bytes.length && (bytes[end] & 0xc0) === 0x80) --end;
     lines.push(`    R"part(${bytes.subarray(begin, end).toString("utf8")})part"sv,`);
     begin = end;
@@ -71,7 +71,7 @@ async function buildPage(path) {
 namespace broadside::lab {
 namespace {
 
-// With their lengths: clang counts no further than a million characters in a constant.
+// With explicit lengths: clang counts at most a million characters in a constant.
 using namespace std::string_view_literals;
 
 constexpr std::string_view before[] = {
@@ -108,7 +108,10 @@ async function buildPrograms(entryPoints, outdir) {
   });
 }
 
-/** The playground's tests; where its engine was not built, those of the page alone, with a naive engine in it. */
+/**
+ * The playground's tests. Without a built engine, only the tests of the page, with a naive engine
+ * in it.
+ */
 async function buildPlaygroundTests(folder) {
   const tests = testsIn(join(here, "playground/tests"));
   const built = existsSync(join(here, "../../build/playground/engine/observing.wasm"));

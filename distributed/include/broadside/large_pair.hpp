@@ -11,7 +11,7 @@
 
 namespace broadside {
 
-/// Ids of two boxes, as Pair has them in 32 bits.
+/// Ids of two boxes, like Pair but with 64 bits.
 struct LargePair {
   std::uint64_t first;
   std::uint64_t second;
@@ -19,12 +19,12 @@ struct LargePair {
   friend constexpr auto operator<=>(const LargePair&, const LargePair&) = default;
 };
 
-/// Sorts by first, then by second id. `scratch` is for the same call with Pair.
+/// Sorts by first, then by second id. `scratch` is unused; it matches the signature for Pair.
 inline void sort_pairs(std::vector<LargePair>& pairs, std::vector<LargePair>& /* scratch */) {
   std::sort(pairs.begin(), pairs.end());
 }
 
-/// A pair's contribution to the hash of a set. Equals hash(Pair) where 32 bits hold both ids.
+/// A pair's contribution to the hash of a set. Equals hash(Pair) if both ids fit into 32 bits.
 constexpr std::uint64_t hash(const LargePair& pair) noexcept {
   const auto low = [](std::uint64_t id) { return BoxId(static_cast<std::uint32_t>(id)); };
   const std::uint64_t bits = hash(Pair{low(pair.first), low(pair.second)});

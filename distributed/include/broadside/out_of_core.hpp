@@ -1,5 +1,5 @@
 // Joins boxes that do not fit into memory: partitions them into files in a work folder, then joins one part
-// after the other.
+// after another.
 #pragma once
 
 #include <cstddef>
@@ -67,8 +67,8 @@ enum class OutOfCoreStage : std::uint8_t {
 
 struct OutOfCoreOptions {
   /// Work folder for parts and pairs; created if missing, and refused if it holds anything else. It needs the
-  /// size of the boxes and 4 bytes a box, a few percent more for boxes on cuts, and 8 bytes a pair (16 with
-  /// large ids).
+  /// size of the boxes plus 4 bytes per box, a few per cent more for boxes on cuts, and 8 bytes per pair (16
+  /// with large ids).
   std::filesystem::path folder;
 
   /// Limit of the memory that the join allocates, in bytes; at least min_memory.
@@ -82,14 +82,14 @@ struct OutOfCoreOptions {
   /// for the same identity, and never for an empty one.
   std::string identity{};
 
-  /// Count the pairs and keep none: they cannot be visited afterwards.
+  /// Only count the pairs: they cannot be visited afterwards.
   bool counts_only = false;
 
   /// Use 64-bit ids even if 32 bits suffice. They are always used above 2^32 boxes.
   bool has_large_ids = false;
 
-  /// Called now and then with the work done and the total, which is 0 if unknown. An exception from it ends
-  /// the join, which can be resumed.
+  /// Called now and then with the completed and the total amount of work; the total is 0 if unknown. An
+  /// exception from it stops the join, which can be resumed.
   std::function<void(OutOfCoreStage, std::uint64_t done, std::uint64_t total)> progress{};
 
   /// Called with a message when the join recovers from something, such as a corrupt part.
@@ -102,15 +102,15 @@ class BROADSIDE_PUBLIC OutOfCoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Finds all overlapping pairs of boxes within one source, or between two, within a limit of memory.
+/// Finds all overlapping pairs of boxes within one source, or between two, within a memory limit.
 ///
 /// The work folder's manifest records each finished step. A join that ended early, for whatever reason,
 /// resumes when it is constructed again with the same folder and identity. It reads the boxes again only if
-/// it had not read all of them. All files have checksums; a corrupt part is made again from the source. A
+/// it had not read all of them. All files have checksums; a corrupt part is recreated from the source. A
 /// second join that uses the same folder at the same time throws.
 ///
-/// The pairs do not depend on the memory limit, on threads, or on how often the join was interrupted.
-/// One thread at a time may use a join.
+/// The pairs do not depend on the memory limit, on threads, or on how often the join was interrupted. Not
+/// thread-safe.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC OutOfCoreJoin {
  public:
@@ -126,12 +126,12 @@ class BROADSIDE_PUBLIC OutOfCoreJoin {
   /// Whether an earlier run has read all boxes of this join, so that run() resumes it.
   bool is_resumed() const;
 
-  /// Reads and joins the boxes, as far as that is not done yet. Throws OutOfCoreError, InvalidInput with the
-  /// box's id, and whatever a source or `progress` throws.
+  /// Reads and joins the boxes, resuming after the steps already done. Throws OutOfCoreError, InvalidInput
+  /// with the box's id, and whatever a source or `progress` throws.
   void run();
 
-  /// After run(): the number of pairs, and of boxes in either source. pairs() and the visits throw
-  /// std::logic_error before.
+  /// After run(): the number of pairs, and of boxes in either source. Before run(), pairs() and the visits
+  /// throw std::logic_error.
   std::uint64_t pairs() const;
   std::uint64_t boxes() const;
   std::uint64_t right_boxes() const;
@@ -139,13 +139,15 @@ class BROADSIDE_PUBLIC OutOfCoreJoin {
   /// After run(): whether ids have 64 bits.
   bool has_large_ids() const;
 
-  /// After run(): visits all pairs, sorted by first and second id. Within one source first < second. Takes a
-  /// visitor of LargePair if ids have 64 bits and of Pair otherwise, else throws InvalidFrame. May be
-  /// called repeatedly. Throws as run() does; a corrupt part is made again before the first pair is visited.
+  /// After run(): visits all pairs, sorted by first and second id. Within one source first < second. Needs a
+  /// visitor of LargePair if ids have 64 bits and of Pair otherwise; throws InvalidFrame for the other one.
+  /// May be called repeatedly. Throws as run() does; a corrupt part is recreated before the first pair is
+  /// visited.
   void visit_sorted(const std::function<void(std::span<const Pair>)>& visit);
   void visit_sorted(const std::function<void(std::span<const LargePair>)>& visit);
 
-  /// Likewise, sorted within each part only, which is faster. The order depends on boxes and memory limit.
+  /// As visit_sorted(), but sorted only within each part, which is faster. The order depends on boxes and
+  /// memory limit.
   void visit_unsorted(const std::function<void(std::span<const Pair>)>& visit);
   void visit_unsorted(const std::function<void(std::span<const LargePair>)>& visit);
 

@@ -1,5 +1,5 @@
-// Space cut into parts that can be joined independently: in turn on one machine, or at the same time on
-// several.
+// A partition of space into parts that can be joined independently: one after another on one machine, or at
+// the same time on several.
 #pragma once
 
 #include <array>
@@ -14,32 +14,32 @@
 
 namespace broadside {
 
-/// Space cut into parts. A part is a box that includes its lower bounds and excludes its upper ones, so every
+/// A partition of space. A part is a box that includes its lower bounds and excludes its upper ones, so every
 /// point lies in exactly one part.
 ///
-/// Give each part the boxes that touch it. A pair of overlapping boxes belongs to the part that contains the
-/// point made of the greater of their two minima on every axis; both boxes touch that part. So if each part
-/// is joined by itself and keeps the pairs that belong to it, every pair is found once, and a part can be
-/// joined again without the others. PartPairs tells from begins_before() of two boxes whether their pair
-/// belongs.
+/// Give each part the boxes that touch it. The reference point of a pair of overlapping boxes is the greater
+/// of their two minima on every axis. The pair belongs to the part that contains this point; both boxes touch
+/// that part. If each part is joined by itself and keeps the pairs that belong to it, every pair is found
+/// once, and a part can be joined again without the others. PartPairs decides from begins_before() of two
+/// boxes whether their pair belongs to a part.
 ///
-/// Copying copies the cuts. Const functions can be called by several threads at once.
+/// Copying copies the cuts. Const functions are thread-safe.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC Partition {
  public:
-  /// A cut at right angles to an axis. Points below `at` are on one side, all others on the other side.
+  /// A cut perpendicular to an axis. Points below `at` are on one side, all others on the other side.
   struct Cut {
     static constexpr std::uint32_t part = UINT32_MAX;
 
-    std::uint32_t axis = part;  ///< `part` marks a leaf: a part, which is not cut further
-    std::uint32_t below = 0;    ///< the index in cuts() of the cut of the lower side; of a leaf, its part
-    std::uint32_t above = 0;    ///< the index in cuts() of the cut of the upper side
+    std::uint32_t axis = part;  ///< `part` marks a leaf, which is a part
+    std::uint32_t below = 0;  ///< index in cuts() of the lower side's cut; in a leaf, the number of its part
+    std::uint32_t above = 0;  ///< index in cuts() of the upper side's cut
     Real at = 0;
 
     friend bool operator==(const Cut&, const Cut&) = default;
   };
 
-  /// The bounds of a part; infinite where no cut bounds it.
+  /// The bounds of a part; infinite on sides without a cut.
   struct Region {
     Point<D, Real> low;
     Point<D, Real> high;
@@ -95,15 +95,14 @@ class BROADSIDE_PUBLIC Partition {
   /// returns it.
   explicit Partition(std::span<const Cut> cuts, const Region& space = everything());
 
-  /// The number of parts, at least 1.
   std::size_t size() const noexcept { return regions_.size(); }
 
   const Region& region(std::size_t part) const noexcept { return regions_[part]; }
 
-  /// The cuts as a tree whose root is the first: enough to make the same partition elsewhere.
+  /// The cuts as a tree with its root first. They suffice to recreate the partition elsewhere.
   std::span<const Cut> cuts() const noexcept { return cuts_; }
 
-  /// The part in which a point lies.
+  /// The part that contains a point.
   std::size_t owner(const Point<D, Real>& point) const noexcept {
     std::uint32_t at = 0;
     while (cuts_[at].axis != Cut::part) {
@@ -116,7 +115,7 @@ class BROADSIDE_PUBLIC Partition {
   /// Calls visit(part) for each part that a present box touches, in ascending order.
   template <typename Visit>
   void for_each_part(const Box<D, Real>& box, const Visit& visit) const {
-    // A stack as deep as the tree: each level leaves at most one side for later.
+    // As deep as the tree: each level leaves at most one side for later.
     std::array<std::uint32_t, max_depth> later;
     std::size_t waiting = 0;
     std::uint32_t at = 0;
@@ -145,12 +144,12 @@ class BROADSIDE_PUBLIC Partition {
   detail::Vector<Region> regions_;
 };
 
-/// Passes on the pairs of a part's boxes that belong to the part. One thread at a time; after a search by
-/// several threads, it passes them on in the order of the search.
+/// Passes on the pairs of a part's boxes that belong to the part. Not thread-safe. It keeps the order of the
+/// search, even of a search by several threads.
 class BROADSIDE_PUBLIC PartPairs final : public PairSink {
  public:
-  /// `left` holds begins_before() of each box of one set, and `right` that of the other; both are the same if
-  /// there is one set. They and `pairs` must outlive the sink.
+  /// `left` holds begins_before() of each box of one set, and `right` that of the other; pass the same for
+  /// both if there is only one set. They and `pairs` must outlive the sink.
   PartPairs(std::span<const std::uint8_t> left, std::span<const std::uint8_t> right, PairSink& pairs)
       : left_(left), right_(right), pairs_(&pairs) {}
 

@@ -19,7 +19,7 @@ lab::CaseRequest request_for(bool moves) {
 TEST(Compare, CatchesEveryCorruptionOfOneSearchOrFrame) {
   for (const bool moves : {false, true}) {
     for (const std::size_t definition_boxes : {20'000, 0}) {
-      Caught all;
+      CorruptionCounts all;
       for (const char* const base : {"grid", "bvh", "sweep_and_prune"})
         all.add(compare_corrupted(base, request_for(moves), all.applied, 25, definition_boxes));
       EXPECT_EQ(all.caught, all.applied) << "moves " << moves << ", definition " << definition_boxes;
@@ -31,7 +31,7 @@ TEST(Compare, CatchesEveryCorruptionOfOneSearchOrFrame) {
 TEST(Compare, CatchesAFaultThatTheReferenceSharesWhereBoxesAreSampled) {
   for (const bool moves : {false, true}) {
     // No more boxes than are sampled.
-    const Caught all = compare_with_corrupted_reference(request_for(moves), 0, 15);
+    const CorruptionCounts all = compare_with_corrupted_reference(request_for(moves), 0, 15);
     EXPECT_EQ(all.applied, 15u);
     EXPECT_EQ(all.caught, all.applied) << "moves " << moves;
   }

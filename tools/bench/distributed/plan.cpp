@@ -1,9 +1,10 @@
-// Simulates the distributed plan for more boxes and ranks than this machine has, beside what ArborX and
-// Apache Sedona do with the same boxes: distributed_plan [--help].
+// Simulates the distributed plan for more boxes and ranks than this machine has, beside the plans of ArborX
+// and Apache Sedona for the same boxes: distributed_plan [--help].
 //
-// A scene's boxes are the sample of a distribution. Every box stands for many: each of these lies at a random
-// place in it, and is smaller by as much as keeps the number of pairs a box. Some of them are drawn, and
-// counted as many times as the boxes that they stand for. Only the plan is run, not the joins.
+// A scene's boxes are the sample of a distribution, and each of them stands for many boxes. Each of these
+// lies at a random place inside it and is smaller, by the factor that keeps the number of pairs per box. Some
+// of these boxes are drawn, and each drawn box is weighted by the number of boxes that it represents. Only
+// the plan is run, not the joins.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -33,20 +34,20 @@ struct PlanBenchmarkOptions {
   std::vector<std::string> scenes{"uniform", "clustered", "mixed", "coastlines", "bunny"};
   std::vector<std::uint64_t> boxes{1'000'000'000, 10'000'000'000};
   std::size_t ranks = 1000;
-  std::size_t sample_boxes = 1'000'000;  // of a scene whose number of boxes can be chosen
+  std::size_t sample_boxes = 1'000'000;  // of scenes with a variable number of boxes
   std::size_t drawn = 10'000'000;
   std::size_t sampled_per_rank = 256;
   double balanced = 1.2;
 };
 
-/// The largest over the mean.
+/// Largest load over mean load.
 double imbalance(const std::vector<double>& loads) {
   double sum = 0;
   for (const double load : loads) sum += load;
   return sum == 0 ? 1 : *std::ranges::max_element(loads) * static_cast<double>(loads.size()) / sum;
 }
 
-/// As many boxes as are wanted, from the distribution of some.
+/// Draws any number of boxes from the distribution of a sample.
 template <int D>
 class DrawnPopulation {
  public:
@@ -59,7 +60,6 @@ class DrawnPopulation {
 
   std::uint64_t boxes() const { return boxes_; }
 
-  /// How many pairs there are for each box.
   double pairs_per_box() const {
     return static_cast<double>(pairs_.size()) / static_cast<double>(sample_.size());
   }
@@ -76,7 +76,7 @@ class DrawnPopulation {
     return box;
   }
 
-  /// Pairs of each part, in units of the sample's pairs.
+  /// Number of the sample's pairs that each part owns.
   template <typename Owner>
   std::vector<double> pairs_by_part(std::size_t parts, const Owner& owner) const {
     std::vector<double> pairs(parts);
@@ -105,12 +105,12 @@ std::vector<Box<D>> drawn_from(const DrawnPopulation<D>& population, std::size_t
   return boxes;
 }
 
-/// What a partition of the drawn boxes costs.
+/// Loads of the parts of a partition of the drawn boxes.
 struct Loads {
-  double cost = 0;    // largest over mean, of Partition::cost()
-  double boxes = 0;   // likewise
-  double pairs = 0;   // likewise
-  double copies = 0;  // parts a box
+  double cost = 0;    // Partition::cost(), largest over mean
+  double boxes = 0;   // largest over mean
+  double pairs = 0;   // largest over mean
+  double copies = 0;  // parts per box
 };
 
 template <int D>
@@ -120,7 +120,7 @@ Loads loads_of(const DrawnPopulation<D>& population, const std::vector<Box<D>>& 
   for (const Box<D>& box : boxes) partition.for_each_part(box, [&](std::size_t part) { touches[part] += 1; });
   const std::vector<double> pairs = population.pairs_by_part(
       partition.size(), [&](const Point<D>& place) { return partition.owner(place); });
-  // Per box drawn, and per pair of a box of the sample.
+  // Per drawn box, and per pair of a sample box.
   std::vector<double> costs(partition.size());
   const double pair_weight = population.pairs_per_box() * static_cast<double>(boxes.size()) /
                              std::max(1.0, std::accumulate(pairs.begin(), pairs.end(), 0.0));
@@ -131,7 +131,7 @@ Loads loads_of(const DrawnPopulation<D>& population, const std::vector<Box<D>>& 
 }
 
 /// Cuts as Sedona's KDBTreePartitioner makes them: each at the median minimum of the sampled boxes, across
-/// the longer side, until there are as many parts as wanted. Pairs do not count.
+/// the longer side, until there are enough parts. Pairs do not count.
 template <int D>
 class MedianCuts {
  public:
@@ -166,12 +166,12 @@ class MedianCuts {
 
   static std::size_t longest_axis(std::span<const Box<D>> boxes) {
     std::size_t longest = 0;
-    float most = -1;
+    float max_spread = -1;
     for (std::size_t axis = 0; axis < D; ++axis) {
-      const auto [least, greatest] =
+      const auto [lowest, highest] =
           std::ranges::minmax(boxes, {}, [axis](const Box<D>& box) { return box.min[axis]; });
-      if (greatest.min[axis] - least.min[axis] > most)
-        longest = axis, most = greatest.min[axis] - least.min[axis];
+      if (highest.min[axis] - lowest.min[axis] > max_spread)
+        longest = axis, max_spread = highest.min[axis] - lowest.min[axis];
     }
     return longest;
   }
@@ -180,9 +180,9 @@ class MedianCuts {
   std::uint32_t parts_ = 0;
 };
 
-/// Ranks that a query of each box goes to in ArborX's DistributedTree, which leaves boxes where they are and
-/// asks all ranks whose bounds a query meets: where every rank holds boxes of one place, as our parts do.
-/// (Where they lie on the ranks at random, that is all ranks.)
+/// Ranks that the query of each box visits in ArborX's DistributedTree. ArborX leaves boxes where they are
+/// and asks all ranks whose bounds meet a query. Here every rank holds the boxes of one region, as our parts
+/// do; if boxes were on random ranks, each query would visit all ranks.
 template <int D>
 double ranks_per_query(const std::vector<Box<D>>& boxes, const Partition<D>& partition) {
   constexpr std::size_t max_queries = 200'000;
@@ -206,7 +206,7 @@ void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& options,
   for (const std::uint64_t boxes : options.boxes) {
     const DrawnPopulation<D> population(sample, boxes);
     const std::vector<Box<D>> drawn = drawn_from(population, options.drawn, 2);
-    // A step samples four times as many boxes as the one before, until the cuts are balanced.
+    // Each step samples four times as many boxes as the one before, until the cuts are balanced.
     std::size_t steps = 0;
     std::size_t sampled = options.ranks * options.sampled_per_rank / 4;
     Partition<D> partition;
@@ -216,7 +216,7 @@ void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& options,
       partition = Partition<D>(drawn_from(population, sampled, 3 + steps), options.ranks, boxes);
       loads = loads_of(population, drawn, partition);
     } while (++steps < 4 && loads.cost > options.balanced);
-    // Sedona samples a hundredth. More than a million would change nothing here.
+    // Sedona samples 1 %. More than a million boxes would change nothing here.
     const std::size_t hundredth = std::min<std::uint64_t>(boxes / 100, 1'000'000);
     const Loads median =
         loads_of(population, drawn, MedianCuts<D>::of(drawn_from(population, hundredth, 9), options.ranks));
@@ -225,7 +225,7 @@ void simulate(const lab::NamedScene& named, const PlanBenchmarkOptions& options,
     const double box_bytes = sizeof(Box<D>) + sizeof(std::uint64_t);
     const double sent =
         elsewhere * (loads.copies * box_bytes + population.pairs_per_box() * 2 * sizeof(std::uint64_t));
-    // A search takes about three boxes more for each: docs/lab-notes.md.
+    // A search needs memory for about three more boxes per box: docs/lab-notes.md.
     const double memory = loads.boxes * loads.copies * static_cast<double>(boxes) / ranks *
                               (box_bytes + 3 * sizeof(Box<D>) + 17) +
                           loads.pairs * population.pairs_per_box() * static_cast<double>(boxes) / ranks * 2 *

@@ -1,10 +1,10 @@
-// Bullet over Broadside's broad phase and over its own: bullet [PART...] [options], each part a table.
+// Bullet on Broadside's broad phase and on its own: bullet [PART...] [options], one table per part.
 //
-// stage      the broad phase alone: the boxes of a simulation, recorded and set in both, in turns
-// rays       the same, and after each step a hundred rays through the scene
-// step       two simulations, in turns: the broad-phase stage as Bullet knows it, and the whole step
-// manifolds  the transforms of one simulation in two more: in how many frames do contacts differ?
-// drift      two simulations: energy and penetration over all steps
+//   stage      the broad phase alone: the recorded boxes of a simulation, replayed to both in turns
+//   rays       the same, with a hundred rays through the scene after each step
+//   step       two simulations in turns: Bullet's broad-phase stage, and the whole step
+//   manifolds  the transforms of one simulation, applied to two more: in how many frames do contacts differ?
+//   drift      two simulations: energy and penetration over all steps
 #include "broadside/bullet.hpp"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ void print_times_heading() {
       "p99", "mean", "median", "p99", "mean", "median");
 }
 
-/// A simulation over Bullet's own broad phase that has run to its end, and what it told that.
+/// A finished simulation on Bullet's own broad phase, and the calls that it made to the broad phase.
 struct Recorded {
   Recorded(const std::string& scene, const BulletBenchmarkOptions& benchmark)
       : Recorded(scene, benchmark, std::make_unique<NotedCalls>()) {}
@@ -77,7 +77,8 @@ struct Recorded {
   }
 };
 
-/// Throws unless both hold the same pairs of boxes that overlap; what they hold of enlarged boxes may differ.
+/// Throws unless both hold the same overlapping pairs. Pairs that overlap only because of enlarged boxes may
+/// differ.
 void check_pairs(BulletReplay& one, BulletReplay& other, std::size_t step) {
   const auto pairs = one.overlapping_pairs();
   const auto others = other.overlapping_pairs();
@@ -116,7 +117,7 @@ void stage(const BulletBenchmarkOptions& benchmark) {
   }
 }
 
-/// The microseconds that a hundred rays take, from wall to wall.
+/// Microseconds for a hundred rays from wall to wall.
 double cast_rays(btBroadphaseInterface& broadphase, btScalar half_width, std::uint64_t seed,
                  std::size_t& met) {
   lab::Random random(seed);
@@ -145,7 +146,7 @@ void rays(const BulletBenchmarkOptions& benchmark) {
     std::vector<double> rays_us[2];
     std::vector<double> both_us[2];
     std::size_t met[2] = {0, 0};
-    const btScalar half_width = recorded.recording.created[0].call.max.x();  // the floor's
+    const btScalar half_width = recorded.recording.created[0].call.max.x();  // of the ground
     for (std::size_t step = 0; step < benchmark.steps; ++step) {
       for (const int turn : {0, 1}) {
         BulletReplay& replay = turn == 0 ? one : other;

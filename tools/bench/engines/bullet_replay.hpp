@@ -1,4 +1,4 @@
-// What a simulation tells its broad phase, recorded and played to others.
+// Records the calls that a simulation makes to its broad phase, and replays them to other broad phases.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 
 namespace broadside::bench {
 
-/// A box that was set, by the proxy's place in the order of creation.
+/// A moved box, by its proxy's place in the order of creation.
 struct ProxyMove {
   int proxy;
   btVector3 min;
   btVector3 max;
 };
 
-/// Bullet's broad phase, which notes what it is told.
+/// Bullet's broad phase, recording the calls it gets.
 class NotedCalls final : public btDbvtBroadphase {
  public:
   struct Created {
@@ -50,13 +50,13 @@ class NotedCalls final : public btDbvtBroadphase {
 
   std::vector<Created> created;
   std::vector<ProxyMove> calls;
-  std::vector<std::size_t> ends;  ///< where the calls of each step end
+  std::vector<std::size_t> ends;  ///< end of each step in the list of calls
 
  private:
   std::map<btBroadphaseProxy*, int> places_;
 };
 
-/// A recording played to a broad phase.
+/// Replays a recording to a broad phase.
 class BulletReplay {
  public:
   BulletReplay(const NotedCalls& recording, std::unique_ptr<btBroadphaseInterface> broadphase)
@@ -66,7 +66,7 @@ class BulletReplay {
           broadphase_->createProxy(made.call.min, made.call.max, 0, nullptr, made.group, made.mask, nullptr));
   }
 
-  /// The microseconds that a step takes.
+  /// Runs one step; returns its microseconds.
   double step(std::size_t number) {
     const std::size_t first = number == 0 ? 0 : recording_.ends[number - 1];
     const ThreadStopwatch watch;
@@ -79,7 +79,7 @@ class BulletReplay {
   }
 
   btBroadphaseInterface& broadphase() { return *broadphase_; }
-  /// The unique ids of the pairs in the cache whose boxes overlap, sorted.
+  /// The unique ids of the overlapping pairs in the cache, sorted.
   std::vector<std::pair<int, int>> overlapping_pairs() {
     std::vector<std::pair<int, int>> pairs;
     const btBroadphasePairArray& cached = broadphase_->getOverlappingPairCache()->getOverlappingPairArray();
@@ -101,7 +101,7 @@ class BulletReplay {
   std::vector<btBroadphaseProxy*> proxies_;
 };
 
-/// Counts what a ray meets.
+/// Counts the proxies that a ray meets.
 struct CountingRay final : btBroadphaseRayCallback {
   CountingRay(const btVector3& from, const btVector3& to) {
     const btVector3 way = to - from;

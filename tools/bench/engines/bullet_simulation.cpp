@@ -124,7 +124,7 @@ btRigidBody& Simulation::add(std::unique_ptr<btCollisionShape> shape, btScalar m
   return *bodies_.back();
 }
 
-/// A floor whose top is at height 0, and four walls.
+/// Ground with its top at height 0, and four walls.
 void Simulation::add_box_of_walls(btScalar half_width, btScalar height) {
   const btScalar half_height = height / 2;
   add(std::make_unique<btBoxShape>(btVector3(half_width, 1, half_width)), 0, {0, -1, 0});

@@ -1,4 +1,4 @@
-// Simulations of Bullet's over one broad phase or another, for bench/engines/bullet.cpp.
+// Bullet simulations on either broad phase, for bench/engines/bullet.cpp.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,7 @@
 
 namespace broadside::bench {
 
-/// The processor time of this thread, which other programs on the machine disturb less than they do the time
-/// of day.
+/// Processor time of this thread; other programs on the machine disturb it less than wall-clock time.
 class ThreadStopwatch {
  public:
   double microseconds() const { return now() - start_; }
@@ -28,16 +27,16 @@ class ThreadStopwatch {
   double start_ = now();
 };
 
-/// How a simulation begins.
+/// Initial state of a simulation.
 struct BulletScene {
   std::string name;
   std::string what;
 };
 
-/// fall, sheet, statics.
+/// The scenes fall, sheet and statics.
 const std::vector<BulletScene>& bullet_scenes();
 
-/// A Bullet world that times what concerns its broad phase.
+/// A Bullet world that times its broad-phase stage.
 class TimedWorld final : public btDiscreteDynamicsWorld {
  public:
   using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
@@ -45,20 +44,20 @@ class TimedWorld final : public btDiscreteDynamicsWorld {
   void updateAabbs() override;
   void computeOverlappingPairs() override;
 
-  double stage_us = 0;  ///< in updateAabbs() and computeOverlappingPairs() since it was last set to 0
+  double stage_us = 0;  ///< in updateAabbs() and computeOverlappingPairs(), since the last reset to 0
 };
 
-/// What a simulation's bodies amount to.
+/// Totals over a simulation's bodies.
 struct Sums {
-  double energy = 0;       ///< kinetic, and potential above the floor, in joules
-  double penetration = 0;  ///< of all contacts that penetrate, in metres
+  double energy = 0;       ///< kinetic energy, plus potential energy above the ground, in joules
+  double penetration = 0;  ///< total of all penetrating contacts, in metres
   std::size_t contacts = 0;
 };
 
-/// A scene in motion, 60 steps a second, with Bullet's standard settings but for deterministic pairs.
+/// A simulation at 60 steps per second, with Bullet's default settings except that pairs are deterministic.
 class Simulation {
  public:
-  /// Of at least `bodies` bodies besides the floor and the walls.
+  /// Creates at least `bodies` bodies besides the ground and the walls.
   Simulation(const std::string& scene, std::size_t bodies, std::unique_ptr<btBroadphaseInterface> broadphase);
   ~Simulation();
   Simulation(const Simulation&) = delete;
@@ -66,12 +65,12 @@ class Simulation {
 
   void step();
 
-  /// Puts all bodies where another simulation of the same scene has them, and detects collisions alone.
+  /// Copies all transforms from another simulation of the same scene, and only detects collisions.
   void detect(const Simulation& other);
 
   Sums sums() const;
 
-  /// Each contact of each pair of bodies, as numbers; pairs by unique ids.
+  /// All contacts of each pair of bodies, as numbers; pairs are ordered by unique ids.
   std::vector<double> contacts() const;
 
   std::size_t size() const { return bodies_.size(); }
@@ -93,7 +92,7 @@ class Simulation {
   TimedWorld world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
-  std::vector<btRigidBody*> waving_;  // kinematic bodies that go up and down
+  std::vector<btRigidBody*> waving_;  // kinematic bodies that move up and down
   int steps_ = 0;
 };
 

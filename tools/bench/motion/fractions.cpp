@@ -1,4 +1,4 @@
-// Parts about how much moves: against the peers, against each way alone, and a single mover.
+// Parts about the moving fraction: `auto` against peers, `auto` against each way alone, and a single mover.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,14 +34,14 @@ std::vector<std::string> scenes_of(const MotionBenchmarkOptions& options) {
 
 std::string percent(double moving) { return fmt::format("{:.3g} %", moving * 100); }
 
-/// Ten fractions from 0.1 to 100 %, evenly on a logarithmic scale.
+/// Ten fractions from 0.1 to 100 %, evenly spaced on a logarithmic scale.
 std::vector<double> ten_fractions() {
   std::vector<double> fractions;
   for (int i = 0; i < 10; ++i) fractions.push_back(std::pow(10.0, -3 + i / 3.0));
   return fractions;
 }
 
-/// The first runner's median over the least of the others'; 0 where there is none to compare with.
+/// The first runner's median over the smallest median of the others; 0 if there are no others.
 double over_the_best(const RaceOutcome& outcome) {
   double best = INFINITY;
   for (std::size_t i = 1; i < outcome.runners.size(); ++i) {

@@ -1,4 +1,4 @@
-// Parts about what must not matter: a spike, a frame in which all jump, boxes that rest; and recorded motion.
+// Parts about worst cases: spikes, a frame in which all boxes jump, and boxes at rest; and recorded motion.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,7 +72,7 @@ void jumps_in(const MotionBenchmarkOptions& options) {
   std::vector<std::pair<std::string, double>> jumps;
   for (const RaceRunner& runner : outcome.runners) {
     if (!runner.ran()) continue;
-    std::array<std::vector<double>, 3> kinds;  // jumps, the frames after, others
+    std::array<std::vector<double>, 3> kinds;  // frames of jumps, frames after jumps, other frames
     for (std::size_t i = 0; i < runner.frames_ms.size(); ++i) {
       const std::size_t place = i % (between_jumps + 1);
       kinds[place == between_jumps ? 0 : place == 0 && i > 0 ? 1 : 2].push_back(runner.frames_ms[i] * 1e3);
@@ -91,21 +91,22 @@ void jumps_in(const MotionBenchmarkOptions& options) {
   fmt::print("\n");
 }
 
-/// Boxes that move, first, and boxes that rest.
+/// A motion with the movers first and the boxes at rest after them.
 template <int D>
 struct MovingPopulation {
   std::vector<Box<D>> boxes;
   std::vector<Box<D>> movers;
 };
 
-/// `movers` boxes within the middle of a scene, where about `around` of its boxes are; and those alone.
+/// `movers` boxes in the middle of a scene, in a region that holds about `around` of its boxes; and those
+/// boxes alone.
 template <int D>
 std::array<MovingPopulation<D>, 2> populations(const std::string& scene, std::size_t resting,
                                                std::size_t around, std::size_t movers, std::uint64_t seed) {
   const std::vector<Box<D>> still = boxes_of<D>(scene, resting, seed);
   Box<D> bounds = still.front();
   for (const Box<D>& box : still) bounds = merged(bounds, box);
-  // Of an even scene the middle holds as many boxes as its share of the whole.
+  // In a uniform scene, the number of boxes in the middle is proportional to its volume.
   const double share = std::pow(static_cast<double>(around) / static_cast<double>(resting), 1.0 / D);
   Box<D> middle;
   for (int axis = 0; axis < D; ++axis) {

@@ -1,4 +1,4 @@
-// Motion, claim by claim: motion PART... [options], each part a table. `motion --help` lists them.
+// The motion benchmark: motion PART... [options], one table per part. `motion --help` lists the parts.
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// What the parts of the motion benchmark share: scenes in motion, headings and tables.
+// Shared by the parts of the motion benchmark: scenes in motion, headings and tables.
 #include "bench/motion/parts.hpp"
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 
 namespace broadside::bench {
 
-Turns MotionBenchmarkOptions::turns(std::size_t standard_frames, std::size_t standard_rounds) const {
-  return {.frames = frames > 0 ? frames : standard_frames,
-          .rounds = rounds > 0 ? rounds : standard_rounds,
+Turns MotionBenchmarkOptions::turns(std::size_t default_frames, std::size_t default_rounds) const {
+  return {.frames = frames > 0 ? frames : default_frames,
+          .rounds = rounds > 0 ? rounds : default_rounds,
           .in_a_row = in_a_row,
           .is_cold = is_cold,
           .budget_seconds = budget_seconds};

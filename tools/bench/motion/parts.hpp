@@ -11,9 +11,9 @@
 
 namespace broadside::bench {
 
-/// What the command line asks for; 0, or a list that is empty, stands for a part's own standard.
+/// Options of the command line. 0 or an empty list selects the part's own default.
 struct MotionBenchmarkOptions {
-  std::string algorithms{};  ///< as Catalogue::select reads it
+  std::string algorithms{};  ///< a selection for Catalogue::select
   std::vector<std::string> scenes{};
   std::vector<std::string> traces{};  ///< files
   std::vector<int> dimensions = {2, 3};
@@ -27,18 +27,18 @@ struct MotionBenchmarkOptions {
   bool is_cold = false;
   double budget_seconds = Turns{}.budget_seconds;
 
-  /// What a scene is asked for.
+  /// The request for a scene.
   lab::SceneRequest request(std::size_t its_boxes, const Turns& turns, double its_moving) const {
     return {.boxes = its_boxes, .seed = seed, .frames = turns.frames, .moving = its_moving, .drift = drift};
   }
-  Turns turns(std::size_t standard_frames, std::size_t standard_rounds) const;
-  std::string algorithms_or(const std::string& standard) const {
-    return algorithms.empty() ? standard : algorithms;
+  Turns turns(std::size_t default_frames, std::size_t default_rounds) const;
+  std::string algorithms_or(const std::string& default_value) const {
+    return algorithms.empty() ? default_value : algorithms;
   }
-  std::size_t boxes_or(std::size_t standard) const { return boxes > 0 ? boxes : standard; }
+  std::size_t boxes_or(std::size_t default_value) const { return boxes > 0 ? boxes : default_value; }
 };
 
-/// The motion of a scene, its boxes made (or recorded) once for all rounds.
+/// The motion of a scene. Its boxes are generated (or recorded) once for all rounds.
 template <int D>
 StartMotion<D> motion_of(const std::string& scene, const lab::SceneRequest& request);
 
@@ -51,27 +51,27 @@ void against_ways(const MotionBenchmarkOptions& options);
 /// One mover among a million boxes.
 void one_mover(const MotionBenchmarkOptions& options);
 
-/// A thousand frames with a tenth moving: the worst over the median.
+/// A thousand frames with 10 % moving: the slowest over the median.
 void spikes(const MotionBenchmarkOptions& options);
 
-/// The frame in which every box jumps, over what a rebuild takes for it.
+/// The frame in which every box jumps, over the time of a rebuild.
 void jumps(const MotionBenchmarkOptions& options);
 
-/// 2,000 movers among 1,000,000 boxes that rest, over the same movers among the 10,000 around them.
+/// 2,000 movers among 1,000,000 boxes at rest, over the same movers among the 10,000 boxes around them.
 void rest(const MotionBenchmarkOptions& options);
 
-/// Recorded scenes, and the pile at rest: `auto` against the broad phase of the engine that was recorded.
-/// Takes any scene that moves by itself.
+/// Recorded scenes, and the pile at rest: `auto` against the broad phase of the recorded engine. Accepts any
+/// scene that moves by itself.
 void recorded(const MotionBenchmarkOptions& options);
 
-/// Worlds, with enlarged boxes and without, over their tracker alone and an engine's broad phase; in scenes,
-/// or in files.
+/// Worlds with and without enlarged boxes, over their tracker alone and over an engine's broad phase; in
+/// scenes or in files.
 void worlds(const MotionBenchmarkOptions& options);
 
-/// Prints what ran: the scene, its boxes, the machine.
+/// Prints the scene, its boxes and the machine.
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);
 
-/// Prints a line for each runner: times, a mover's share, and how many times the first one's.
+/// Prints a line for each runner: times, time per mover, and ratio to the first runner.
 void print_table(const RaceOutcome& outcome);
 
 }  // namespace broadside::bench

@@ -44,12 +44,12 @@ class TrackerFollower final : public MotionFollower<D> {
 
  private:
   Tracker<D> tracker_;
-  std::vector<Box<D>> boxes_;  // its own, as an engine's are
+  std::vector<Box<D>> boxes_;  // a copy of its own, as an engine has
   std::vector<BoxId> changed_;
   lab::FrameEvents events_;
 };
 
-/// A step from nothing to these boxes.
+/// A step that adds all of these boxes.
 template <int D>
 lab::Step<D> first_step(std::span<const Box<D>> boxes) {
   lab::Step<D> step{boxes.size(), {}, {boxes.begin(), boxes.end()}};
@@ -57,8 +57,8 @@ lab::Step<D> first_step(std::span<const Box<D>> boxes) {
   return step;
 }
 
-/// What a frame's events were by the first that told them.
-struct Told {
+/// Hash of a frame's events, and the first runner that reported them.
+struct ReportedEvents {
   std::uint64_t hash;
   std::string by;
 };
@@ -86,7 +86,7 @@ class Race {
       Motion<D> motion = start();
       if (round == 0) let_in(motion.boxes);
       follow(motion, round);
-      // The first one is verified, and knows what that found.
+      // Only the first runner is verified, and reports what that found.
       if (round > 0) continue;
       for (Racer<D>& participant : participants_) {
         if (participant.follower) participant.runner->explanation = participant.follower->explanation();
@@ -103,7 +103,7 @@ class Race {
       std::string& why = participant.runner->left_out;
       if (participant.competitor.entry != nullptr)
         why = lab::unfit(*participant.competitor.entry, D, extremes);
-      // Some take quadratic time to put boxes in one by one.
+      // Some libraries take quadratic time to insert boxes one by one.
       const auto seconds_for = [&](std::size_t count) {
         std::vector<Box<D>> some;
         for (const std::size_t i : lab::sample_of(boxes.size(), count)) some.push_back(boxes[i]);
@@ -126,8 +126,8 @@ class Race {
       make(participant);
       const double milliseconds = update(participant, first);
       check(participant, 0, round);
-      double& least = participant.runner->build_ms;
-      least = least > 0 ? std::min(least, milliseconds) : milliseconds;
+      double& min_ms = participant.runner->build_ms;
+      min_ms = min_ms > 0 ? std::min(min_ms, milliseconds) : milliseconds;
     }
     for (std::size_t frame = 0; frame < turns_.frames; frame += turns_.in_a_row) {
       std::vector<lab::Step<D>> steps;
@@ -169,7 +169,7 @@ class Race {
     return watch.milliseconds();
   }
 
-  /// Writes more bytes than caches hold.
+  /// Writes more bytes than the caches hold.
   void flush_caches() {
     flushed_.resize(std::size_t{256} << 20);
     for (std::size_t i = 0; i < flushed_.size(); i += 64) ++flushed_[i];
@@ -179,16 +179,16 @@ class Race {
     const lab::FrameEvents& events = participant.follower->events();
     lab::EventHasher hasher;
     hasher.add(events);
-    std::vector<Told>& told = told_[participant.competitor.definition];
-    if (frame == told.size()) {
-      told.push_back({hasher.hash(), participant.runner->algorithm});
-      if (frame > 0 && told_.size() == 1) outcome_.events += events.begun.size() + events.ended.size();
+    std::vector<ReportedEvents>& reported = reported_[participant.competitor.definition];
+    if (frame == reported.size()) {
+      reported.push_back({hasher.hash(), participant.runner->algorithm});
+      if (frame > 0 && reported_.size() == 1) outcome_.events += events.begun.size() + events.ended.size();
     }
-    if (told[frame].hash != hasher.hash()) {
+    if (reported[frame].hash != hasher.hash()) {
       throw std::runtime_error(fmt::format(
           "frame {}: {} tells {} and {} as ended; expected the events that {} told", frame,
           participant.runner->algorithm, lab::counted(events.begun.size(), "pair as begun", "pairs as begun"),
-          events.ended.size(), told[frame].by));
+          events.ended.size(), reported[frame].by));
     }
     if (round == 0) participant.follower->verify();
   }
@@ -197,7 +197,8 @@ class Race {
   RaceOutcome outcome_;
   std::vector<Racer<D>> participants_;
   std::vector<char> flushed_{};
-  std::map<std::string, std::vector<Told>> told_;  // by definition, and frame, the first one too
+  // By definition and frame, including the first frame.
+  std::map<std::string, std::vector<ReportedEvents>> reported_;
 };
 
 }  // namespace

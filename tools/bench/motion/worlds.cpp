@@ -1,4 +1,4 @@
-// The part about worlds: what one costs over its tracker alone, and with enlarged boxes.
+// The part about worlds: their cost over the tracker alone, with and without enlarged boxes.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@
 namespace broadside::bench {
 namespace {
 
-/// Box2D v3's margins: 0.05 m, for small shapes an eighth of their size.
+/// Box2D v3's margins: 0.05 m, or an eighth of the size of small shapes.
 constexpr double box2d_margin = 0.05;
 constexpr double box2d_relative_margin = 0.125;
 
@@ -82,7 +82,7 @@ class WorldFollower final : public MotionFollower<D> {
     return events_;
   }
 
-  /// The pairs are those of the boxes, or of the enlarged ones, which contain them.
+  /// The pairs are those of the boxes, or those of the enlarged boxes, which contain them.
   void verify() override {
     std::vector<Box<D>> boxes;
     std::vector<Handle> handles;
@@ -135,7 +135,7 @@ class WorldFollower final : public MotionFollower<D> {
   std::vector<Box<D>> moved_boxes_;
   Events told_;
   lab::FrameEvents events_;
-  std::size_t told_pairs_ = 0;  // in the rounds that were verified
+  std::size_t told_pairs_ = 0;  // in the verified rounds
   std::size_t exact_pairs_ = 0;
 };
 

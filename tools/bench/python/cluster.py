@@ -3,9 +3,9 @@
     build/python/tester/bin/python tools/bench/python/cluster.py [--boxes 100000,1000000] [--rounds 3] [--workers 2]
         [--chunks 8] [--slow 8] [--limit 60]
 
-The Dask libraries run on one LocalCluster, a process and a thread for each worker, which holds the boxes already; DuckDB
-has as many threads. All hand their pairs to this process. One whose first call takes longer than --slow seconds is called
-once; one that takes longer than --limit is stopped. What needs the boxes in spatial order has that counted apart.
+The Dask libraries run on one LocalCluster, which already holds the boxes, with one process and thread per worker; DuckDB
+uses as many threads. All send their pairs to this process. A library is called only once if its first call takes longer
+than --slow seconds; a call that takes longer than --limit is stopped. Sorting boxes spatially is timed separately.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ COLUMNS = ("xmin", "ymin", "xmax", "ymax")
 
 
 class Stopped(Exception):
-    """A call that ran into the limit."""
+    """A call that exceeded the time limit."""
 
 
 def within(client: distributed.Client, collection: Any, limit: float) -> Any:
@@ -68,14 +68,14 @@ def joined(client: distributed.Client, left: Any, right: Any, limit: float) -> n
 def searches_of(
     client: distributed.Client, left: np.ndarray, right: np.ndarray, options: argparse.Namespace
 ) -> tuple[dict[str, Callable[[], np.ndarray]], float]:
-    """The searches by name, and the seconds that the boxes' spatial order takes."""
+    """The searches by name, and the seconds for sorting the boxes spatially."""
     rows = (len(left) + options.chunks - 1) // options.chunks
     arrays = [dask.array.from_array(boxes, chunks=(rows, 4)).persist() for boxes in (left, right)]
     frames = [geo_frame(boxes, row, options.chunks).persist() for boxes, row in ((left, "i"), (right, "j"))]
     distributed.wait([*arrays, *frames])
 
     def put_in_order() -> list[Any]:
-        # By tasks: the other way ("p2p") waits forever for frames that the cluster holds already.
+        # By tasks: the alternative ("p2p") waits forever for frames that the cluster already holds.
         with dask.config.set({"dataframe.shuffle.method": "tasks"}):
             ordered = [frame.spatial_shuffle(npartitions=options.chunks).persist() for frame in frames]
         distributed.wait(ordered)
@@ -141,7 +141,7 @@ def compare(client: distributed.Client, n: int, options: argparse.Namespace) -> 
     lines = []
     for name in searches:
         if times[name]:
-            # Ratios of the same round, where there are several.
+            # Ratios within the same round, if there are several rounds.
             pairs = zip(times[name], times["broadside.dask, arrays"]) if name not in notes else [(times[name][0], base)]
             ratio = statistics.median(one / other for one, other in pairs)
             lines.append(f"| {n:,} | {name} | {statistics.median(times[name]):,.3f} | {ratio:,.2f} | {notes.get(name, '')} |")
@@ -163,7 +163,7 @@ def main() -> None:
           f"dask-geopandas {dask_geopandas.__version__}, DuckDB {duckdb.__version__}, Broadside {broadside.__version__}, "
           f"{date.today()}; `{' '.join(sys.argv)}`\n")
     print("| boxes, two sets of | library | seconds | times broadside.dask | |\n|---:|---|---:|---:|---|", flush=True)
-    # The default limit of memory is the machine's share; nothing here comes near it.
+    # The default memory limit is the machine's share; nothing here comes near it.
     with distributed.LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
             for n in map(int, options.boxes.split(",")):

@@ -3,8 +3,8 @@
     build/python/tester/bin/pip install --requirement tools/bench/python/requirements.txt
     build/python/tester/bin/python tools/bench/python/compare.py [--boxes 10000,100000,1000000] [--rounds 7] [--threads 1]
 
-With --cpp FILE it also compares with find_pairs() of C++, called by tools/bench/python/cpp_times.cpp, which says how it is
-built. Each library makes what it searches anew in each call, as broadside does, from the arrays that it takes.
+With --cpp FILE it also compares with find_pairs() in C++, called by tools/bench/python/cpp_times.cpp, which says how to
+build it. Each library rebuilds its structures from the arrays in each call, as broadside does.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ import numpy as np
 import broadside
 
 Pairs = Any  # an array of pairs, or their number
-SLOW_SECONDS = 60.0  # a library whose first call takes longer is left out of the rounds
+SLOW_SECONDS = 60.0  # a library is left out of the rounds if its first call takes longer
 
 
 def scattered(n: int, dimension: int, seed: int) -> np.ndarray:
-    """Boxes of which each overlaps about two others."""
+    """Boxes that each overlap about two others."""
     rng = np.random.default_rng(seed)
     minima = rng.random((n, dimension))
     sides = rng.random((n, dimension)) * 2 / n ** (1 / dimension)
@@ -38,7 +38,7 @@ def scattered(n: int, dimension: int, seed: int) -> np.ndarray:
 
 
 def self_pairs(rows: np.ndarray) -> np.ndarray:
-    """Of a join of a set with itself, each pair once."""
+    """Keeps each pair of a self-join once."""
     return rows[rows[:, 0] < rows[:, 1]]
 
 
@@ -104,7 +104,7 @@ def make_prtree(threads: int) -> Callable[..., Pairs] | None:
 
 
 def make_scipy(threads: int) -> Callable[..., Pairs] | None:
-    """A tree of points knows no boxes: centres nearer than the longest sides, and what overlaps of these."""
+    """A tree of points: finds centres within the longest side, and filters the overlapping boxes."""
     spatial = importlib.import_module("scipy.spatial")
 
     def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
@@ -127,7 +127,7 @@ def make_scipy(threads: int) -> Callable[..., Pairs] | None:
 
 
 def make_coal(threads: int) -> Callable[..., Pairs] | None:
-    """Its broad phase as a physics engine drives it, with an object for each box. Python can only count the pairs."""
+    """Its broad phase as a physics engine uses it, with an object per box. Python can only count the pairs."""
     coal = importlib.import_module("coal")
 
     def manager_of(boxes: np.ndarray) -> tuple[Any, list[Any]]:
@@ -216,7 +216,7 @@ def compare(n: int, dimension: int, two_sets: bool, rounds: int, threads: int) -
         try:
             search = make(threads)
             taken, rows = seconds(lambda: search(a, b))
-        except Exception as error:  # what a library cannot do here is said in its line
+        except Exception as error:  # an unsupported case is reported in the library's line
             notes[name] = f"{type(error).__name__}: {str(error).splitlines()[0][:60]}"
             continue
         if isinstance(rows, int):
@@ -247,7 +247,7 @@ def compare(n: int, dimension: int, two_sets: bool, rounds: int, threads: int) -
 
 
 def overhead(program: str) -> list[str]:
-    """Python over C++ doing the same: the same boxes, one thread, pairs in an array."""
+    """Time of Python over C++ for the same task: the same boxes, one thread, pairs in an array."""
     lines = []
     for n in (10, 100_000):
         boxes = scattered(n, 2, 1).astype(np.float32)

@@ -1,9 +1,8 @@
-// What bench/python/compare.py sets Python's times against: find_pairs() of floats in 2D, by the same
-// library.
+// Baseline for bench/python/compare.py: find_pairs() of floats in 2D, by the same library.
 //
 //   cmake --build build/python/cmake --target broadside
-//   g++ -std=c++20 -O3 -DNDEBUG -I include bench/python/cpp_times.cpp build/python/cmake/src/libbroadside.a
-//   -lhwy -pthread -o build/python/cpp_times
+//   g++ -std=c++20 -O3 -DNDEBUG -I include tools/bench/python/cpp_times.cpp
+//     build/python/cmake/src/libbroadside.a -lhwy -pthread -o build/python/cpp_times
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -23,8 +22,8 @@ int main(int count, char** arguments) {
     std::fputs("usage: cpp_times FILE CALLS\n", stderr);
     return 2;
   }
-  // Freed memory is kept, as it is in a Python process that has run for a while; else each call here pays for
-  // fresh pages, and Python would look twice as fast.
+  // Keep freed memory, as a Python process does that has run for a while. Otherwise each call here would pay
+  // for fresh pages, and Python would look twice as fast.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   std::ifstream file(arguments[1], std::ios::binary | std::ios::ate);

@@ -1,9 +1,9 @@
-// Compares the npm package with other libraries of JavaScript, in Node or in Chromium.
+// Compares the npm package with other JavaScript libraries, in Node or in Chromium.
 //
 //   node compare.mjs [--chromium] [--least N] [--most N] PACKAGE
 //
-// Times in Node are of the processor, so that other programs on the machine count for little; those in Chromium are of
-// the clock. Every library's pairs are compared with those of the first one, which are the package's.
+// Times in Node are processor times, which other programs on the machine hardly affect; times in Chromium are
+// wall-clock times. Every library's pairs are compared with those of the first one, which is the package.
 import { createRequire } from "node:module";
 import { cpus } from "node:os";
 import { dirname, join, resolve } from "node:path";
@@ -19,8 +19,8 @@ if (folder === undefined) {
   console.error("compare.mjs: no package; expected the folder of one, such as build/wasm/package");
   process.exit(2);
 }
-const most = Number(values.most);
-const least = Number(values.least);
+const maxCount = Number(values.most);
+const minCount = Number(values.least);
 
 async function inNode() {
   const { compareAll } = await import("./measure.mjs");
@@ -33,7 +33,7 @@ async function inNode() {
   };
   const libraries = [...ours(await load()), ...ours(await load({ simd: false }), "broadside, scalar"), ...others, rapier2d];
   console.log(`Node ${process.version}, ${cpus()[0].model}, processor time`);
-  compareAll({ clock, libraries, least, most, say: (text) => console.log(`\n${text}`) });
+  compareAll({ clock, libraries, minCount, maxCount, say: (text) => console.log(`\n${text}`) });
 }
 
 async function inChromium() {
@@ -50,7 +50,7 @@ async function inChromium() {
         const broadside = await load();
         broadside.pairs(new Float32Array([0, 0, 2, 2, 1, 1, 3, 3]), { filters: {} });
         console.log("from the script's start to the first pairs: " + (performance.now() - first).toFixed(1) + " ms");
-        compareAll({ clock: () => performance.now(), libraries: [...ours(broadside), ...others], least: ${least}, most: ${most},
+        compareAll({ clock: () => performance.now(), libraries: [...ours(broadside), ...others], minCount: ${minCount}, maxCount: ${maxCount},
           say: (text) => console.log("\\n" + text) });
         console.log("done");`,
     },

@@ -1,15 +1,15 @@
-// The libraries of the comparison, each driven as its documentation says.
+// The libraries of the comparison, each used as its documentation says.
 //
-// A library's entry makes the runs of one set of boxes: `fill` makes its own objects of a Float32Array (for libraries
-// that have any), and `pairs` finds all pairs, `a0, b0, a1, b1, ...` in any order. `motion` follows an array from frame
-// to frame: its update takes the boxes and the places that moved, and returns the pairs that began and those that ended.
+// A library's entry runs one set of boxes: `fill` makes the library's own objects from a Float32Array (if it has any),
+// and `pairs` finds all pairs, `a0, b0, a1, b1, ...` in any order. `motion` follows an array from frame to frame: its
+// update takes the boxes and the indices of those that moved, and returns the begun and the ended pairs.
 import boxIntersect from "box-intersect";
 import { System } from "detect-collisions";
 import Flatbush from "flatbush";
 import RBush from "rbush";
 import { RBush3D } from "rbush-3d";
 
-/** The loop that anyone would write. */
+/** The obvious loop over all pairs. */
 export function naivePairs2(boxes) {
   const pairs = [];
   for (let a = 0; a < boxes.length; a += 4) {
@@ -36,26 +36,29 @@ export function naivePairs3(boxes) {
   return pairs;
 }
 
-/** Begun and ended pairs of two lists of overlaps of each moved box, before and now. */
+/** Begun and ended pairs, from the overlaps of each moved box before and now. */
 class Changes {
   begun = [];
   ended = [];
 
-  /** `was` and `is`: ids that overlap a moved box before and now. A pair of two moved boxes is told by the lesser. */
+  /**
+   * `was` and `is`: ids that overlap a moved box before and now. If both boxes of a pair moved, the one with the lower
+   * id reports it.
+   */
   add(id, was, is, moved) {
     for (const other of is) if (other !== id && !(moved[other] && other < id) && !was.includes(other)) this.begun.push(id, other);
     for (const other of was) if (other !== id && !(moved[other] && other < id) && !is.includes(other)) this.ended.push(id, other);
   }
 }
 
-/** Moved boxes as flags by id, from a list. */
+/** Flags by id, from a list of moved boxes. */
 function flagsOf(count, list) {
   const flags = new Uint8Array(count);
   for (const id of list) flags[id] = 1;
   return flags;
 }
 
-/** Motion by all pairs of each frame, compared with those of the frame before. */
+/** Motion by searching each frame for all pairs and comparing them with the previous frame's. */
 function byAllPairs(findPairs) {
   return (boxes) => {
     const count = boxes.length / 4;
@@ -107,7 +110,7 @@ const flatbush = {
   dimension: 2,
   fill: fillFlatbush,
   pairs: flatbushPairs,
-  // It does not move boxes, so it is made anew; the moved ones are looked up in both.
+  // The library does not move boxes, so its index is rebuilt; moved boxes are looked up in the old and the new one.
   motion(boxes) {
     let index = fillFlatbush(boxes);
     let before = boxes.slice();
@@ -173,7 +176,7 @@ function fillRbush3d(boxes) {
 const rbush3d = {
   name: "rbush-3d",
   dimension: 3,
-  most: 200_000,  // a million boxes would take it minutes
+  maxCount: 200_000,  // a million boxes would take minutes
   fill: fillRbush3d,
   pairs: (boxes, filled = fillRbush3d(boxes)) => treePairs(filled),
 };
@@ -212,8 +215,8 @@ function fillSystem(boxes) {
 const detectCollisions = {
   name: "detect-collisions",
   dimension: 2,
-  most: 20_000,
-  // It computes how far boxes are into each other, and does not take touching for it: sizes and contacts in float 64.
+  maxCount: 20_000,
+  // It computes penetration depths in float 64 from sizes and does not count touching as a contact.
   isOther: true,
   fill: fillSystem,
   pairs(boxes, system = fillSystem(boxes)) {
@@ -225,13 +228,13 @@ const detectCollisions = {
   },
 };
 
-/** Ours: `entry` is a loaded module. */
+/** Our library: `entry` is a loaded module. */
 export function ours(broadside, name = "broadside") {
   return [2, 3].map((dimension) => ({
     name,
     dimension,
     pairs: dimension === 2 ? (boxes) => broadside.pairs(boxes) : (boxes) => broadside.pairs(boxes, of3),
-    // Filled: the boxes are in the module's memory.
+    // After filling, the boxes are in the module's memory.
     fill(boxes) {
       const kept = broadside.boxes(boxes.length / (2 * dimension), dimension);
       kept.data.set(boxes);
@@ -249,7 +252,7 @@ export function ours(broadside, name = "broadside") {
 const of3 = { dimension: 3 };
 
 export const others = [
-  { name: "naive", dimension: 2, most: 20_000, pairs: naivePairs2, motion: byAllPairs(naivePairs2) },
-  { name: "naive", dimension: 3, most: 20_000, pairs: naivePairs3 },
+  { name: "naive", dimension: 2, maxCount: 20_000, pairs: naivePairs2, motion: byAllPairs(naivePairs2) },
+  { name: "naive", dimension: 3, maxCount: 20_000, pairs: naivePairs3 },
   flatbush, rbush, rbush3d, ...boxIntersects, detectCollisions,
 ];

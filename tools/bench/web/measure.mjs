@@ -1,6 +1,6 @@
-// Measures all libraries in the same rounds, in Node and in browsers, and checks what they find.
+// Measures all libraries in the same rounds, in Node and in browsers, and checks their results.
 
-/** Numbers from 0 to 1 that a seed fixes: mulberry32. */
+/** Seeded random numbers from 0 to 1: mulberry32. */
 function random(seed) {
   return () => {
     seed = (seed + 0x6d2b79f5) | 0;
@@ -10,7 +10,7 @@ function random(seed) {
   };
 }
 
-/** Boxes spread evenly; a box overlaps about one other, however many there are. */
+/** Uniformly distributed boxes; a box overlaps about one other, whatever the count. */
 export function uniform(count, dimension, seed = 1) {
   const rng = random(seed);
   const side = count ** (1 / dimension);
@@ -25,7 +25,7 @@ export function uniform(count, dimension, seed = 1) {
   return boxes;
 }
 
-/** Moves a tenth of the boxes; returns their places. */
+/** Moves a tenth of the boxes; returns their indices. */
 function move(boxes, dimension, rng) {
   const list = [];
   for (let i = 0; i < boxes.length / (2 * dimension); ++i) {
@@ -40,7 +40,7 @@ function move(boxes, dimension, rng) {
   return list;
 }
 
-/** A set of pairs as a text: how many, and a sum that their order does not change. */
+/** A set of pairs as a text: the count, and a sum that does not depend on their order. */
 export function digest(pairs) {
   let sum = 0;
   for (let k = 0; k < pairs.length; k += 2) {
@@ -52,7 +52,7 @@ export function digest(pairs) {
   return `${pairs.length / 2}:${sum}`;
 }
 
-/** Calls that take `milliseconds` together: how many that are. */
+/** How many calls together take `milliseconds`. */
 function repeats(clock, call, milliseconds) {
   call();
   let count = 1;
@@ -66,7 +66,7 @@ function repeats(clock, call, milliseconds) {
   }
 }
 
-/** Times calls in alternating rounds: the median of each, in milliseconds a call. */
+/** Times calls in alternating rounds; returns the median of each, in milliseconds per call. */
 function inRounds(clock, calls, rounds, milliseconds) {
   const counts = calls.map((call) => repeats(clock, call, milliseconds));
   const times = calls.map(() => []);
@@ -80,13 +80,13 @@ function inRounds(clock, calls, rounds, milliseconds) {
   return times.map((of) => of.sort((a, b) => a - b)[Math.floor(of.length / 2)]);
 }
 
-/** All pairs of boxes that rest. `fills` has the libraries whose filling is timed apart. */
+/** All pairs of boxes at rest. `fills` has the libraries with a separately timed fill. */
 export function compareStill({ clock, libraries, dimension, count, rounds = 5, milliseconds = 20 }) {
   const boxes = uniform(count, dimension);
   const rows = [];
   let expected;
   for (const library of libraries) {
-    if (library.dimension !== dimension || library.pairs === undefined || count > (library.most ?? Infinity)) continue;
+    if (library.dimension !== dimension || library.pairs === undefined || count > (library.maxCount ?? Infinity)) continue;
     const found = digest(library.pairs(boxes));
     expected ??= found;
     rows.push({ name: library.name, library, agrees: found === expected });
@@ -102,7 +102,7 @@ export function compareStill({ clock, libraries, dimension, count, rounds = 5, m
   return rows.map(({ library: _, ...row }) => ({ dimension, count, ...row }));
 }
 
-/** Begun and ended pairs where a tenth of the boxes moves in each frame. Frames are the same for all. */
+/** Begun and ended pairs when a tenth of the boxes moves in each frame. All libraries get the same frames. */
 export function compareMoving({ clock, libraries, count, frames = 12, dimension = 2 }) {
   const first = uniform(count, dimension);
   const rng = random(99);
@@ -114,8 +114,8 @@ export function compareMoving({ clock, libraries, count, frames = 12, dimension 
   const rows = [];
   let expected;
   for (const library of libraries) {
-    if (library.dimension !== dimension || library.motion === undefined || count > (library.most ?? Infinity)) continue;
-    // Once for the compilers, which bring code that runs often to its last form beside the program.
+    if (library.dimension !== dimension || library.motion === undefined || count > (library.maxCount ?? Infinity)) continue;
+    // One warm-up run, so that the JIT compilers have optimised the code.
     const warming = library.motion(first.slice());
     for (const { list, boxes: now } of steps) warming(now, list);
     warming.free?.();
@@ -134,7 +134,7 @@ export function compareMoving({ clock, libraries, count, frames = 12, dimension 
   }
   return rows.map(({ name, times, agrees, update }) => {
     update.free?.();
-    // The first frames are the compiler's.
+    // The first frames still include compilation.
     const rest = times.slice(Math.floor(frames / 3)).sort((a, b) => a - b);
     return { dimension, count, name, agrees, whole: rest[Math.floor(rest.length / 2)] };
   });
@@ -165,9 +165,9 @@ export function table(title, rows, key = "whole") {
   ].join("\n");
 }
 
-/** Everything that is compared. `least` and `most` say of how many boxes. */
-export function compareAll({ clock, libraries, say, least = 1, most = Infinity }) {
-  const some = (all) => all.filter((count) => count >= least && count <= most);
+/** Runs all comparisons. `minCount` and `maxCount` limit the number of boxes. */
+export function compareAll({ clock, libraries, say, minCount = 1, maxCount = Infinity }) {
+  const some = (all) => all.filter((count) => count >= minCount && count <= maxCount);
   const still = [1, 2, 3, 4, 6, 8, 10, 12, 13, 15, 20, 30, 50, 100, 1000, 10_000, 100_000, 1_000_000];
   for (const dimension of [2, 3]) {
     const rows = some(still).flatMap((count) => compareStill({

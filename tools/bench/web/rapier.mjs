@@ -1,4 +1,4 @@
-// Rapier as a broad phase: kinematic sensors, which collide with nothing and tell whom they meet.
+// Rapier as a broad phase: kinematic sensors, which report overlaps and exert no force.
 import rapier from "@dimforge/rapier2d-simd-compat";
 
 await rapier.init();
@@ -6,7 +6,7 @@ await rapier.init();
 export const rapier2d = {
   name: "rapier2d-simd",
   dimension: 2,
-  most: 20_000,
+  maxCount: 20_000,
   // Its narrow phase tests the boxes as well, as centres and half extents.
   isOther: true,
   motion(boxes) {

@@ -1,4 +1,4 @@
-// The worst-case hunt: inputs measured with every algorithm, over uniform boxes and over the best algorithm.
+// The worst-case hunt: measures inputs with every algorithm, over uniform boxes and over the best algorithm.
 #include "bench/worst/hunt.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double uniform_seconds = 120;
 
-/// The lesser times of two runs that found the same.
-void take_least(MeasuredRun& run, const MeasuredRun& again) {
+/// Keeps the shorter times of two runs with the same results.
+void take_min(MeasuredRun& run, const MeasuredRun& again) {
   if (!again.finished()) return;
   if (!run.finished() || again.milliseconds < run.milliseconds) run = again;
 }
@@ -43,8 +43,8 @@ Hunter::Runs Hunter::run_all(const RunAlgorithm& run, bool is_uniform) const {
       const double frames = runs.back().worst_milliseconds > runs.back().milliseconds
                                 ? static_cast<double>(hunt_.effort.frames) + 10
                                 : 1;
-      // Slower than auto and it is not the best. A process has to start, and a tracker to take its first
-      // frame.
+      // Anything slower than `auto` is not the best. The limit leaves time to start a process and for a
+      // tracker's first frame.
       seconds = std::min(seconds, 0.3 + 2 * calls * frames * runs.back().milliseconds / 1e3);
     }
   }
@@ -65,7 +65,7 @@ const Hunter::Runs& Hunter::uniform(const lab::HardInput& input, bool again) {
                                              hunt_.algorithms[i].spec.text(), more[i].fault.data()));
     }
     if (runs.empty()) runs = more;
-    for (std::size_t i = 0; i < more.size(); ++i) take_least(runs[i], more[i]);
+    for (std::size_t i = 0; i < more.size(); ++i) take_min(runs[i], more[i]);
   }
   return runs;
 }
@@ -119,7 +119,7 @@ InputResult Hunter::judged(const lab::HardInput& input, const Runs& runs, const 
         result.best = finding.algorithm;
       }
     } else if (runs[i].end == MeasuredRun::End::too_slow && !(hunt_.judges_auto && i > 0)) {
-      // At least so long: of the calls that were made one has not ended.
+      // A lower bound: at least one of the calls has not ended.
       const double calls =
           input.call == lab::HardCall::track ? static_cast<double>(hunt_.effort.frames + 1) : 1;
       finding.over_uniform = hunt_.limit_seconds * 1e3 / static_cast<double>(hunt_.effort.rounds + 1) /
@@ -143,7 +143,7 @@ InputResult Hunter::measure(const lab::HardInput& input) {
   };
   if (std::ranges::any_of(result.findings, above)) {
     const Runs again = run_all(run, false);
-    for (std::size_t i = 0; i < std::min(runs.size(), again.size()); ++i) take_least(runs[i], again[i]);
+    for (std::size_t i = 0; i < std::min(runs.size(), again.size()); ++i) take_min(runs[i], again[i]);
     result = judged(input, runs, uniform(input, true));
   }
   check(result, run);

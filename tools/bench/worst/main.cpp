@@ -1,5 +1,5 @@
 // The worst-case hunt: inputs on which a broad phase may be slow, and how slow ours are. `worst --help` lists
-// the families.
+// the families of inputs.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -71,7 +71,7 @@ CLI::App* describe(CLI::App& program, Arguments& arguments) {
   return &program;
 }
 
-/// Drawn inputs; the next one where an input turns out to have too many pairs.
+/// Generates random inputs, and replaces an input that turns out to have too many pairs.
 class Source {
  public:
   explicit Source(const Arguments& arguments) : arguments_(arguments), random_(arguments.seed) {
@@ -104,10 +104,10 @@ std::vector<InputResult> hunt(const Arguments& arguments) {
   const bool is_watched = isatty(STDERR_FILENO) == 1;
   while (results.size() < source.size()) {
     InputResult result = hunter.measure(source.next());
-    // Of the fixed ones none may be lost.
+    // Fixed inputs must not be replaced.
     if (result.state == InputResult::State::too_many_pairs && source.draws()) continue;
     results.push_back(std::move(result));
-    // At once: a hunt takes long, and what it has found must not be lost where it is ended.
+    // Print at once: a hunt takes long, and its findings must survive if it is stopped.
     fmt::print("{}", above_text(results.back(), arguments.hunt.bounds));
     std::fflush(stdout);
     if (is_watched) fmt::print(stderr, "\r{} of {}", results.size(), source.size());
@@ -138,7 +138,7 @@ int run(int count, char** values) {
   Hunt& hunted = arguments.hunt;
   hunted.algorithms = catalogue.select(arguments.algorithms);
   if (arguments.algorithms == "own") hunted.algorithms = without_brute_force(hunted.algorithms);
-  // auto first, since how long the others may take depends on it.
+  // `auto` first, because its time limits the time of the others.
   std::stable_partition(hunted.algorithms.begin(), hunted.algorithms.end(),
                         [](const lab::Entry& entry) { return entry.spec.name == "auto"; });
   if (arguments.judge && hunted.algorithms.front().spec.name != "auto")

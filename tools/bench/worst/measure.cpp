@@ -1,4 +1,4 @@
-// One algorithm on one input: its time, tests and memory, and the hash of its pairs.
+// One algorithm on one input: time, tests, memory, and a hash of the pairs.
 #include "bench/worst/measure.hpp"
 
 #include <algorithm>
@@ -58,12 +58,12 @@ FaultText fault_of(std::string_view text) {
     result = {.end = MeasuredRun::End::failed, .fault = fault_of(error.what())};
   }
   const bool written = write(pipe, &result, sizeof result) == sizeof result;
-  // Not exit(): what the parent has not yet written out is the parent's to write.
+  // Not exit(), which would flush the parent's unwritten output a second time.
   _exit(written ? 0 : 1);
 }
 
-/// Calls `run` in a process of its own and returns its result; too_slow after `seconds`, out_of_memory beyond
-/// `max_bytes` of address space. Throws std::runtime_error if no process can be made.
+/// Calls `run` in a child process and returns its result; too_slow after `seconds`, out_of_memory beyond
+/// `max_bytes` of address space. Throws std::runtime_error if no process can be created.
 MeasuredRun in_child(double seconds, std::uint64_t max_bytes, const std::function<MeasuredRun()>& run) {
   const auto refuse = [](const char* what) { throw std::system_error(errno, std::generic_category(), what); };
   std::array<int, 2> ends;
@@ -94,7 +94,7 @@ struct TooManyPairs : std::exception {};
 /// Hashes pairs, and stops a search that finds too many.
 class LimitedHasher final : public PairSink {
  public:
-  explicit LimitedHasher(double most) : most_(most) {}
+  explicit LimitedHasher(double max_count) : max_count_(max_count) {}
 
   std::uint64_t hash() const noexcept { return hash_; }
   std::uint64_t count() const noexcept { return count_; }
@@ -103,10 +103,10 @@ class LimitedHasher final : public PairSink {
   void consume(std::span<const Pair> pairs) override {
     for (const Pair pair : pairs) hash_ += broadside::hash(pair);
     count_ += pairs.size();
-    if (static_cast<double>(count_) > most_) throw TooManyPairs();
+    if (static_cast<double>(count_) > max_count_) throw TooManyPairs();
   }
 
-  double most_;
+  double max_count_;
   std::uint64_t hash_ = 0;
   std::uint64_t count_ = 0;
 };
@@ -183,15 +183,15 @@ class Measured {
     std::optional<Statistics> statistics;
     std::int64_t held = 0;
     const auto update = [&](std::span<const BoxId> changed, bool is_first) {
-      // A hundred movers may begin a pair each with a giant.
-      const double most =
+      // Allows for a hundred movers that each begin a pair with a giant box.
+      const double max_events =
           is_first ? max_pairs_ : effort_.max_pairs * (100 + static_cast<double>(changed.size()));
-      LimitedHasher begun(most);
-      LimitedHasher ended(most);
+      LimitedHasher begun(max_events);
+      LimitedHasher ended(max_events);
       const lab::Stopwatch watch;
       statistics = tracker.update({boxes, changed}, begun, ended);
       const double milliseconds = watch.milliseconds();
-      // The frame counts, and whether a pair began or ended in it.
+      // The hash depends on the frame, and on whether a pair began or ended in it.
       constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
       run.hash = (run.hash * odd + begun.hash()) * odd + ended.hash();
       (is_first ? run.pairs : run.events) += begun.count() + ended.count();

@@ -1,4 +1,4 @@
-// One algorithm on one input: its time, tests and memory, and the hash of its pairs.
+// One algorithm on one input: time, tests, memory, and a hash of the pairs.
 #pragma once
 
 #include <array>
@@ -11,22 +11,22 @@
 
 namespace broadside::bench {
 
-/// The beginning of an error's text, in a Run that a child sends through a pipe.
+/// The beginning of an error's text, in a Run that a child process sends through a pipe.
 using FaultText = std::array<char, 256>;
 
-/// What an algorithm did with an input. A frame is the call itself where nothing moves.
+/// Result of an algorithm on an input. If nothing moves, a frame is the call itself.
 struct MeasuredRun {
   enum class End { finished, too_slow, out_of_memory, too_many_pairs, failed };
 
   End end = End::finished;
-  double milliseconds = 0;        ///< a call, the least of several; of a tracker the median frame
-  double worst_milliseconds = 0;  ///< of a tracker the slowest frame after the first; else as above
-  double tests = 0;               ///< a call or frame; negative where the algorithm does not count
-  std::uint64_t pairs = 0;        ///< of a tracker those of its first frame
-  std::uint64_t events = 0;       ///< of a tracker: begun and ended in all frames after the first
-  std::uint64_t hash = 0;         ///< of both
-  double peak_bytes = 0;          ///< taken beyond input and output
-  FaultText fault{};              ///< what it threw where it failed; ends with 0
+  double milliseconds = 0;        ///< per call, the shortest of several; for a tracker, the median frame
+  double worst_milliseconds = 0;  ///< for a tracker, the slowest frame after the first; otherwise as above
+  double tests = 0;               ///< per call or frame; negative if the algorithm does not count tests
+  std::uint64_t pairs = 0;        ///< for a tracker, pairs of its first frame
+  std::uint64_t events = 0;       ///< for a tracker, begun and ended pairs in all frames after the first
+  std::uint64_t hash = 0;         ///< of pairs and events
+  double peak_bytes = 0;          ///< beyond input and output
+  FaultText fault{};              ///< what it threw if it failed; null-terminated
 
   bool finished() const { return end == End::finished; }
 };
@@ -34,18 +34,18 @@ struct MeasuredRun {
 /// How an input is measured.
 struct HuntEffort {
   std::size_t boxes = 100'000;
-  std::size_t rounds = 2;  ///< timed calls; the first, counted call is not among them
-  std::size_t frames = 9;  ///< of a tracker, after its first
-  double max_pairs = 10;   ///< a box, and events a mover and frame: an input with more is left out
+  std::size_t rounds = 2;  ///< timed calls, after a first call that is only counted
+  std::size_t frames = 9;  ///< for a tracker, after its first
+  double max_pairs = 10;   ///< per box, and events per mover and frame; an input with more is left out
   std::uint64_t max_bytes = std::uint64_t{6} << 30;
 };
 
-/// A run of one algorithm of at most `seconds`, in a process of its own.
+/// Runs one algorithm for at most `seconds`, in a child process.
 using RunAlgorithm = std::function<MeasuredRun(const lab::Entry& entry, double seconds)>;
 
-/// Makes the boxes of `input` and returns what runs algorithms on them. A run makes one call in which tests,
-/// memory and pairs are counted, then `rounds` that are timed and whose pairs must be the same. A tracker
-/// takes the whole motion once for each.
+/// Generates the boxes of `input` and returns a function that runs algorithms on them. A run makes one call
+/// to count tests, memory and pairs, and then `rounds` timed calls, which must find the same pairs. A tracker
+/// follows the whole motion in each of these calls.
 RunAlgorithm prepare(const lab::HardInput& input, const HuntEffort& effort);
 
 }  // namespace broadside::bench

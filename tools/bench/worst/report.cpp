@@ -1,4 +1,4 @@
-// What the worst-case hunt prints and writes.
+// Output of the worst-case hunt, printed and written.
 #include "bench/worst/report.hpp"
 
 #include <algorithm>
@@ -45,9 +45,9 @@ std::string_view name(InputResult::State state) {
 }
 
 template <typename Key>
-std::string worst(std::vector<Line> lines, std::size_t most, const Key& key) {
+std::string worst(std::vector<Line> lines, std::size_t max_lines, const Key& key) {
   std::ranges::stable_sort(lines, std::ranges::greater(), key);
-  lines.resize(std::min(lines.size(), most));
+  lines.resize(std::min(lines.size(), max_lines));
   lab::AlignedColumns columns(">>>>>>><<");
   columns.add({"over uniform", "over best", "ms", "tests/box", "over uniform", "bytes/box", "pairs/box",
                "best", "input"});
@@ -68,17 +68,17 @@ std::string worst(std::vector<Line> lines, std::size_t most, const Key& key) {
 
 }  // namespace
 
-std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t most) {
+std::string table(std::span<const InputResult> results, const Hunt& hunt, std::size_t max_lines) {
   std::string text;
   for (const lab::Entry& entry : hunt.algorithms) {
     const std::string algorithm = entry.spec.text();
     const std::vector<Line> lines = lines_of(results, algorithm);
     if (lines.empty()) continue;
     text += algorithm + ", its worst over uniform boxes\n";
-    text += worst(lines, most, [](const Line& line) { return line.finding->over_uniform; });
+    text += worst(lines, max_lines, [](const Line& line) { return line.finding->over_uniform; });
     if (entry.spec.name == "auto") {
       text += algorithm + ", its worst over the best of all\n";
-      text += worst(lines, most, [](const Line& line) { return line.finding->over_best; });
+      text += worst(lines, max_lines, [](const Line& line) { return line.finding->over_best; });
       text += algorithm + ", where it takes most memory\n";
       text += worst(lines, 3, [](const Line& line) { return line.finding->run.peak_bytes; });
     }

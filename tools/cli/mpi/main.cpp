@@ -1,4 +1,4 @@
-// The program `broadside-mpi`, which mpirun starts: the verb `pairs` on the ranks of an MPI job.
+// The program `broadside-mpi`, started by mpirun: the verb `pairs` on the ranks of an MPI job.
 #include <exception>
 #include <memory>
 #include <optional>
@@ -24,7 +24,7 @@
 namespace broadside::cli {
 namespace {
 
-/// All ranks have the same arguments, and refuse them alike. Help and version are printed by one.
+/// All ranks have the same arguments and refuse the same ones. Only one rank prints help and version.
 Exit run(const std::vector<std::string>& arguments) {
   const lab::Catalogue catalogue;
   CLI::App program(
@@ -54,7 +54,7 @@ Exit run(const std::vector<std::string>& arguments) {
 int main(int count, char** values) {
   using namespace broadside;
   lab::platform::prepare_standard_streams();
-  // A rank searches by several threads, and calls MPI from its first one alone.
+  // A rank searches with several threads, but calls MPI from its first thread only.
   int provided = MPI_THREAD_SINGLE;
   MPI_Init_thread(&count, &values, MPI_THREAD_FUNNELED, &provided);
   cli::set_program_name("broadside-mpi");
@@ -62,21 +62,21 @@ int main(int count, char** values) {
     cli::say("this MPI library provides MPI_THREAD_SINGLE; expected MPI_THREAD_FUNNELED or more");
     MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::usage_error));
   }
-  // The others end with it; and only it writes.
+  // Only this rank writes files; mpirun ends the other ranks with it.
   if (cli::rank() == 0) cli::on_signal(cli::OnSignal::end);
   cli::Exit exit = cli::Exit::usage_error;
   try {
     exit = cli::run(lab::platform::arguments(count, values));
     cli::flush_output();
-  } catch (const cli::EndsOnAll& error) {
+  } catch (const cli::SharedError& error) {
     if (cli::rank() == 0) cli::say(error.what());
   } catch (const std::exception& error) {
-    // The others know nothing of it, and may wait for this rank.
+    // The other ranks do not know of the error and may be waiting for this rank.
     cli::say(fmt::format("rank {}: {}", cli::rank(), error.what()));
     MPI_Abort(MPI_COMM_WORLD, static_cast<int>(cli::Exit::usage_error));
   }
   const bool is_first = cli::rank() == 0;
   MPI_Finalize();
-  // mpirun gives on one rank's status, and sends the others a signal.
+  // mpirun passes on one rank's status, and sends the others a signal.
   return is_first ? static_cast<int>(exit) : 0;
 }

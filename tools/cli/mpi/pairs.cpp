@@ -1,5 +1,5 @@
-// broadside-mpi pairs: joins a file, or two, by all ranks. Each reads its slice, and rank 0 writes the pairs
-// of one rank after the other.
+// broadside-mpi pairs: joins one file or two on all ranks. Each rank reads its slice, and rank 0 writes the
+// pairs of all ranks in order.
 #include "cli/mpi/pairs.hpp"
 
 #include <algorithm>
@@ -36,13 +36,13 @@ struct MpiPairsArguments : PairsArguments {
   bool writes() const { return !counts && !hashes; }
 };
 
-/// Hands rank 0 the pairs of all ranks, in their order and a piece at a time: it asks for each piece, so that
-/// it can end where it cannot write.
+/// Sends the pairs of all ranks to rank 0, in rank order and in pieces. Rank 0 requests each piece, so that
+/// it can stop if it cannot write.
 class PairsOfRanks {
  public:
   explicit PairsOfRanks(std::span<const LargePair> own) : own_(own) {}
 
-  /// On the other ranks: gives what rank 0 asks for.
+  /// On the other ranks: answers the requests of rank 0.
   void give() const {
     std::span<const LargePair> rest = own_;
     while (is_asked()) {
@@ -61,7 +61,7 @@ class PairsOfRanks {
     for (; next_ < ranks(); ++next_) take_those_of(next_, take);
   }
 
-  /// On rank 0, in the end: lets those go that still wait to be asked.
+  /// On rank 0, at the end: releases the ranks that still wait for a request.
   void let_go() {
     for (; next_ < ranks(); ++next_) ask(next_, false);
   }

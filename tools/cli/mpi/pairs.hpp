@@ -1,4 +1,4 @@
-// broadside-mpi pairs: joins a file, or two, by all ranks.
+// broadside-mpi pairs: joins one file or two on all ranks.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -8,7 +8,7 @@
 
 namespace broadside::cli {
 
-/// As add_pairs(). The verb runs on all ranks, which all have the same arguments.
+/// Like add_pairs(). The verb runs on all ranks, with the same arguments on each.
 Verb add_mpi_pairs(CLI::App& program, const lab::Catalogue& catalogue);
 
 }  // namespace broadside::cli

@@ -1,4 +1,4 @@
-// The ranks of the program: errors shared, and bytes sent.
+// The ranks of the program: shared errors, and transfers of bytes.
 #include "cli/mpi/ranks.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ void settle(const std::exception_ptr& error) {
   MPI_Bcast(&size, 1, MPI_INT, failing, MPI_COMM_WORLD);
   text.resize(static_cast<std::size_t>(size));
   MPI_Bcast(text.data(), size, MPI_CHAR, failing, MPI_COMM_WORLD);
-  throw EndsOnAll(text);
+  throw SharedError(text);
 }
 
 void broadcast(void* value, int bytes) { MPI_Bcast(value, bytes, MPI_BYTE, 0, MPI_COMM_WORLD); }

@@ -1,4 +1,4 @@
-// The ranks of the program: what goes wrong on one is said once, and ends all.
+// The ranks of the program: an error on one rank is reported once and ends all ranks.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@ namespace broadside::cli {
 int rank();
 int ranks();
 
-/// What went wrong on some rank, thrown on all of them; the text is that of the first such rank.
-class EndsOnAll : public std::runtime_error {
+/// An error of some rank, thrown on all ranks, with the text of the first rank that has one.
+class SharedError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws EndsOnAll on all ranks if some rank has an error.
+/// Throws SharedError on all ranks if some rank has an error.
 void settle(const std::exception_ptr& error);
 
-/// Does a step of work on all ranks, or ends on all of them.
+/// Does a step of work on all ranks; throws on all of them if it fails on one.
 template <typename Work>
 void on_all(const Work& work) {
   std::exception_ptr error;
@@ -35,12 +35,12 @@ void on_all(const Work& work) {
   settle(error);
 }
 
-/// The bytes of a value of rank 0, on all ranks.
+/// Copies a value from rank 0 to all ranks.
 void broadcast(void* value, int bytes);
 
 std::uint64_t sum_of_ranks(std::uint64_t number);
 
-/// Sends bytes from one rank to another, and receives them, however many.
+/// Send any number of bytes from one rank to another, and receive them.
 void send(const void* bytes, std::uint64_t size, int to);
 void receive(void* bytes, std::uint64_t size, int from);
 

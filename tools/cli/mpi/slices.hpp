@@ -1,4 +1,4 @@
-// Files read by ranks: each has a slice of the boxes.
+// Files read by several ranks: each rank has a slice of the boxes.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,17 @@
 
 namespace broadside::cli {
 
-/// What tells whether two ranks see the same file.
+/// Tells whether two ranks see the same file.
 struct FileIdentity {
   std::uint64_t bytes = 0;
-  std::uint64_t rows = 0;    ///< 0 where these are not known before the file is read
+  std::uint64_t rows = 0;    ///< 0 if not known before the file is read
   std::uint64_t sample = 0;  ///< a hash (FNV-1a) of some of the bytes
 };
 
-/// A file, how it is read, and what rank 0 has found it to be.
+/// A file, how it is read, and its description by rank 0.
 struct SlicedFile {
-  /// Takes over options in which float is asked for as `broadside pairs` does: what is read is rounded then,
-  /// and counted.
+  /// Takes the read options. Rounding to float happens after reading, as in `broadside pairs`, so that it is
+  /// counted.
   SlicedFile(std::string file, lab::ReadOptions read_options)
       : path(std::move(file)),
         options(std::move(read_options)),
@@ -43,12 +43,12 @@ struct SlicedFile {
   std::string path;
   lab::ReadOptions options;
   bool is_rounded;
-  std::optional<lab::BoxFile> opened{};  ///< on rank 0, and its slice taken: a pipe cannot be opened again
+  std::optional<lab::BoxFile> opened{};  ///< kept open on rank 0, because a pipe cannot be opened again
   int dimension = 2;
   lab::Precision precision = lab::Precision::float32;
   bool has_slices =
-      false;  ///< which each rank reads by itself; otherwise rank 0 reads all and sends them out
-  FileIdentity identity{};  ///< where there are slices
+      false;  ///< each rank reads its own slice; otherwise rank 0 reads all and distributes them
+  FileIdentity identity{};  ///< only if there are slices
 };
 
 inline void open(SlicedFile& file) {
@@ -66,7 +66,7 @@ inline bool take_slice(lab::BoxFile& file) {
       file.frames);
 }
 
-/// A hash of blocks spread evenly over a file: of all of it up to 256 KiB.
+/// Hash of blocks spread evenly over a file; of the whole file up to 256 KiB.
 inline std::uint64_t sample_of(const std::string& path, std::uint64_t bytes) {
   constexpr std::uint64_t blocks = 64;
   constexpr std::uint64_t block_bytes = 4096;
@@ -85,7 +85,7 @@ inline std::uint64_t sample_of(const std::string& path, std::uint64_t bytes) {
   return hash;
 }
 
-/// Of an open file whose slice has not been taken.
+/// Identity of an open file, before its slice is taken.
 inline FileIdentity identity_of(const SlicedFile& file) {
   FileIdentity identity;
   identity.bytes = std::filesystem::file_size(file.path);
@@ -117,8 +117,8 @@ inline void check_same_file(const SlicedFile& file) {
                                rank(), file.path));
 }
 
-/// Has rank 0 open the file, and tells all what it is. A pipe or a compressed file has no slices: only one
-/// process can read the one, and the other only from its beginning.
+/// Lets rank 0 open the file and describe it to all ranks. Pipes and compressed files have no slices: only
+/// one process can read a pipe, and a compressed file can be read only from its beginning.
 inline void look_at(SlicedFile& file) {
   on_all([&] {
     if (rank() != 0) return;
@@ -137,7 +137,7 @@ inline void look_at(SlicedFile& file) {
   broadcast(&file.identity, sizeof(file.identity));
 }
 
-/// The boxes of the first frame, or of the slice that was taken, with coordinates of type Real.
+/// The boxes of the first frame, or of the slice, with coordinates of type Real.
 template <int D, typename Real>
 std::vector<Box<D, Real>> read_first(lab::BoxFile file) {
   const lab::AnyFrameReader any =
@@ -150,7 +150,7 @@ std::vector<Box<D, Real>> read_first(lab::BoxFile file) {
   return boxes;
 }
 
-/// Gives each rank its slice of what rank 0 has read.
+/// Gives each rank its slice of the boxes that rank 0 has read.
 template <int D, typename Real>
 void send_out(std::vector<Box<D, Real>>& boxes) {
   std::uint64_t all = boxes.size();
@@ -173,7 +173,7 @@ void send_out(std::vector<Box<D, Real>>& boxes) {
   boxes.resize(own);
 }
 
-/// This rank's slice of the file's boxes. Called once.
+/// This rank's slice of the file's boxes. Call it once.
 template <int D, typename Real>
 std::vector<Box<D, Real>> read_slice(SlicedFile& file) {
   std::vector<Box<D, Real>> boxes;

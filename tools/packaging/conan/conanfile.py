@@ -18,8 +18,8 @@ class Broadside(ConanFile):
     options = {
         "shared": [True, False],
         "fPIC": [True, False],
-        "threads": [True, False],  # by oneTBB
-        "system": [True, False],  # Highway and oneTBB as the system has them, instead of Conan's
+        "threads": [True, False],  # with oneTBB
+        "system": [True, False],  # use the system's Highway and oneTBB instead of Conan's
     }
     default_options = {"shared": False, "fPIC": True, "threads": True, "system": False}
     implements = ["auto_shared_fpic"]
@@ -80,7 +80,7 @@ class Broadside(ConanFile):
         self.cpp_info.libs = ["broadside"]
         if self.options.shared:
             return
-        # What a C compiler does not link by itself.
+        # Libraries that a C compiler does not link by itself.
         self.cpp_info.system_libs = [library for library in (stdcpp_library(self), "m") if library]
         if self.options.system:
             self.cpp_info.system_libs += ["hwy"] + (["tbb"] if self.options.threads else [])

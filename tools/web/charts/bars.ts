@@ -1,4 +1,5 @@
-// A bar for each text. They lie where the texts are long or many, so that these can be read.
+// Bar charts: one bar per label. Bars are horizontal if labels are long or many, so that they stay
+// readable.
 import { above, axisName, below, categoryAxis, frame, shortened, textWidth, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
@@ -10,29 +11,29 @@ export interface BarsSpec {
   x: { name: string; unit: string };
   y: AxisSpec;
   labels: readonly string[];
-  /** Of each label: a number, or none. */
+  /** Value of each label, or null for none. */
   values: readonly (number | null)[];
-  /** Of each label. */
+  /** Colour of each label. */
   colours: readonly string[];
-  /** Where bars begin, marked by a line. */
+  /** Start of the bars, marked by a line. */
   from: number;
-  /** Of each label: what stands at its bar, and in full where there is room. */
+  /** Text at each label's bar: a short one, and a full one for charts with enough room. */
   texts?: readonly { short: string; full: string }[];
-  /** Likewise: the interval in which its value lies, or none. */
+  /** Interval of each label's value, if any. */
   whiskers?: readonly (Interval | undefined)[];
 }
 
 function describe(spec: BarsSpec, text: (value: number, at: number) => string): string {
-  const most = 40;
-  const parts = spec.labels.slice(0, most).map((label, i) => {
+  const maxBars = 40;
+  const parts = spec.labels.slice(0, maxBars).map((label, i) => {
     const value = spec.values[i];
     return ` ${label}: ${value === null || value === undefined ? "none" : text(value, i)}.`;
   });
-  const more = spec.labels.length > most ? ` And ${spec.labels.length - most} more.` : "";
+  const more = spec.labels.length > maxBars ? ` And ${spec.labels.length - maxBars} more.` : "";
   return `${spec.title}. Bar chart of ${axisName(spec.y)} by ${axisName(spec.x)}.${parts.join("")}${more}`;
 }
 
-/** Bars of `spec`, the first label at the top or at the left. */
+/** Draws the bars of `spec`, with the first label at the top or on the left. */
 export function drawBars(spec: BarsSpec, place: Place): Drawn {
   const { theme } = place;
   const whiskers = spec.whiskers ?? [];
@@ -47,8 +48,8 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
     scale: false,
     ...(axis["min"] === undefined ? {} : { startValue: spec.from }),
   };
-  const most = place.width < 520 ? 22 : 42;
-  const labels = spec.labels.map((label) => (lying ? shortened(label, most) : label));
+  const maxCharacters = place.width < 520 ? 22 : 42;
+  const labels = spec.labels.map((label) => (lying ? shortened(label, maxCharacters) : label));
   const labelAxis = categoryAxis(labels, place);
   const height = lying ? 56 + spec.labels.length * 24 : Math.round(Math.min(360, Math.max(260, place.width * 0.5)));
   return {
@@ -81,7 +82,7 @@ export function drawBars(spec: BarsSpec, place: Place): Drawn {
         data: spec.values.map((value, at) => ({
           value: value ?? "-",
           ...(spec.colours[at] === undefined ? {} : { itemStyle: { color: spec.colours[at] } }),
-          // Its whisker carries the text.
+          // The whisker carries the text.
           ...(whiskers[at] === undefined ? {} : { label: { show: false } }),
         })),
         label: {

@@ -1,8 +1,8 @@
-// How algorithms rank in each case and over all cases, by the rules of lab/measure/ranking.cpp.
+// Ranks algorithms in each case and over all cases, by the rules of lab/measure/ranking.cpp.
 import type { Measurement, Ratio, RatioName } from "./data.ts";
 import { geometricMean, grouped } from "./numbers.ts";
 
-/** What was measured on the same boxes. */
+/** Measurements of the same boxes. */
 export interface Case {
   name: string;
   scene: string;
@@ -26,13 +26,15 @@ export function percent(share: number): string {
   return `${Number((share * 100).toPrecision(2))} %`;
 }
 
-/** An algorithm, with its threads where there are several and its spec does not say how many. */
+/**
+ * Name of an algorithm, with its number of threads if it uses several and the spec does not say so.
+ */
 export function labelOf(measurement: Measurement): string {
   const saysThreads = measurement.algorithm.split(":").includes(`threads=${measurement.threads}`);
   return measurement.threads > 1 && !saysThreads ? `${measurement.algorithm} (${measurement.threads} threads)` : measurement.algorithm;
 }
 
-/** Of measurements, in the order in which the cases come. */
+/** The cases of the measurements, in their order. */
 export function casesOf(measurements: readonly Measurement[]): Case[] {
   const cases = new Map<string, Case>();
   for (const measurement of measurements) {
@@ -50,25 +52,30 @@ export function casesOf(measurements: readonly Measurement[]): Case[] {
   return [...cases.values()];
 }
 
-/** The measurements that have a time, the fastest first. */
+/** The measurements that have a time, fastest first. */
 export function ranking(of: Case): Timed[] {
   return of.measurements.filter(isTimed).sort((a, b) => a.median_ms - b.median_ms);
 }
 
-/** Of a kind's, the one that the case's ratios of this name are to; where there are no ratios, the fastest. */
+/**
+ * The measurement that the case's ratios of this name refer to; the fastest of `those` if the case
+ * has no ratios.
+ */
 function referenceOf(of: Case, name: RatioName, those: readonly Timed[]): Timed | undefined {
   const spec = of.measurements.find((measurement) => measurement[name] !== null)?.[name]?.of;
   return those.find(({ algorithm }) => algorithm === spec) ?? those[0];
 }
 
-/** The fastest of ours other than auto, which takes one of the others; auto where it is the only one. */
+/**
+ * Our fastest algorithm other than auto, which runs one of the others; auto if it is the only one.
+ */
 export function bestOwn(of: Case): Timed | undefined {
   const own = ranking(of).filter((measurement) => measurement.kind === "own");
   const others = own.filter(({ algorithm }) => algorithm.split(":", 1)[0] !== "auto");
   return referenceOf(of, "ratio_to_best_own", others.length > 0 ? others : own);
 }
 
-/** The time of the fastest peer over that of our best; undefined where one of them is not there. */
+/** The fastest peer's time over that of our best; undefined if either is missing. */
 export function leadOf(of: Case): { ratio: Ratio; own: Timed; peer: Timed } | undefined {
   const own = bestOwn(of);
   const peer = referenceOf(of, "ratio_to_fastest_peer", ranking(of).filter(({ kind }) => kind === "peer"));
@@ -81,11 +88,11 @@ export interface Standing {
   kind: Measurement["kind"];
   cases: number;
   fastest: number;
-  /** Of its times over those of the fastest, the geometric mean. */
+  /** Geometric mean of its times over those of the fastest. */
   ratio: number;
 }
 
-/** Of every algorithm that has a time, the best first. */
+/** Standing of every algorithm that has a time, best first. */
 export function standings(cases: readonly Case[]): Standing[] {
   const ratios = new Map<string, { kind: Measurement["kind"]; ratios: number[]; fastest: number }>();
   for (const of of cases) {

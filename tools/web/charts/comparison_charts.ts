@@ -1,4 +1,4 @@
-// The charts of a comparison.
+// Charts of a comparison.
 import { drawBars } from "./bars.ts";
 import type { BarsSpec } from "./bars.ts";
 import { isTimed, labelOf, leadOf, percent, ranking, standings } from "./comparison.ts";
@@ -20,7 +20,7 @@ function colourOf(measurement: { algorithm: string }, theme: Theme): string {
 
 const noText = { short: "", full: "none" };
 
-/** The values of a bar for each ratio, with its interval as a whisker. */
+/** Bar values for ratios, with their intervals as whiskers. */
 function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "values" | "whiskers" | "texts"> {
   return {
     values: ratios.map((ratio) => ratio?.median ?? null),
@@ -29,7 +29,7 @@ function ratioBars(ratios: readonly (Ratio | null)[]): Pick<BarsSpec, "values" |
   };
 }
 
-/** The times of all algorithms in a case, as multiples of the fastest. */
+/** Times of all algorithms in a case, as multiples of the fastest. */
 export function drawRatios(of: Case, place: Place): Drawn {
   const ranked = ranking(of);
   return drawBars({
@@ -43,7 +43,7 @@ export function drawRatios(of: Case, place: Place): Drawn {
   }, place);
 }
 
-/** The geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
+/** Geometric mean, over all cases, of each algorithm's time as a multiple of the fastest. */
 export function drawStandings(cases: readonly Case[], place: Place): Drawn {
   const shown = standings(cases);
   return drawBars({
@@ -74,17 +74,17 @@ export function drawLeads(cases: readonly Case[], place: Place): Drawn {
   }, place);
 }
 
-/** A case in as few characters as tell it: "uniform 2D 10k". */
+/** The shortest unambiguous name of a case: "uniform 2D 10k". */
 export function shortName(of: Case): string {
   return `${of.scene.replace(":boxes=", " ")} ${of.dimension}D ${sizeText(of)}`;
 }
 
-/** Its boxes, and how many of these move. */
+/** The number of boxes, and of moving boxes. */
 function sizeText(of: Case): string {
   return short(Number(of.boxes.toPrecision(3))) + (of.mode === "track" ? `, ${percent(of.moving)}` : "");
 }
 
-/** The scenes that were measured with several numbers of boxes, all else being equal. */
+/** Scenes measured with several numbers of boxes and otherwise equal settings. */
 export function scaledScenes(cases: readonly Case[]): { scene: string; dimension: number; mode: string; moving: number }[] {
   const groups = new Map<string, { first: Case; counts: Set<number> }>();
   for (const of of cases) {
@@ -97,10 +97,13 @@ export function scaledScenes(cases: readonly Case[]): { scene: string; dimension
     .map(({ first: { scene, dimension, mode, moving } }) => ({ scene, dimension, mode, moving }));
 }
 
-/** Time over the number of boxes in one of scaledScenes(), a line for each of at most `most` algorithms. */
+/**
+ * Time over the number of boxes for one of scaledScenes(), with one line for each of at most `maxLines`
+ * algorithms.
+ */
 export function drawScaling(
   cases: readonly Case[], of: ReturnType<typeof scaledScenes>[number], place: Place,
-  kinds: readonly Measurement["kind"][] = ["own"], most = 8,
+  kinds: readonly Measurement["kind"][] = ["own"], maxLines = 8,
 ): Drawn {
   const chosen = cases.filter((other) => other.scene === of.scene && other.dimension === of.dimension &&
     other.mode === of.mode && (of.mode === "find" || percent(other.moving) === percent(of.moving)));
@@ -114,12 +117,12 @@ export function drawScaling(
     }
   }
   const last = Math.max(...chosen.map((other) => other.boxes));
-  // The algorithms that get furthest, and of these the fastest there.
+  // Prefer algorithms with a time for the largest number of boxes, and of these the fastest.
   const rank = (points: readonly [number, number][]): number => {
     const end = points.reduce((a, b) => (b[0] > a[0] ? b : a));
     return end[0] === last ? end[1] : Infinity;
   };
-  const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, most);
+  const shown = [...lines].sort((a, b) => rank(a[1]) - rank(b[1])).slice(0, maxLines);
   const moves = of.mode === "track" ? `, ${percent(of.moving)} moving` : "";
   return drawLines({
     title: `Time over the number of boxes: ${of.scene}, ${of.dimension}D${moves}`,
@@ -131,10 +134,12 @@ export function drawScaling(
   }, place);
 }
 
-/** The times of a moving case's frames, one history after the other, with each algorithm's 99th percentile. */
-export function drawFrames(of: Case, place: Place, most = 6): Drawn {
-  const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, most);
-  // The slow ones were shown fewer histories.
+/**
+ * Frame times of a moving case, one history after the other, with each algorithm's 99th percentile.
+ */
+export function drawFrames(of: Case, place: Place, maxLines = 6): Drawn {
+  const shown = ranking(of).filter((measurement) => (measurement.samples_ms?.length ?? 0) > 1).slice(0, maxLines);
+  // Slow algorithms were measured on fewer histories.
   const fewest = Math.min(...shown.map((measurement) => measurement.samples_ms?.length ?? 0));
   const frames = shown[0]?.frames ?? 0;
   return drawLines({
@@ -150,7 +155,10 @@ export function drawFrames(of: Case, place: Place, most = 6): Drawn {
   }, place);
 }
 
-/** The fastest in each case: scenes with their numbers of boxes up, dimensions across. */
+/**
+ * The fastest algorithm of each case: scenes and their numbers of boxes on the y axis, dimensions
+ * on the x axis.
+ */
 export function drawWinners(cases: readonly Case[], place: Place): Drawn {
   const rowOf = (of: Case): string => `${of.scene.replace(":boxes=", " ")} ${sizeText(of)}`;
   const fields = cases.flatMap((of) => {

@@ -1,4 +1,5 @@
-// What the program writes of a comparison ("broadside.results/2"). docs/schemas/ describes every field.
+// The program's output for a comparison ("broadside.results/2"). docs/schemas/ describes every
+// field.
 
 export interface Machine {
   cpu: string | null;
@@ -17,17 +18,17 @@ export interface Build {
 
 /** One entry's time over another's. */
 export interface Ratio {
-  /** The spec of the other. */
+  /** Spec of the other entry. */
   of: string;
   median: number;
-  /** The 95 % interval; null where it is not known. */
+  /** The 95 % interval; null if unknown. */
   low: number | null;
   high: number | null;
   /** Rounds in which both took part. */
   rounds: number;
 }
 
-/** One algorithm in one case. What was skipped has no times. */
+/** One algorithm in one case. Skipped algorithms have no times. */
 export interface Measurement {
   scene: string;
   scene_parameters: Record<string, string>;
@@ -40,7 +41,10 @@ export interface Measurement {
   teleport: number | null;
   algorithm: string;
   version: string;
-  /** Broadside's own, the draft's listings, those of the literature, other libraries', or one that a user added. */
+  /**
+   * Broadside's own, from the draft's listings, from the literature, another library's, or added by
+   * a user.
+   */
   kind: "own" | "paper" | "literature" | "peer" | "user";
   mode: "find" | "track";
   threads: number;
@@ -51,18 +55,18 @@ export interface Measurement {
   /** "by definition" or "cross-checked by 9 structures of 6 libraries". */
   verified_by: string | null;
   skipped: string | null;
-  /** In how many rounds it was timed. */
+  /** Number of rounds in which it was timed. */
   rounds: number;
   median_ms: number | null;
   min_ms: number | null;
   p99_ms: number | null;
   max_ms: number | null;
   samples_ms: number[] | null;
-  /** Each null where there is nothing to compare with. */
+  /** Each is null if there is nothing to compare with. */
   ratio_to_fastest: Ratio | null;
   ratio_to_best_own: Ratio | null;
   ratio_to_fastest_peer: Ratio | null;
-  /** Whether its samples lie too far apart to be trusted. */
+  /** Whether its samples vary too much to be trusted. */
   unsteady: boolean | null;
   build_ms: number | null;
   ns_per_box: number | null;
@@ -79,13 +83,13 @@ export type RatioName = "ratio_to_fastest" | "ratio_to_best_own" | "ratio_to_fas
 
 export interface Comparison {
   schema: "broadside.results/2";
-  /** "2026-11-21". */
+  /** For example "2026-11-21". */
   date: string;
   machine: Machine;
   build: Build;
   command: string[];
   stopped: boolean;
-  /** Processor time over wall time of the run, about 1 for one thread. */
+  /** Processor time over wall-clock time of the run, about 1 for one thread. */
   processor_share: number;
   busy: boolean;
   measurements: Measurement[];

@@ -1,4 +1,4 @@
-// Of ECharts, what our charts take and no more.
+// The parts of ECharts that our charts use.
 import { BarChart, CustomChart, LineChart } from "echarts/charts";
 import { AriaComponent, GridComponent, LegendComponent, MarkLineComponent, TooltipComponent } from "echarts/components";
 import * as core from "echarts/core";

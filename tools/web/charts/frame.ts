@@ -1,17 +1,17 @@
-// What all charts have in common: axes, legend, tooltip, a description for screen readers.
+// Shared by all charts: axes, legend, tooltip, and a description for screen readers.
 import type { EChartsOption } from "echarts";
 
 import { short } from "./numbers.ts";
 import type { Theme } from "./theme.ts";
 
-/** Where a chart is shown. */
+/** Where and how a chart is shown. */
 export interface Place {
   theme: Theme;
   /** In CSS pixels. */
   width: number;
 }
 
-/** A chart: what ECharts takes, how high it wants to be, and what it shows in words. */
+/** A chart: its ECharts option, its height, and a description in words. */
 export interface Drawn {
   option: EChartsOption;
   height: number;
@@ -30,21 +30,21 @@ export function axisName(axis: { name: string; unit: string }): string {
   return axis.unit === "" ? axis.name : `${axis.name} (${axis.unit})`;
 }
 
-/** How wide a text is at most, more or less, at 12 px; the same with and without a DOM. */
+/** Estimated width of a text at 12 px, on the high side; the same with and without a DOM. */
 export function textWidth(text: string): number {
   return text.length * 7.2;
 }
 
-/** Shortened in the middle, where it is longer than `most` characters. */
-export function shortened(text: string, most: number): string {
-  if (text.length <= most) return text;
-  const half = Math.floor((most - 1) / 2);
-  return `${text.slice(0, most - 1 - half)}…${text.slice(text.length - half)}`;
+/** The text, shortened in the middle if it is longer than `maxLength` characters. */
+export function shortened(text: string, maxLength: number): string {
+  if (text.length <= maxLength) return text;
+  const half = Math.floor((maxLength - 1) / 2);
+  return `${text.slice(0, maxLength - 1 - half)}…${text.slice(text.length - half)}`;
 }
 
 const legendLine = 22;
 
-/** How many lines a legend takes at a width. */
+/** Number of lines of a legend at a given width. */
 function legendLines(names: readonly string[], width: number): number {
   let lines = 1;
   let used = 0;
@@ -63,23 +63,26 @@ export function legendHeight(names: readonly string[], width: number): number {
   return names.length < 2 ? 0 : legendLines(names, width) * legendLine + 6;
 }
 
-/** Ticks of a logarithmic axis, and its ends: powers of ten, or 1, 2 and 5 where there are few of these. */
+/**
+ * Ticks and ends of a logarithmic axis: powers of ten, or also 2 and 5 times these if there are
+ * few.
+ */
 export function logTicks(values: readonly number[]): { min: number; max: number; ticks: number[] } {
   const positive = values.filter((value) => value > 0);
-  const least = Math.min(...positive);
-  const most = Math.max(...positive);
-  const decades = Math.log10(most / least);
+  const lowest = Math.min(...positive);
+  const highest = Math.max(...positive);
+  const decades = Math.log10(highest / lowest);
   const steps = decades > 3 ? [1] : decades > 1.5 ? [1, 3] : [1, 2, 5];
   const ticks: number[] = [];
-  for (let power = Math.floor(Math.log10(least)) - 1; power <= Math.ceil(Math.log10(most)); ++power) {
+  for (let power = Math.floor(Math.log10(lowest)) - 1; power <= Math.ceil(Math.log10(highest)); ++power) {
     for (const step of steps) ticks.push(Number((step * 10 ** power).toPrecision(6)));
   }
-  const first = ticks.findLastIndex((tick) => tick <= least * 1.0001);
-  const last = ticks.findIndex((tick) => tick >= most * 0.9999);
+  const first = ticks.findLastIndex((tick) => tick <= lowest * 1.0001);
+  const last = ticks.findIndex((tick) => tick >= highest * 0.9999);
   const shown = ticks.slice(first, last + 1);
-  const min = shown[0] ?? least;
-  const max = shown[shown.length - 1] ?? most;
-  // At most some eight labels, of many decades every second or third.
+  const min = shown[0] ?? lowest;
+  const max = shown[shown.length - 1] ?? highest;
+  // At most about eight labels: for many decades, every second or third.
   const stride = Math.ceil(shown.length / 8);
   return { min, max, ticks: shown.filter((_, i) => i % stride === 0) };
 }
@@ -119,7 +122,7 @@ export function categoryAxis(labels: readonly string[], place: Place): AxisPart 
   };
 }
 
-/** What stands under the horizontal axis. */
+/** Title below the horizontal axis. */
 export function below(name: string, place: Place): AxisPart {
   return {
     name,
@@ -129,7 +132,7 @@ export function below(name: string, place: Place): AxisPart {
   };
 }
 
-/** What stands over the vertical axis, from its left end on. */
+/** Title above the vertical axis, starting at its left end. */
 export function above(name: string, place: Place): AxisPart {
   return {
     name,
@@ -139,7 +142,7 @@ export function above(name: string, place: Place): AxisPart {
   };
 }
 
-/** The option that every chart begins with. */
+/** The base option of every chart. */
 export function frame(names: readonly string[], description: string, place: Place): EChartsOption {
   const { theme } = place;
   const legend = legendHeight(names, place.width);
@@ -172,7 +175,7 @@ export function frame(names: readonly string[], description: string, place: Plac
 const symbols = ["circle", "rect", "triangle", "diamond", "emptyCircle", "emptyRect", "emptyTriangle", "emptyDiamond"];
 const dashes = ["solid", "dashed", "dotted"] as const;
 
-/** Marks that tell lines apart without their colour. */
+/** Symbols and dashes that distinguish lines without colour. */
 export function mark(index: number): { symbol: string; dash: (typeof dashes)[number] } {
   return {
     symbol: symbols[index % symbols.length] ?? "circle",

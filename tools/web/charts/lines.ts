@@ -1,4 +1,4 @@
-// Lines over a number: times over the number of boxes, frame times.
+// Line charts over a number: times by number of boxes, frame times.
 import { above, axisName, below, frame, legendHeight, mark, valueAxis } from "./frame.ts";
 import type { AxisSpec, Drawn, Place } from "./frame.ts";
 import { rounded } from "./numbers.ts";
@@ -6,9 +6,9 @@ import { coloursOf } from "./theme.ts";
 
 export interface Line {
   name: string;
-  /** By x. */
+  /** Sorted by x. */
   points: readonly (readonly [number, number])[];
-  /** A level that is marked with a dashed line: [what it is, where]. */
+  /** A level marked by a dashed line: [name, value]. */
   level?: readonly [string, number];
   dashed?: boolean;
 }
@@ -18,11 +18,11 @@ export interface LinesSpec {
   x: AxisSpec;
   y: AxisSpec;
   lines: readonly Line[];
-  /** Without marks on the points, which are many. */
+  /** Without symbols on the points, for lines of many points. */
   plain?: boolean;
 }
 
-/** A number and its unit, where it has one. */
+/** A number with its unit, if it has one. */
 function withUnit(value: number, unit: string): string {
   return unit === "" ? rounded(value) : `${rounded(value)} ${unit}`;
 }
@@ -38,7 +38,7 @@ function describe(spec: LinesSpec, lines: readonly Line[]): string {
     `${spec.x.log || spec.y.log ? ", logarithmic" : ""}.${parts.join("")}`;
 }
 
-/** Lines of `spec`. Points that a logarithmic axis cannot show are left out. */
+/** Draws the lines of `spec`. Points that a logarithmic axis cannot show are left out. */
 export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const shown = (value: number, axis: AxisSpec): boolean => !axis.log || value > 0;
   const lines = spec.lines
@@ -49,7 +49,7 @@ export function drawLines(spec: LinesSpec, place: Place): Drawn {
   const description = describe(spec, lines);
   const all = lines.flatMap((line) => line.points);
   const levels = lines.flatMap((line) => (line.level === undefined ? [] : [line.level[1]]));
-  // A few things that are counted: no ticks between them.
+  // A small count needs no fractional ticks.
   const xs = all.map(([at]) => at);
   const counts = !spec.x.log && xs.every((at) => Number.isInteger(at) && at >= 0 && at <= 20);
   const legend = legendHeight(names, place.width);

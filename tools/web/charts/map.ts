@@ -1,4 +1,5 @@
-// The map of winners: a field for each x and y, coloured by the fastest there, and labelled with its name too.
+// The map of winners: a cell for each x and y, coloured by the fastest algorithm and labelled with
+// its name.
 import type { CustomSeriesRenderItem } from "echarts";
 
 import { axisName, below, categoryAxis, font, frame, legendHeight, shortened, textWidth } from "./frame.ts";
@@ -9,7 +10,7 @@ export interface Field {
   x: string;
   y: string;
   value: string;
-  /** What else a tooltip says of it. */
+  /** Additional tooltip text. */
   note?: string;
 }
 
@@ -22,7 +23,7 @@ export interface MapSpec {
   fields: readonly Field[];
 }
 
-/** Black or white, whichever reads better on a colour such as "#0072b2". */
+/** Black or white, whichever has more contrast with a colour such as "#0072b2". */
 function inkOn(colour: string): string {
   const part = (at: number): number => {
     const value = parseInt(colour.slice(at, at + 2), 16) / 255;
@@ -51,7 +52,7 @@ export function drawMap(spec: MapSpec, place: Place): Drawn {
     const [x = 0, y = 0] = api.coord([api.value(0), api.value(1)]);
     const size = api.size?.([1, 1]);
     const [width = 0, height = 0] = Array.isArray(size) ? size : [];
-    const most = Math.floor((width - 8) / 6.2);
+    const maxCharacters = Math.floor((width - 8) / 6.2);
     return {
       type: "group",
       children: [
@@ -63,7 +64,7 @@ export function drawMap(spec: MapSpec, place: Place): Drawn {
         {
           type: "text",
           style: {
-            text: most < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), most), x, y, fill: inkOn(colour),
+            text: maxCharacters < Math.min(6, name.length) ? "" : shortened(name.replaceAll("_", " "), maxCharacters), x, y, fill: inkOn(colour),
             font: `11px ${font}`,
             align: "center", verticalAlign: "middle",
           },

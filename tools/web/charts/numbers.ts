@@ -1,4 +1,4 @@
-// Numbers as a reader wants them: three digits that count, thousands apart.
+// Formats numbers for readers: three significant digits, with separators of thousands.
 
 /** 1234567 as "1,234,567". */
 export function grouped(value: number): string {
@@ -8,7 +8,7 @@ export function grouped(value: number): string {
   return sign + digits + (fraction === undefined ? "" : "." + fraction);
 }
 
-/** To three digits; whole numbers from 100 on as they are. */
+/** Three significant digits; whole numbers from 100 on in full. */
 export function rounded(value: number): string {
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -28,14 +28,14 @@ export function short(value: number): string {
   return trimmed(value);
 }
 
-/** A time in the unit that suits it. */
+/** A time in a suitable unit. */
 export function timeText(milliseconds: number): string {
   if (milliseconds >= 1000) return rounded(milliseconds / 1000) + " s";
   if (milliseconds < 0.001) return rounded(milliseconds * 1e6) + " ns";
   return milliseconds < 1 ? rounded(milliseconds * 1000) + " µs" : rounded(milliseconds) + " ms";
 }
 
-/** A size in the unit that suits it, as in the program's tables: 1 kB is 1,000 bytes. */
+/** A size in a suitable unit, as in the program's tables: 1 kB is 1,000 bytes. */
 export function bytesText(bytes: number): string {
   if (bytes < 1000) return `${Math.round(bytes)} B`;
   if (bytes < 999.5e3) return `${rounded(bytes / 1e3)} kB`;
@@ -47,7 +47,10 @@ export function geometricMean(values: readonly number[]): number {
   return Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
 }
 
-/** A ratio of two times to two significant digits, which is what intervals allow: "0.97", "1.0", "19", "1,300". */
+/**
+ * A ratio of two times to two significant digits, as precise as intervals allow: "0.97", "1.0",
+ * "19", "1,300".
+ */
 export function ratioText(ratio: number): string {
   const roundedOff = ratio.toPrecision(2);
   return Number(roundedOff) < 10 ? roundedOff : grouped(Number(roundedOff));

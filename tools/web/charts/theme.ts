@@ -1,13 +1,14 @@
-// The two themes, and colours that colour-blind people can tell apart (after Okabe and Ito, and Tol's muted scheme).
+// The two themes, with colours for colour-blind readers (after Okabe and Ito, and Tol's muted
+// scheme).
 
 export interface Theme {
   name: "light" | "dark";
   text: string;
   muted: string;
-  /** Lines of the grid. */
+  /** Grid lines. */
   line: string;
   background: string;
-  /** For what has no colour of its own, in this order. */
+  /** Colours for names without a colour of their own, in this order. */
   palette: readonly string[];
 }
 
@@ -29,7 +30,10 @@ export const dark: Theme = {
   palette: ["#4aa8e8", "#f0803c", "#2fc49a", "#e08fbe", "#f0b43c", "#9fd4f5", "#a3abb8", "#d6c94a"],
 };
 
-/** [light, dark] by family: our algorithms and the paper's of the same kind; then libraries and what is from the literature. */
+/**
+ * [light, dark] by family: our algorithms and the paper's of the same kind; then libraries and
+ * algorithms from the literature.
+ */
 const families: Record<string, readonly [string, string]> = {
   auto: ["#1d2430", "#f4f6f9"],
   brute_force: ["#7b8494", "#99a2b0"],
@@ -42,7 +46,7 @@ const families: Record<string, readonly [string, string]> = {
   bullet: ["#8a2a55", "#d4719f"],
   cgal: ["#2e7d3c", "#6cc07b"],
   chipmunk: ["#8c7a00", "#d6c94a"],
-  // Wins as the other of its library does, often in the same map.
+  // It often wins in the same map as the other structure of its library.
   chipmunk_space_hash: ["#5b7d00", "#a9cf4a"],
   embree: ["#2f86c6", "#9fd4f5"],
   fcl: ["#c05a6b", "#ec93a1"],
@@ -56,7 +60,10 @@ const families: Record<string, readonly [string, string]> = {
   two_layer_grid: ["#b0782a", "#e3b777"],
 };
 
-/** The family that an algorithm is named for: "grid" of grid:cell=2 and of paper_grid, "bullet" of bullet_dbvt. */
+/**
+ * The family in an algorithm's name: "grid" of grid:cell=2 and of paper_grid, "bullet" of
+ * bullet_dbvt.
+ */
 export function familyOf(algorithm: string): string | undefined {
   const name = (algorithm.split(/[: (,]/, 1)[0] ?? "").replace(/^paper_/, "");
   if (name in families) return name;
@@ -71,8 +78,8 @@ export function familyColour(algorithm: string, theme: Theme): string | undefine
 }
 
 /**
- * A colour for each name: its family's where all are of different families or of one library each; else those of a
- * family that is there already get the next of the palette that is not taken.
+ * A colour for each name: its family's if all names are of different families or of one library
+ * each. Otherwise, further names of a family get the next free colours of the palette.
  */
 export function coloursOf(names: readonly string[], theme: Theme): string[] {
   const taken = new Set<string>();

@@ -1,16 +1,16 @@
-// Intervals of bars: a line from end to end with a cap at each, and the bar's text behind it.
+// Intervals of bars: a line with a cap at each end, and the bar's text after it.
 import type { CustomSeriesOption, CustomSeriesRenderItem } from "echarts";
 
 import type { Place } from "./frame.ts";
 import type { Interval } from "./ratios.ts";
 
 export interface WhiskersSpec {
-  /** One for each bar, with the text that stands behind it; undefined where a bar has none. */
+  /** One for each bar, with the text after it; undefined if a bar has none. */
   whiskers: readonly (Interval | undefined)[];
   texts: readonly string[];
-  /** Where the text must not stand before. */
+  /** Leftmost position of the text. */
   from: number;
-  /** Whether the bars lie. */
+  /** Whether the bars are horizontal. */
   lying: boolean;
 }
 
@@ -34,7 +34,7 @@ export function whiskerSeries({ whiskers, texts, from, lying }: WhiskersSpec, { 
       type: "group",
       silent: true,
       children: [
-        // A rim in the background's colour: a bar may be as dark as the whisker.
+        // An outline in the background's colour, because a bar may be as dark as its whisker.
         line(theme.background, 3.5),
         line(theme.text, 1.3),
         {

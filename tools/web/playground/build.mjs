@@ -1,4 +1,5 @@
-// Bundles the playground into one page that asks for nothing: it opens from a folder as well as from a server.
+// Bundles the playground into one self-contained page, which opens from a folder as well as from a
+// server.
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -9,12 +10,12 @@ import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-/** For an engine that needs no module. */
+/** For an engine without modules. */
 const nothing = gzipSync("").toString("base64");
 
 const licences = "/*! With Preact, signals, twgl.js, uPlot and gifenc, all under the MIT licence. */";
 
-/** Tests put a naive engine in the place of the library's. */
+/** Tests replace the library's engine by a naive one. */
 function withEngine(path) {
   return {
     name: "engine",
@@ -24,7 +25,7 @@ function withEngine(path) {
 
 const modules = join(here, "../../../build/playground/engine");
 
-/** A module of the engine as bench/unpack.ts takes it. */
+/** An engine module, packed for bench/unpack.ts. */
 function packed(name) {
   return gzipSync(readFileSync(join(modules, name)), { level: 9 }).toString("base64");
 }
@@ -41,12 +42,12 @@ async function script(entry, engine) {
     legalComments: "none",
     jsx: "automatic",
     jsxImportSource: "preact",
-    // The page holds them as text, compressed.
+    // The page embeds them as compressed text.
     loader: { ".wasm": "empty" },
     plugins: engine === undefined ? [] : [withEngine(engine)],
     logLevel: "warning",
   });
-  // A script ends where its text says so, were it in a string.
+  // "</script" would end the script, even inside a string.
   return file.text.trim().replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 }
 
@@ -54,10 +55,10 @@ function hash(text) {
   return `'sha256-${createHash("sha256").update(text, "utf8").digest("base64")}'`;
 }
 
-/** Writes index.html to a folder. `engine`: a module in the place of the library's. */
+/** Writes index.html to a folder. `engine` is a module that replaces the library's. */
 export async function buildPlayground(folder, engine) {
   const body = await script("bench/main.ts", engine);
-  // A function, so that the page can run it in itself where there is no worker, and give its text to a worker.
+  // A function, so that the page can pass its text to a worker or, without a worker, call it.
   const bench = `function broadsideBench(self){${body}}`;
   const page = licences + await script("main.tsx", engine);
   const { outputFiles: [css] } = await build({

@@ -1,10 +1,11 @@
-// Prints what the built page costs in headless Chromium, as the table of README.md:
+// Prints the cost of the built page in headless Chromium, as the table of README.md:
 //
-//   node web/playground/frame_times.mjs [PAGE]    PAGE: build/playground/index.html if left out
+//   node web/playground/frame_times.mjs [PAGE]    PAGE: default build/playground/index.html
 //
-// The script's time is that of the page's own thread: searches run in a worker. Drawing is what the browser's drawing
-// process takes of the processor, since software draws here; other programs on the machine change it little, and frames
-// a second much. So the script and, as ratios, drawing tell of other machines.
+// The script's time is that of the page's own thread; searches run in a worker. Drawing is the
+// processor time of the browser's drawing process, because software does the drawing here. Other
+// programs on the machine affect these two little, but they affect frames per second much. The
+// script's time and, as ratios, the drawing times therefore carry over to other machines.
 import { existsSync } from "node:fs";
 import { createRequire } from "node:module";
 import { cpus } from "node:os";
@@ -40,7 +41,10 @@ async function opened(browser, hash) {
   return page;
 }
 
-/** Milliseconds from moves of a pointer that drags a box to the page's answer: the median, and nine in ten up to. */
+/**
+ * Milliseconds from pointer moves that drag a box to the page's answer: the median and the 90th
+ * percentile.
+ */
 async function dragDelays(browser) {
   const page = await opened(browser, "n=100000&moving=1&a=grid");
   await page.evaluate(() => {
@@ -57,7 +61,10 @@ async function dragDelays(browser) {
   return [delays[delays.length >> 1], delays[Math.floor(0.9 * delays.length)]];
 }
 
-/** Milliseconds from the page's start to its first frame with boxes and pairs, which is also when the module is ready. */
+/**
+ * Milliseconds from the page's start to its first frame with boxes and pairs; by then the module is
+ * ready, too.
+ */
 async function firstFrame(browser) {
   const times = [];
   for (let run = 0; run < runs; ++run) {
@@ -68,7 +75,7 @@ async function firstFrame(browser) {
   return middle(times);
 }
 
-/** Milliseconds that the drawing process has taken of the processor. */
+/** Milliseconds of processor time of the drawing process. */
 async function drawingTime(browser) {
   const session = await browser.newBrowserCDPSession();
   const { processInfo } = await session.send("SystemInfo.getProcessInfo");
@@ -83,7 +90,7 @@ async function measure(browser, { hash, frames }) {
     window.playground.scriptTimes.length = 0;
     return [window.playground.frames, performance.now()];
   });
-  await page.waitForFunction((least) => window.playground.frames >= least, begin[0] + frames,
+  await page.waitForFunction((min) => window.playground.frames >= min, begin[0] + frames,
     { polling: 50, timeout: 120_000 });
   const seen = await page.evaluate(() => ({
     script: [...window.playground.scriptTimes], search: window.playground.shown.panels[0].milliseconds,
@@ -93,7 +100,7 @@ async function measure(browser, { hash, frames }) {
   await page.close();
   const script = seen.script.sort((a, b) => a - b);
   return {
-    middle: script[script.length >> 1], most: script[Math.floor(0.9 * script.length)], search: seen.search, drawing,
+    middle: script[script.length >> 1], p90: script[Math.floor(0.9 * script.length)], search: seen.search, drawing,
     perSecond: (seen.frames - begin[0]) / (seen.now - begin[1]) * 1000,
   };
 }
@@ -105,11 +112,11 @@ console.log(`First frame with boxes and pairs, from the page's start: ${(await f
 console.log("| scene | script a frame, median | nine in ten up to | search | drawing, processor time | frames a second |");
 console.log("|---|---:|---:|---:|---:|---:|");
 for (const scene of scenes) {
-  const { middle: median, most, search, drawing, perSecond } = await measure(browser, scene);
-  console.log(`| ${scene.name} | ${median.toFixed(1)} ms | ${most.toFixed(1)} ms | ${search.toFixed(2)} ms | ` +
+  const { middle: median, p90, search, drawing, perSecond } = await measure(browser, scene);
+  console.log(`| ${scene.name} | ${median.toFixed(1)} ms | ${p90.toFixed(1)} ms | ${search.toFixed(2)} ms | ` +
     `${drawing.toFixed(0)} ms | ${perSecond.toFixed(1)} |`);
 }
-const [delay, mostDelay] = await dragDelays(browser);
+const [delay, delay90] = await dragDelays(browser);
 console.log(`\nA drag among 100,000 moving boxes is answered after ${delay.toFixed(0)} ms (median; nine in ten up to ` +
-  `${mostDelay.toFixed(0)} ms).`);
+  `${delay90.toFixed(0)} ms).`);
 await browser.close();

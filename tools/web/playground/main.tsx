@@ -1,4 +1,5 @@
-// The page's script: the state of its address, the bench, the loop and the interface.
+// The page's script: restores the state from the address, and starts the bench, the loop and the
+// interface.
 import { render } from "preact";
 
 import { startBench } from "./bench/client.ts";
@@ -19,7 +20,7 @@ function takeAddress(): void {
   state.value = read.state;
   clock.value = latest.value = read.time;
   problem.value = "";
-  // A link to a lesson shows what the lesson begins with, unless it says what else.
+  // A link to a lesson shows the lesson's initial state, unless the link says otherwise.
   if (read.state.mode === "lesson" && !/[?#&](scene|a|n)=/.test(location.search + location.hash)) openLesson(read.state.lesson);
   if (!known) {
     problem.value = `The link names a scene "${read.state.scene.name}" that there is not. Drifting boxes are shown instead.`;
@@ -28,7 +29,7 @@ function takeAddress(): void {
 }
 
 takeAddress();
-// A link followed within the page; the page's own changes of its address say nothing.
+// Fires for links followed within the page, but not for the page's own changes of its address.
 window.addEventListener("hashchange", takeAddress);
 
 let loop: Loop | undefined;
@@ -45,16 +46,16 @@ const root = document.getElementById("app")!;
 root.replaceChildren();
 render(<App stage={stage} />, root);
 
-/** For those who look into the page: tests, and pages that embed this one. */
+/** Interface for code that inspects the page: tests, and pages that embed this one. */
 const face = {
   get state() { return state.value; },
   get shown() { return shown.value; },
   get firstFrame() { return firstFrame; },
   get inPage() { return client.inPage; },
-  /** How many frames the bench has shown, and whether one is under way or due. */
+  /** How many frames the bench has shown, and whether one is in progress or due. */
   get frames() { return frames; },
   get busy() { return loop?.busy ?? true; },
-  /** Where the middle of a box is in the first panel, in pixels of the page. */
+  /** Position of the middle of a box in the first panel, in pixels of the page. */
   where: (box: number) => stage.where(box),
   address: () => writeState(state.value, clock.value),
   scriptTimes,

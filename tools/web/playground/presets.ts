@@ -1,18 +1,19 @@
-// Scenes that break algorithms, from real life: each says which one and why, and a test holds it to that.
+// Scenes from real life that break algorithms: each names an algorithm and the reason, and a test
+// verifies it.
 //
-// A scene is a function of the number of boxes, a seed and the time in seconds, so that time can be scrubbed and a link
-// shows the same boxes to everyone.
+// A scene is a function of the number of boxes, a seed and the time in seconds, so that time can be
+// scrubbed and a link shows the same boxes to everyone.
 import { bounce } from "./scene/motion.ts";
 import { normalAt, randomAt } from "./scene/random.ts";
 
-/** Where the playground's sliders stand for a preset, where they mean something. */
+/** Positions of the playground's sliders for a preset, where they apply. */
 export interface PresetSettings {
   count: number;
-  ratio: number;       // how many times as long as the smallest box the largest one is
+  ratio: number;       // size of the largest box over that of the smallest
   clustering: number;  // 0: evenly spread; 1: in one place
-  moving: number;      // the share of boxes that move
-  speed: number;       // world widths a second, of a typical mover
-  cell?: number;       // of the algorithm that breaks
+  moving: number;      // fraction of boxes that move
+  speed: number;       // world widths per second, of a typical mover
+  cell?: number;       // of the broken algorithm
   capacity?: number;
 }
 
@@ -20,8 +21,11 @@ export interface Preset {
   name: string;
   summary: string;
   dimension: 2 | 3;
-  count: number;  // boxes to begin with: settings.count
-  /** The algorithm that it breaks: a spec of a search or, if `follows`, of a tracker that is shown every frame. */
+  count: number;  // initial number of boxes: settings.count
+  /**
+   * The broken algorithm: a spec of a search or, if `follows`, of a tracker that follows every
+   * frame.
+   */
   breaks: string;
   follows: boolean;
   why: string;
@@ -29,10 +33,10 @@ export interface Preset {
   boxes(count: number, seed: number, time: number): Float32Array<ArrayBuffer>;
 }
 
-/** The world that most boxes stay in. */
+/** The region in which most boxes stay. */
 const size = [160, 100, 100] as const;
 
-/** Writes box after box: the centre and half of the extent on each axis. */
+/** Writes one box: the centre and half the extent on each axis. */
 type PlaceBox = (box: number, centre: number[], half: number[]) => void;
 
 function packed(dimension: 2 | 3, count: number, place: PlaceBox): Float32Array<ArrayBuffer> {
@@ -49,13 +53,13 @@ function packed(dimension: 2 | 3, count: number, place: PlaceBox): Float32Array<
   return boxes;
 }
 
-/** Half the extent at which `count` boxes of that size cover a part of the world. */
+/** Half the extent at which `count` boxes of that size cover a given part of the world. */
 function halfFor(count: number, dimension: 2 | 3, part: number): number {
   const volume = size.slice(0, dimension).reduce((product, side) => product * side, 1);
   return 0.5 * (part * volume / Math.max(1, count)) ** (1 / dimension);
 }
 
-/** A box that drifts through the world and turns back at its borders. */
+/** A box that drifts through the world and bounces off its borders. */
 function drift(seed: number, box: number, time: number, speed: number, centre: number[], half: readonly number[]): void {
   for (let axis = 0; axis < centre.length; ++axis) {
     const start = randomAt(seed, box, axis) * size[axis]!;
@@ -64,7 +68,7 @@ function drift(seed: number, box: number, time: number, speed: number, centre: n
   }
 }
 
-/** Sides of a box: about `usual`, each a little different. */
+/** Sides of a box: about `usual`, with some random variation. */
 function vary(seed: number, box: number, usual: number, half: number[]): void {
   for (let axis = 0; axis < half.length; ++axis) half[axis] = usual * (0.6 + 0.8 * randomAt(seed, box, 20 + axis));
 }
@@ -117,7 +121,7 @@ const hugeFloor = make({
   vary(seed, box, halfFor(count, 2, 0.05), half);
   const start = randomAt(seed, box, 0) * size[0];
   centre[0] = bounce(start, 6 * normalAt(seed, box, 10), time, half[0]!, size[0] - half[0]!);
-  // Half of them walk on the floor; the others jump.
+  // Half of them walk on the ground; the others jump.
   const height = randomAt(seed, box, 2) < 0.5 ? 0 : 60 * randomAt(seed, box, 3);
   centre[1] = 100 - half[1]! - height * Math.abs(Math.sin(time + 6 * randomAt(seed, box, 4)));
 });
@@ -223,7 +227,7 @@ const pileAtRest = make({
   why: "A search that starts anew in each frame finds out each time what it knew before.",
   settings: { count: 420, ratio: 1.2, clustering: 0, moving: 0, speed: 0 },
 }, (box, { count, seed, time, centre, half }) => {
-  // Rows of a triangle, the lowest one longest; the topmost crate wobbles once a second.
+  // Rows of a triangle with the longest at the bottom; the topmost crate wobbles once per second.
   const crate = 90 / Math.sqrt(2 * count + 1);
   const fromTop = Math.floor((Math.sqrt(8 * box + 1) - 1) / 2);
   const inRow = box - fromTop * (fromTop + 1) / 2;
@@ -264,7 +268,7 @@ const flatCity = make({
   centre[1] = half[1];
 });
 
-/** The first one is what the playground opens with. */
+/** The playground opens with the first one. */
 export const presets: readonly Preset[] = [
   driftingCrowd, hugeFloor, onePoint, sortedLine, teleporting, oneHuge, fallingForEver, clustered, pileAtRest, scaffold,
   flatCity,

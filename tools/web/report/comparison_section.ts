@@ -1,4 +1,4 @@
-// The comparison: which algorithm is fastest where, by how much, and every measurement.
+// The comparison: the fastest algorithm of each case, its lead, and every measurement.
 import { casesOf, isTimed, labelOf, leadOf, ranking, standings } from "../charts/comparison.ts";
 import type { Case } from "../charts/comparison.ts";
 import {
@@ -38,7 +38,7 @@ function tiles(comparison: Comparison, cases: readonly Case[]): HTMLElement {
     return lead === undefined ? [] : [{ of, ...lead }];
   });
   const worst = leads.reduce<(typeof leads)[number] | undefined>(
-    (least, lead) => (least === undefined || lead.ratio.median < least.ratio.median ? lead : least), undefined);
+    (min, lead) => (min === undefined || lead.ratio.median < min.ratio.median ? lead : min), undefined);
   const failed = comparison.measurements.filter(({ verified }) => verified === false);
   const skipped = comparison.measurements.filter(({ verified }) => verified === null).length;
   const measured = comparison.measurements.length - skipped;
@@ -63,7 +63,7 @@ function failures(comparison: Comparison): HTMLElement | null {
       `${measurement.skipped ?? "its pairs are not those of " + (measurement.verified_by ?? "the reference")}`))));
 }
 
-/** What whiskers are, where there are any. */
+/** Explains the whiskers, if there are any. */
 function whiskersNote(cases: readonly Case[]): string {
   const some = cases.some((of) => of.measurements.some((m) => m.ratio_to_fastest !== null && intervalOf(m.ratio_to_fastest) !== undefined));
   return some ? " Whiskers: 95 % intervals; “level” where one holds 1." : "";
@@ -134,7 +134,7 @@ function caseTable(of: Case): HTMLElement {
   });
 }
 
-/** One case after the other: ratios, frames, all that was measured. */
+/** One case at a time: ratios, frames, and all measurements. */
 function caseView(cases: readonly Case[]): HTMLElement | null {
   let of = cases[0];
   if (of === undefined) return null;

@@ -1,12 +1,13 @@
-// Tables that sort and filter: a real <table>, buttons in its head, aria-sort, and how many rows are left told aloud.
+// Tables that sort and filter: a real <table> with buttons in its head and aria-sort; the number of
+// remaining rows is announced to screen readers.
 import { grouped } from "../charts/numbers.ts";
 import { el, newId, picker, say } from "./dom.ts";
 
 export interface DataColumn<Row> {
   title: string;
-  /** What is sorted by; null stands last either way. */
+  /** Sort key; null is last in either order. */
   value: (row: Row) => number | string | null;
-  /** Standard: the value as it is. */
+  /** Default: the value as it is. */
   text?: (row: Row) => string;
 }
 
@@ -19,11 +20,11 @@ export interface DataTableSpec<Row> {
   caption: string;
   columns: readonly DataColumn<Row>[];
   rows: readonly Row[];
-  /** A list to choose from for each; lists that would offer one choice are left out. */
+  /** Each is a list of choices; lists that would offer only one choice are left out. */
   filters?: readonly DataFilter<Row>[];
-  /** Text of any length, below its row and as wide as the table is seen; null for none. */
+  /** Text of any length, below its row and as wide as the visible table; null for none. */
   note?: (row: Row) => string | null;
-  /** With a field in which rows are searched by their texts. */
+  /** Adds a search field, which matches the texts of rows. */
   search?: boolean;
 }
 
@@ -44,14 +45,14 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   let searched = "";
   let sorted = -1;
   let direction = 1;
-  let most = pageRows;
+  let maxRows = pageRows;
 
   const numeric = spec.columns.map((column) => spec.rows.every((row) => typeof column.value(row) !== "string"));
   const classOf = (i: number): string => (numeric[i] === true ? "number" : "");
   const body = el("tbody");
   const count = el("p", { class: "note" });
   const more = el("button", { type: "button", class: "more", onclick: () => {
-    most = Infinity;
+    maxRows = Infinity;
     show();
   } });
   const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: classOf(i) },
@@ -82,7 +83,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
 
   function show(): void {
     const left = rowsLeft();
-    const shown = left.slice(0, most);
+    const shown = left.slice(0, maxRows);
     body.replaceChildren(...shown.flatMap((row) => {
       const note = spec.note?.(row) ?? null;
       const cells = spec.columns.map((column, i) => el("td", { class: classOf(i) }, textOf(column, row)));
@@ -98,7 +99,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   }
 
   function filtered(): void {
-    most = pageRows;
+    maxRows = pageRows;
     show();
     say(count.textContent ?? "");
   }
@@ -123,7 +124,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
   show();
   return el("div", { class: "data-table" },
     controls.length > 0 && el("div", { class: "controls" }, ...controls),
-    // A region that scrolls must be reachable by the keyboard.
+    // A scrollable region must be reachable by keyboard.
     el("div", { class: "scroll", role: "region", tabindex: 0, "aria-labelledby": id },
       el("table", {}, el("caption", { id }, spec.caption), el("thead", {}, el("tr", {}, ...heads)), body)),
     (controls.length > 0 || spec.rows.length > pageRows) && count,

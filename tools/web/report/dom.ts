@@ -1,8 +1,11 @@
-// Elements, made in a line.
+// Creates elements in one line.
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void) | undefined>;
 
-/** An element. An attribute that begins with "on" is a listener; true is an empty attribute, false and undefined none. */
+/**
+ * An element. An attribute that begins with "on" is a listener; true is an empty attribute, false
+ * and undefined are none.
+ */
 export function el<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag, attributes: Attributes = {}, ...children: Child[]
 ): HTMLElementTagNameMap[Tag] {
@@ -22,7 +25,7 @@ export function add(parent: Node, ...children: Child[]): void {
   }
 }
 
-/** An SVG element, likewise. */
+/** As el(), for an SVG element. */
 export function svg(tag: string, attributes: Record<string, string | number>, ...children: Node[]): SVGElement {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
@@ -30,7 +33,7 @@ export function svg(tag: string, attributes: Record<string, string | number>, ..
   return element;
 }
 
-/** Tells a screen reader. */
+/** Announces a text to screen readers. */
 export function say(text: string): void {
   const place = document.getElementById("said");
   if (place !== null) place.textContent = text;
@@ -41,7 +44,7 @@ export function newId(name: string): string {
   return `${name}-${++ids}`;
 }
 
-/** A choice from a list, with its label. */
+/** A labelled list of choices. */
 export function picker(
   label: string, options: readonly (readonly [value: string, text: string])[], changed: (value: string) => void,
 ): HTMLLabelElement {
@@ -50,7 +53,7 @@ export function picker(
   return el("label", {}, label, select);
 }
 
-/** Radio buttons, the first one chosen. */
+/** Radio buttons, with the first one selected. */
 export function choices(
   label: string, options: readonly (readonly [value: string, text: string])[], changed: (value: string) => void,
 ): HTMLFieldSetElement {

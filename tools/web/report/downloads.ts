@@ -1,4 +1,4 @@
-// The data behind the page, to be saved: made here, so nothing is asked of a network.
+// Saves the page's data, which is generated here without network access.
 import type { Comparison, Measurement, RatioName } from "../charts/data.ts";
 import { el } from "./dom.ts";
 
@@ -27,7 +27,10 @@ function csvOfRows(heads: readonly string[], rows: readonly (readonly unknown[])
 
 const ratioParts = ["of", "median", "low", "high", "rounds"] as const;
 
-/** A line for each measurement; its samples stand in one field, a space between; a ratio is five fields. */
+/**
+ * A line for each measurement. Its samples are one field, separated by spaces; a ratio is five
+ * fields.
+ */
 export function csvOfComparison({ measurements }: Comparison): string {
   const names = Object.keys(measurements[0] ?? {}) as (keyof Measurement)[];
   const isRatio = (name: keyof Measurement): name is RatioName => name.startsWith("ratio_to_");

@@ -1,4 +1,4 @@
-// The scenes drawn: boxes, and what an algorithm lays over them.
+// Drawings of the scenes: boxes, and an algorithm's structure over them.
 import { onTheme, theme } from "./themes.ts";
 import { grouped } from "../charts/numbers.ts";
 import { choices, el, picker, say, svg } from "./dom.ts";
@@ -21,15 +21,15 @@ export interface View {
 export interface Drawing {
   scene: string;
   dimension: number;
-  /** How many are drawn, out of how many there are. */
+  /** The number of drawn boxes, and the total. */
   boxes: number;
   of: number;
   views: View[];
 }
 
-const mostZoom = 40;
+const maxZoom = 40;
 
-/** A picture that is zoomed and moved by wheel, buttons, pointer and keys. */
+/** A picture that wheel, buttons, pointer and keys zoom and move. */
 class Picture {
   readonly element: HTMLElement;
   private readonly image = svg("svg", { role: "img" });
@@ -44,7 +44,7 @@ class Picture {
       onkeydown: (event) => this.key(event as KeyboardEvent),
     }, this.image);
     this.element.addEventListener("wheel", (event) => {
-      // The page scrolls on, unless the picture was chosen.
+      // The page scrolls on unless the picture has the focus.
       if (!event.ctrlKey && document.activeElement !== this.element) return;
       event.preventDefault();
       this.scale(event.deltaY < 0 ? 1.25 : 0.8);
@@ -80,7 +80,7 @@ class Picture {
   }
 
   scale(by: number): void {
-    this.zoom = Math.min(mostZoom, Math.max(1, this.zoom * by));
+    this.zoom = Math.min(maxZoom, Math.max(1, this.zoom * by));
     this.place();
     say(`zoom ${Math.round(this.zoom * 100)} %`);
   }
@@ -98,7 +98,7 @@ class Picture {
       ArrowUp: () => this.move(0, -step), ArrowDown: () => this.move(0, step),
     };
     const action = actions[event.key];
-    // Without zoom there is nowhere to move, and arrows scroll the page.
+    // Without zoom there is nowhere to move, so arrows scroll the page.
     if (action === undefined || (event.key.startsWith("Arrow") && this.zoom === 1) || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     action();

@@ -1,4 +1,4 @@
-// Charts on the page: drawn when they come near the window, and again for another theme or width.
+// Charts on the page: drawn when they come near the window, and redrawn for another theme or width.
 import { echarts } from "../charts/echarts.ts";
 import type { Drawn, Place } from "../charts/frame.ts";
 import { el } from "./dom.ts";
@@ -69,7 +69,7 @@ onTheme(() => {
   for (const view of views.values()) view.redraw();
 });
 
-/** A chart under its caption. */
+/** A chart with its caption above. */
 export function chartFigure(caption: string, draw: Draw, note = ""): ChartFigure {
   const view = new ChartView(draw);
   views.set(view.element, view);

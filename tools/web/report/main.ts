@@ -1,4 +1,4 @@
-// The report: builds the page from the document that the program put into it.
+// The report: builds the page from the document that the program embedded in it.
 import type { Comparison } from "../charts/data.ts";
 import { comparisonSections, doubtsOfComparison } from "./comparison_section.ts";
 import { add, el } from "./dom.ts";
@@ -7,7 +7,7 @@ import type { Drawing } from "./drawing_section.ts";
 import { doubtsNotice } from "./summary.ts";
 import { beginThemes } from "./themes.ts";
 
-/** What lab/report/page.cpp puts together. */
+/** Written by lab/report/page.cpp. */
 interface ReportDocument {
   date: string;
   comparison: Comparison;

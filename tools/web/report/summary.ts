@@ -1,14 +1,14 @@
-// What a reader wants to know first: what was done, where, and what came of it.
+// The summary at the top: what was done, where, and the result.
 import type { Build, Machine } from "../charts/data.ts";
 import { bytesText, grouped } from "../charts/numbers.ts";
 import { el } from "./dom.ts";
 
-/** A figure that stands out. */
+/** A highlighted figure. */
 export function tile(name: string, big: string, small = ""): HTMLElement {
   return el("div", { class: "tile" }, el("dt", {}, name), el("dd", { class: "big" }, big), small !== "" && el("dd", { class: "small" }, small));
 }
 
-/** What makes the times of a run doubtful: that its machine was busy, that some vary too much. */
+/** Reasons to doubt the times of a run: the machine was busy, or some times vary too much. */
 export interface Doubts {
   busy: boolean | null;
   processorShare: number | null;
@@ -16,7 +16,7 @@ export interface Doubts {
   measurements: number;
 }
 
-/** A notice of them, for the top of the page; null where there are none. */
+/** A notice of the doubts, for the top of the page; null if there are none. */
 export function doubtsNotice({ busy, processorShare, unsteady, measurements }: Doubts): HTMLElement | null {
   const others = processorShare === null ? "for part of this run" : `for ${Math.round(100 * (1 - processorShare))} % of this run`;
   const doubts: [string, string][] = [];

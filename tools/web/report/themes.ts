@@ -1,4 +1,4 @@
-// Which theme is shown: the system's, until the reader chooses; on paper the light one.
+// The theme: the system's, until the reader chooses; on paper, the light one.
 import { dark, light } from "../charts/theme.ts";
 import type { Theme } from "../charts/theme.ts";
 
@@ -16,7 +16,7 @@ export function isPrinting(): boolean {
   return printing;
 }
 
-/** Calls `listener` whenever the theme has changed, or the page is about to be printed. */
+/** Calls `listener` whenever the theme changes, or the page is about to be printed. */
 export function onTheme(listener: () => void): void {
   listeners.push(listener);
 }

@@ -1,4 +1,4 @@
-// What the charts make of comparisons.
+// The charts of comparisons.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -101,7 +101,7 @@ test("a ratio's interval is a whisker of its bar, and told in words", () => {
   const drawn = drawRatios(cases[0]!, place);
   const [bars, whiskers] = seriesOf(drawn) as unknown as { type: string; data: { value?: number; label?: object }[] }[];
   assert.deepEqual([bars?.type, whiskers?.type], ["bar", "custom"]);
-  // Of the fastest, the ratio is to itself.
+  // The fastest algorithm's ratio is to itself.
   assert.deepEqual(bars?.data.map(({ label }) => label === undefined), [true, false, false, false]);
   assert.match(drawn.description, / bvh: 1\.0\. grid: 2\.0 \(1\.9 to 2\.1\)\. /);
   assert.match(drawRatios(cases[2]!, place).description, / bvh: 1\.2 \(0\.92 to 1\.6\)\. /);

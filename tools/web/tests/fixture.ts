@@ -1,4 +1,4 @@
-// A small comparison, as the program writes it.
+// A small comparison, in the program's output format.
 import { bestOwn, casesOf, ranking } from "../charts/comparison.ts";
 import type { Comparison, Measurement, Ratio } from "../charts/data.ts";
 
@@ -37,7 +37,10 @@ const measured: Comparison = {
   ],
 };
 
-/** Over the time of another by their medians, with an interval of some per cent about it; of a factor to 1.25 it holds 1. */
+/**
+ * The ratio to another's median, with an interval of a few per cent around it; for factors up to
+ * 1.25 it contains 1.
+ */
 function ratioTo(other: Measurement | undefined, { median_ms }: Measurement): Ratio | null {
   if (other === undefined || other.median_ms === null || median_ms === null) return null;
   const median = median_ms / other.median_ms;
@@ -64,7 +67,7 @@ export function inRounds(comparison: Comparison): Comparison {
 
 export const comparison = inRounds(measured);
 
-/** The same on a busy machine, with one measurement that is unsteady. */
+/** The same on a busy machine, with one unsteady measurement. */
 export const doubtful: Comparison = {
   ...comparison, processor_share: 0.58, busy: true,
   measurements: comparison.measurements.map((measurement, i) => (i === 2 ? { ...measurement, unsteady: true } : measurement)),

@@ -1,5 +1,5 @@
-// The report in a real browser, as a reader meets it. Takes Chromium and, in BROADSIDE_PROGRAM, the program that writes
-// the pages; without one of them these tests are skipped.
+// The report in a real browser, as a reader sees it. Needs Chromium and, in BROADSIDE_PROGRAM, the
+// program that writes the pages; without either, these tests are skipped.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
@@ -18,7 +18,7 @@ const missing = !existsSync(chromiumPath) ? `chromium is missing at ${chromiumPa
   : !existsSync(program) ? "BROADSIDE_PROGRAM names no program" : "";
 if (missing !== "") console.log(`skipped: ${missing}`);
 
-/** What a page must not do. */
+/** Things that a page must not do. */
 interface Watched {
   page: Page;
   problems: string[];
@@ -33,7 +33,7 @@ const drawing = (scene: string, dimension: number): object => ({
   })),
 });
 
-/** As many measurements as the quick comparison has, with as many samples. */
+/** As many measurements and samples as the quick comparison has. */
 function quickComparison(): object {
   const [first] = comparison.measurements;
   const measurements = Array.from({ length: 1050 }, (_, i) => ({
@@ -49,7 +49,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
   let folder: string;
   let browser: Browser;
 
-  /** The page of the program with another document in it. */
+  /** The program's page with another document in it. */
   function pageWith(name: string, report: object): string {
     const page = readFileSync(join(folder, "comparison.html"), "utf8");
     const [begin, end] = [page.indexOf(">", page.indexOf('id="document"')) + 1, page.lastIndexOf("</script>\n<script>")];
@@ -74,7 +74,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     return { page, problems };
   }
 
-  /** Scrolls through all of a page, so that all of it is drawn. */
+  /** Scrolls through the whole page, so that all of it is drawn. */
   async function read({ page }: Watched): Promise<void> {
     const height = await page.evaluate(() => document.documentElement.scrollHeight);
     for (let y = 0; y < height + 900; y += 500) {
@@ -285,7 +285,7 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     const opened = await page.evaluate(() => (performance.getEntriesByType("navigation")[0] as PerformanceNavigationTiming).domComplete);
     context.diagnostic(`${megabytes.toFixed(2)} MB, opened in ${Math.round(opened)} ms`);
     assert.ok(megabytes < 3, `${megabytes} MB`);
-    // No limit of speed, but of sense: other tests run at the same time.
+    // A sanity check, not a speed limit: other tests run at the same time.
     assert.ok(opened < 30_000, `${opened} ms`);
     await page.close();
   });

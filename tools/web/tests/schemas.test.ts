@@ -1,5 +1,5 @@
-// The JSON Schemas in docs/schemas/: what the program writes fits them, and what is wrong does not. Takes the program in
-// BROADSIDE_PROGRAM; without it only fixtures and committed results are checked.
+// The JSON Schemas in docs/schemas/ accept the program's output and reject invalid documents. Needs
+// the program in BROADSIDE_PROGRAM; without it, only fixtures and committed results are checked.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -21,7 +21,7 @@ type Json = Record<string, unknown>;
 
 const readJson = (path: string): Json => JSON.parse(readFileSync(path, "utf8")) as Json;
 
-/** A function that tells what is wrong with a document; empty where nothing is. */
+/** A function that returns what is wrong with a document; empty if nothing is. */
 function checker(name: string): (document: unknown) => string {
   const validate = ajv.compile(readJson(join(project, "docs/schemas", `${name}.schema.json`)));
   return (document) => (validate(document) ? "" : ajv.errorsText(validate.errors));
@@ -62,7 +62,7 @@ test("comparisons that are wrong do not", () => {
 describe("the program", { skip: missing }, () => {
   let folder: string;
 
-  /** What the program writes as JSON. */
+  /** JSON written by the program. */
   function written(...words: string[]): Json {
     const path = join(folder, "out.json");
     execFileSync(program, [...words, "--json", path]);

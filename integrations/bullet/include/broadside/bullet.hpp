@@ -22,33 +22,36 @@
 
 namespace broadside {
 
-/// Bullet's interface to broad phases over a World of floats or, with BT_USE_DOUBLE_PRECISION, of doubles.
+/// Implements Bullet's broad-phase interface with a World of floats or, with BT_USE_DOUBLE_PRECISION, of
+/// doubles.
 ///
-/// Pairs are brought up to date by calculateOverlappingPairs(), which Bullet calls in each step; rayTest()
-/// and aabbTest() see each box as it was last set. The pair cache then holds the world's pairs that its
-/// filter accepts, and the order of its changes is the same in each run. A proxy's group and mask may be
-/// changed at any time and count from the next calculateOverlappingPairs() on, for pairs that there are as
-/// well. With an overlap filter callback, that alone decides; it is asked when a pair begins and, while it
-/// says no, in each step in which one of the two boxes has moved. What the user takes out of the cache comes
-/// back in the next step if the boxes overlap, and what they put in goes if they do not. Ghost objects meet
-/// what their box overlaps as soon as it is set, where the pair cache is the broad phase's own.
+/// calculateOverlappingPairs(), which Bullet calls in each step, brings the pairs up to date; rayTest() and
+/// aabbTest() see each box as it was last set. The pair cache then holds the world's pairs that its filter
+/// accepts, and the order of its changes is the same in each run. A proxy's group and mask may be changed at
+/// any time; changes take effect at the next calculateOverlappingPairs(), also for existing pairs. An overlap
+/// filter callback replaces the filter by group and mask. It is called when a pair begins and, while it
+/// refuses the pair, in each step in which one of the two boxes has moved. Pairs that the user removes from
+/// the cache return in the next step if the boxes overlap, and pairs that the user adds are removed if they
+/// do not. Ghost objects get their overlaps as soon as their box is set, if the broad phase uses its own pair
+/// cache.
 ///
-/// One thread at a time; between changes, several may call rayTest(), aabbTest() and the const members.
-/// Errors are exceptions, and what throws has changed nothing; a program compiled without exceptions ends
-/// after a line on standard error. InvalidHandle: the proxy was destroyed, or is no proxy of this broad
-/// phase. InvalidInput: a box has a NaN or min > max (WorldOptions::bad_input may take it in as absent
-/// instead). InvalidQuery: a box or ray asked about has a NaN, or a ray is infinite.
+/// Not thread-safe; between changes, several threads may call rayTest(), aabbTest() and the const members.
+/// Errors are exceptions, and a call that throws has changed nothing. A program compiled without exceptions
+/// prints a line on standard error and ends. InvalidHandle: the proxy was destroyed, or belongs to no proxy
+/// of this broad phase. InvalidInput: a box has a NaN or min > max (WorldOptions::bad_input can accept it as
+/// absent instead). InvalidQuery: a query's box or ray has a NaN, or a ray is infinite.
 class BulletBroadphase final : public btBroadphaseInterface {
  public:
   using World = broadside::World<3, btScalar>;
 
-  /// Pairs of boxes enlarged as btDbvtBroadphase enlarges them, by gDbvtMargin (0.05), which bodies that
-  /// tremble in a heap hardly ever leave. With WorldOptions{}, pairs are those of the boxes themselves.
+  /// Default options: boxes are enlarged by gDbvtMargin (0.05), as btDbvtBroadphase does, and pairs are those
+  /// of the enlarged boxes, which bodies trembling in a heap hardly ever leave. With WorldOptions{}, pairs
+  /// are those of the boxes themselves.
   static WorldOptions standard_options() { return {.margin = gDbvtMargin, .events = WorldEvents::enlarged}; }
 
-  /// With a pair cache of the caller's, which must outlive the broad phase, or with one of its own. Throws
-  /// what World does, and std::invalid_argument if options.keep_pairs is false. With predicted_frames, a
-  /// box's velocity is taken from its last two places.
+  /// Uses the caller's pair cache, which must outlive the broad phase, or one of its own. Throws what World
+  /// throws, and std::invalid_argument if options.keep_pairs is false. With predicted_frames, a box's
+  /// velocity is estimated from its last two positions.
   explicit BulletBroadphase(btOverlappingPairCache* pair_cache = nullptr,
                             const WorldOptions& options = standard_options());
   explicit BulletBroadphase(const WorldOptions& options) : BulletBroadphase(nullptr, options) {}
@@ -56,47 +59,48 @@ class BulletBroadphase final : public btBroadphaseInterface {
   BulletBroadphase(const BulletBroadphase&) = delete;
   BulletBroadphase& operator=(const BulletBroadphase&) = delete;
 
-  /// Unique ids are counted up, as btDbvtBroadphase does, so that m_deterministicOverlappingPairs gives the
-  /// same order with both. The shape's type and the dispatcher are not used.
+  /// Unique ids count up, as in btDbvtBroadphase, so that m_deterministicOverlappingPairs gives the same
+  /// order with both. The shape type and the dispatcher are not used.
   btBroadphaseProxy* createProxy(const btVector3& min, const btVector3& max, int shape_type,
                                  void* client_object, int filter_group, int filter_mask,
                                  btDispatcher* dispatcher) override;
 
-  /// Takes the proxy's pairs out of the cache at once.
+  /// Removes the proxy's pairs from the cache at once.
   void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
   void setAabb(btBroadphaseProxy* proxy, const btVector3& min, const btVector3& max,
                btDispatcher* dispatcher) override;
   void getAabb(btBroadphaseProxy* proxy, btVector3& min, btVector3& max) const override;
 
-  /// Calls `callback` for each proxy whose box meets the line from `from` to `to` or, where `min` and `max`
-  /// are given, that box moved along it; whatever the callback returns, as Bullet's own broad phases do. The
-  /// callback may create, move and destroy proxies: one that is destroyed before its turn is left out.
+  /// Calls `callback` for each proxy whose box meets the line from `from` to `to` or, if `min` and `max` are
+  /// given, meets that box swept along the line. Like Bullet's own broad phases, it ignores the callback's
+  /// return value. The callback may create, move and destroy proxies; a proxy destroyed before its turn is
+  /// skipped.
   void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
                const btVector3& min = btVector3(0, 0, 0), const btVector3& max = btVector3(0, 0, 0)) override;
 
-  /// The same for each proxy whose box overlaps the given one.
+  /// As rayTest(), for each proxy whose box overlaps the given one.
   void aabbTest(const btVector3& min, const btVector3& max, btBroadphaseAabbCallback& callback) override;
 
-  /// Throws std::logic_error inside one of the callbacks that it calls. Those may create, move and destroy
-  /// proxies otherwise. After an exception, the next call does what this one left undone.
+  /// Throws std::logic_error if called from one of its own callbacks. Otherwise, callbacks may create, move
+  /// and destroy proxies. After an exception, the next call completes the work.
   void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
   btOverlappingPairCache* getOverlappingPairCache() override { return pair_cache_; }
   const btOverlappingPairCache* getOverlappingPairCache() const override { return pair_cache_; }
 
-  /// What encloses all boxes; a point at the origin if there are none. O(boxes).
+  /// The bounds of all boxes; a point at the origin if there are none. O(boxes).
   void getBroadphaseAabb(btVector3& min, btVector3& max) const override;
 
-  /// Begins anew, as if just made, if there are no proxies; else does nothing, as btDbvtBroadphase.
+  /// Resets to the initial state if there are no proxies; otherwise does nothing, like btDbvtBroadphase.
   void resetPool(btDispatcher* dispatcher) override;
 
-  /// A line on standard output: boxes, pairs, what the last update did.
+  /// Prints a line on standard output: boxes, pairs, figures of the last update.
   void printStats() override;
 
-  /// The world, to ask it more than Bullet does, and the proxies of its boxes. InvalidHandle as above. The
-  /// first call after boxes were set tells the world of those that stayed in their enlarged boxes, O(boxes);
-  /// no other thread may use the broad phase meanwhile.
+  /// The world and the proxies of its boxes, for queries beyond Bullet's interface. Throws InvalidHandle as
+  /// above. The first call after boxes were set passes the world those that stayed in their enlarged boxes,
+  /// O(boxes); no other thread may use the broad phase meanwhile.
   const World& world();
   Handle handle(const btBroadphaseProxy* proxy) const { return used(proxy, "handle()").handle; }
   btBroadphaseProxy* proxy(Handle handle) const;
@@ -107,7 +111,7 @@ class BulletBroadphase final : public btBroadphaseInterface {
  private:
   using Proxy = bullet_detail::Proxy;
 
-  /// Bullet's pair cache, which tells whether there are ghost objects.
+  /// Bullet's pair cache, extended to tell whether there are ghost objects.
   class PairCache final : public btHashedOverlappingPairCache {
    public:
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
@@ -116,7 +120,7 @@ class BulletBroadphase final : public btBroadphaseInterface {
     bool has_ghosts() const noexcept { return m_ghostPairCallback != nullptr; }
   };
 
-  /// What a query found, kept so that a callback may change the world.
+  /// Results of a query, copied so that a callback may change the world.
   struct Found {
     Handle handle;
     Proxy* proxy;
@@ -141,20 +145,20 @@ class BulletBroadphase final : public btBroadphaseInterface {
   WorldOptions options_;
   World world_;
   bullet_detail::ProxyPool proxies_;
-  std::unique_ptr<PairCache> own_cache_;  // null where the cache is the caller's
+  std::unique_ptr<PairCache> own_cache_;  // null if the cache is the caller's
   btOverlappingPairCache* pair_cache_;
   bullet_detail::CachedPairs cached_pairs_;
   int last_id_ = 0;
-  std::uint32_t step_ = 1;   // counts calls of calculateOverlappingPairs()
+  std::uint32_t step_ = 1;   // number of calls of calculateOverlappingPairs()
   std::size_t checked_ = 0;  // proxies whose filter was compared in this step
   bool is_callback_deciding_ =
-      false;  // the pair cache has an overlap filter callback: the world filters nothing
+      false;  // the pair cache has an overlap filter callback, so the world does not filter
   bool is_calculating_ = false;
 
-  // While enlarged boxes make the pairs, the world is not told of a box that moves inside its enlarged one:
-  // queries are widened by what that may have moved, and look at the box itself.
+  // If pairs are those of enlarged boxes, the world does not get moves of a box inside its enlarged box.
+  // Queries are widened by the maximum of such moves, and then test the box itself.
   bool has_untold_ = false;
-  btScalar reach_ = 0;  // the most by which an enlarged box reaches beyond the box that was told
+  btScalar reach_ = 0;  // maximum distance by which an enlarged box extends beyond the box that the world has
 };
 
 }  // namespace broadside

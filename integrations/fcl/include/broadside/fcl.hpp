@@ -24,23 +24,25 @@
 
 namespace broadside {
 
-/// Takes the place of fcl::DynamicAABBTreeCollisionManager<S>, for S = float or double.
+/// A replacement for fcl::DynamicAABBTreeCollisionManager<S>, for S = float or double.
 ///
-/// Collides objects by their AABBs as they were when the manager was last told of them: register, or update.
-/// The same pairs as any of FCL's managers, each once; an object is never reported with itself. Objects stay
-/// the caller's and must outlive their registration. FCL's octrees count as the one box that holds them.
+/// Collides objects by their AABBs as of the last registration or update. Reports the same pairs as FCL's
+/// managers, each once; an object is never reported with itself. The caller owns the objects, which must
+/// outlive their registration. An FCL octree counts as one box that contains it.
 ///
-/// Callbacks come in an order that the calls since construction fix, on every machine and for any number of
-/// threads; those of a distance query by the distances of the boxes. A callback may ask this manager and must
-/// not change it. As with FCL's managers, several threads may ask at once while nothing is changed.
+/// The order of callbacks is determined by the calls since construction, on every machine and for any number
+/// of threads; callbacks of a distance query come in the order of the boxes' distances. A callback may query
+/// this manager but must not change it. As with FCL's managers, several threads may query at once while
+/// nothing is changed.
 ///
-/// Costs: update() reads each object's box, some ten nanoseconds. collide() of all objects finds the pairs
-/// anew where more than about one in 16 changed, and follows those that changed elsewhere; asked again, it
-/// only calls back. The first query of one object builds an index, which later ones bring up to date.
+/// Costs: update() reads each object's box, which takes about ten nanoseconds. collide() of all objects
+/// searches from scratch if more than about one in 16 objects changed, and otherwise updates the pairs of the
+/// changed ones; without changes, it only calls back. The first query of one object builds an index, which
+/// later queries bring up to date.
 ///
-/// What is wrong is refused before anything has changed: std::invalid_argument for null, an object registered
-/// twice, or one that is not registered and is to be updated or unregistered; InvalidInput for a box with a
-/// NaN or min > max; std::logic_error for a change within a callback; InvalidSpec.
+/// Invalid calls throw before anything has changed: std::invalid_argument for null, for an object that is
+/// registered twice, or for updating or unregistering one that is not registered; InvalidInput for a box with
+/// a NaN or min > max; std::logic_error for a change within a callback; InvalidSpec.
 template <typename S>
 class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
  public:
@@ -49,7 +51,7 @@ class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
   using CollisionCallBack = fcl::CollisionCallBack<S>;
   using DistanceCallBack = fcl::DistanceCallBack<S>;
 
-  /// `algorithm` is the spec of what finds the pairs, such as "auto:threads=2".
+  /// `algorithm` is the spec of the algorithm that finds the pairs, such as "auto:threads=2".
   explicit FclCollisionManager(std::string_view algorithm = default_algorithm) : pairs_(algorithm) {}
   FclCollisionManager(const FclCollisionManager&) = delete;
   FclCollisionManager& operator=(const FclCollisionManager&) = delete;
@@ -59,7 +61,7 @@ class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
   void unregisterObject(Object* object) override;
   void clear() override;
 
-  /// Nothing is left to set up: queries bring up to date what they need.
+  /// Nothing to do: queries bring their structures up to date.
   void setup() override {}
 
   void update() override;
@@ -72,22 +74,22 @@ class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
   bool empty() const override { return objects_.size() == 0; }
   std::size_t size() const override { return objects_.size(); }
 
-  /// The callback gets the registered object first and then `object`, with its box as it is now.
+  /// The callback gets the registered object first and then `object`, which is tested with its current box.
   void collide(Object* object, void* data, CollisionCallBack callback) const override;
   void distance(Object* object, void* data, DistanceCallBack callback) const override;
 
   void collide(void* data, CollisionCallBack callback) const override;
   void distance(void* data, DistanceCallBack callback) const override;
 
-  /// The callback gets this manager's object first. With itself, a manager collides its objects with each
-  /// other, once. Throws std::invalid_argument if `other` is a manager of another kind.
+  /// The callback gets this manager's object first. If `other` is this manager, collides its objects with
+  /// each other, once. Throws std::invalid_argument if `other` is a manager of another kind.
   void collide(Manager* other, void* data, CollisionCallBack callback) const override;
   void distance(Manager* other, void* data, DistanceCallBack callback) const override;
 
  private:
   using Pairs = std::vector<detail::DistantPair<S>>;
 
-  /// Counts a query while it runs.
+  /// Marks a query as running.
   class QueryGuard {
    public:
     explicit QueryGuard(const FclCollisionManager& manager) : running_(manager.queries_) { ++running_; }
@@ -114,11 +116,11 @@ class FclCollisionManager final : public fcl::BroadPhaseCollisionManager<S> {
     return pairs_.box_index(objects_.boxes());
   }
 
-  /// `beyond` of visit_by_distance(), for each of `boxes` against this manager's.
+  /// `beyond` of visit_by_distance(), for `boxes` against the boxes of this manager.
   S beyond(S reached, std::span<const Box<3, S>> boxes, bool are_own) const;
 
   detail::FclObjectSet<S> objects_;
-  mutable std::mutex mutex_;  // for what queries bring up to date
+  mutable std::mutex mutex_;  // guards what queries bring up to date
   mutable detail::LazyPairs<S> pairs_;
   mutable std::atomic<int> queries_ = 0;
 };

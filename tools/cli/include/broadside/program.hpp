@@ -1,4 +1,4 @@
-// The command-line program as a function: all its verbs, for algorithms of your own as well. Link
+// The command-line program as a function: all its verbs, including for your own algorithms. Link
 // Broadside::program.
 #pragma once
 
@@ -14,12 +14,12 @@ int run_program(int count, const char* const* values, std::span<const Algorithm>
 
 /// Runs the program `broadside` on the arguments of main(), and returns the exit status.
 ///
-/// `algorithms` are known by their names beside those of the library and its peers. Those of kind `own`,
-/// which is the default, belong to the group "own". A name that is taken is refused, as an unusable argument
-/// is. Messages begin with the file name in values[0].
+/// `algorithms` are available by name beside those of the library and its peers. Algorithms of kind `own`,
+/// the default, belong to the group "own". A name that is already taken is refused like any unusable
+/// argument. Messages begin with the file name in values[0].
 ///
-/// Call it once, as all that main() does: it handles SIGINT, SIGTERM, SIGHUP and SIGPIPE, which end the
-/// process, and ignores SIGXFSZ. Throws nothing: whatever goes wrong is said on stderr.
+/// Call it once, as the whole body of main(): it handles SIGINT, SIGTERM, SIGHUP and SIGPIPE, which end the
+/// process, and ignores SIGXFSZ. Throws nothing; errors are reported on stderr.
 inline int run_program(int count, const char* const* values, const std::vector<Algorithm>& algorithms = {}) {
   return detail::run_program(count, values, algorithms);
 }

@@ -1,4 +1,4 @@
-# An overlay port: it builds the library alone, of the sources that it stands in.
+# An overlay port: it builds the library alone, from the source tree that contains it.
 get_filename_component(SOURCE_PATH ${CURRENT_PORT_DIR}/../../../.. ABSOLUTE)
 
 vcpkg_check_features(OUT_FEATURE_OPTIONS features FEATURES threads BROADSIDE_THREADS)

@@ -1,4 +1,5 @@
-// The bench: boxes at a time, searched by each panel's algorithm. It knows no page, so it runs in a worker and in Node.
+// The bench: the boxes at one time, searched by each panel's algorithm. It does not depend on the
+// page, so it runs in a worker and in Node.
 import type { Engine } from "../engine/types.ts";
 import { fileScene, makeScene } from "../scene/catalogue.ts";
 import { countWith, edited, place, type Edit } from "../scene/edits.ts";
@@ -8,8 +9,8 @@ import { duel, measure } from "./measure.ts";
 import { Panel, type PanelFrame } from "./panel.ts";
 import { Mark, type Reply, type Request, type Setup, type Shown } from "./protocol.ts";
 
-/** The most overlaps that are drawn. */
-const mostOverlaps = 40_000;
+/** Maximum number of overlaps to draw. */
+const maxOverlaps = 40_000;
 
 export class Bench {
   private setup: Setup | undefined;
@@ -20,7 +21,7 @@ export class Bench {
 
   constructor(private readonly engine: Engine, private readonly send: (reply: Reply) => void) {}
 
-  /** Answers each request; what it cannot do is told, not thrown. */
+  /** Answers each request; errors are sent in the reply, not thrown. */
   async take(request: Request): Promise<void> {
     try {
       await this.answer(request);
@@ -62,7 +63,7 @@ export class Bench {
     this.send({ kind: "opened", opened: { name, boxes, frames: frames.length, warning } });
   }
 
-  /** The last frame's time and held box. (Its boxes were handed over.) */
+  /** Time and held box of the last frame. (Its boxes were transferred.) */
   private last: [time: number, held: Edit | null] = [0, null];
 
   private get choice(): Setup["scene"] {
@@ -137,10 +138,10 @@ export class Bench {
   }
 }
 
-/** Where the boxes of each pair overlap. */
+/** Intersections of the boxes of each pair. */
 function intersections(boxes: Float32Array, pairs: Uint32Array, dimension: number): Float32Array<ArrayBuffer> {
   const stride = 2 * dimension;
-  const count = Math.min(mostOverlaps, pairs.length / 2);
+  const count = Math.min(maxOverlaps, pairs.length / 2);
   const parts = new Float32Array(count * stride);
   for (let pair = 0; pair < count; ++pair) {
     const [a, b] = [stride * pairs[2 * pair]!, stride * pairs[2 * pair + 1]!];

@@ -1,16 +1,16 @@
-// The page's side: the bench in a worker, or in the page where a worker cannot be made.
+// The page's side: runs the bench in a worker, or in the page if no worker can be created.
 import type { Reply, Request, Start } from "./protocol.ts";
 
-/** The bench's script as a function of its scope; see build.mjs. */
+/** The bench's script as a function of its global scope; see build.mjs. */
 declare const broadsideBench: (scope: unknown) => void;
 
 export interface Client {
   send(request: Request): void;
-  /** Whether searches stop the page, since there is no worker. */
+  /** Whether searches block the page, because there is no worker. */
   inPage: boolean;
 }
 
-/** The engine, from the page's own text. */
+/** The engine, from the text embedded in the page. */
 function packedEngine(): Start {
   const text = (id: string): string => document.getElementById(id)?.textContent?.trim() ?? "";
   return { kind: "start", engine: text("engine"), observing: text("observing") };

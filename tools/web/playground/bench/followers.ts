@@ -1,4 +1,4 @@
-// A tracker for a panel, and the pairs that it has told of.
+// A tracker for a panel, and the current pairs by its events.
 import type { Engine, Frame, Tracker } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
 

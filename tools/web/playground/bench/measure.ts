@@ -1,4 +1,5 @@
-// Times: of searches against the number of boxes, and of `auto` against the library's other algorithms.
+// Measures times: of searches by number of boxes, and of `auto` against the library's other
+// algorithms.
 import type { Engine } from "../engine/types.ts";
 import { fileScene, makeScene, type SceneChoice } from "../scene/catalogue.ts";
 import type { Dimension } from "../scene/scene.ts";
@@ -6,14 +7,14 @@ import { refusal } from "./budget.ts";
 import type { Duel, Measured } from "./protocol.ts";
 import { timeOf } from "./times.ts";
 
-/** What a time may cost, in ms. */
+/** Budget of one measurement, in ms. */
 const budget = 25;
 
 function pause(): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, 0));
 }
 
-/** The time of each spec at each number of boxes, as each is known. */
+/** Yields the time of each spec at each number of boxes as soon as it is known. */
 export async function* measure(engine: Engine, choice: SceneChoice, counts: readonly number[],
                                specs: readonly string[]): AsyncGenerator<Measured> {
   if (choice.name === fileScene) throw new Error("a file has the boxes that it has; choose another scene to measure");
@@ -32,7 +33,7 @@ export async function* measure(engine: Engine, choice: SceneChoice, counts: read
   }
 }
 
-/** `auto` and the others in the same rounds. */
+/** Times `auto` and the others in the same rounds. */
 export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimension): Promise<Duel> {
   const count = boxes.length / (2 * dimension);
   const specs = engine.algorithms()

@@ -1,7 +1,8 @@
-// One algorithm on the frame's boxes: its search or its tracker, its structure, and the selected box's tests.
+// One algorithm on the boxes of a frame: its search or its tracker, its structure, and the selected
+// box's tests.
 import type { Engine, Outline } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
-import { mostObserved, refusal } from "./budget.ts";
+import { maxObserved, refusal } from "./budget.ts";
 import { Follower } from "./followers.ts";
 import { Mark, type PanelChoice, type PanelResult, type Selection, type Setup } from "./protocol.ts";
 import { reasons } from "./reasons.ts";
@@ -9,12 +10,12 @@ import { RecentTimes } from "./times.ts";
 
 const nothing = { tests: 0, references: 0, cells: 0, hits: 0 };
 
-/** A search that takes longer than this, in ms, is not made in every frame. */
+/** A search that takes longer than this, in ms, does not run in every frame. */
 const slow = 60;
 
 export interface PanelFrame {
   result: PanelResult;
-  /** Undefined where it did not search this frame. */
+  /** Undefined if it did not search in this frame. */
   pairs: Uint32Array | undefined;
 }
 
@@ -39,7 +40,7 @@ export class Panel {
     const refused = refusal(spec, count);
     if (refused !== undefined) return failed(refused);
     if (this.last !== undefined && performance.now() < this.notBefore) {
-      // Marks were handed over with the frame that they are of.
+      // Marks were transferred with their frame.
       const { marks: _, ...result } = this.last;
       return { result: { ...result, late: true }, pairs: undefined };
     }
@@ -49,7 +50,7 @@ export class Panel {
       if (setup.structure) found.result.outline = this.engine.outline(spec, boxes, dimension);
       if (setup.selected >= 0 && setup.selected < count) this.observe(found.result, boxes, dimension, setup.selected);
       const took = performance.now() - begin;
-      // A third of the bench's time is left to the others.
+      // Leaves a third of the bench's time to the other panels.
       this.notBefore = took > slow ? performance.now() + 2 * took : 0;
       this.last = found.result;
       return found;
@@ -92,7 +93,7 @@ export class Panel {
     const { spec } = this.choice;
     const count = boxes.length / (2 * dimension);
     const expected = /brute_force/.test(spec) ? count * (count - 1) / 2 : result.statistics.tests;
-    if (expected > mostObserved) {
+    if (expected > maxObserved) {
       result.unobserved = "There are too many tests to record. Take fewer boxes.";
       return;
     }
@@ -112,7 +113,7 @@ export class Panel {
   }
 }
 
-/** The boxes that are in a pair with one. */
+/** The boxes that form a pair with one box. */
 function partners(pairs: Uint32Array, box: number): Set<number> {
   const found = new Set<number>();
   for (let at = 0; at < pairs.length; at += 2) {

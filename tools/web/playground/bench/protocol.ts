@@ -1,4 +1,5 @@
-// What the page and its bench say to each other. The bench has the engine; it runs in a worker where it can.
+// Messages between the page and its bench. The bench has the engine and runs in a worker if
+// possible.
 import type { Algorithm, Outline, Statistics } from "../engine/types.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
 import type { Edit } from "../scene/edits.ts";
@@ -6,22 +7,22 @@ import type { Bounds, Dimension } from "../scene/scene.ts";
 
 export interface PanelChoice {
   spec: string;
-  /** Whether a tracker follows the boxes; else each frame is searched anew. */
+  /** Whether a tracker follows the boxes; otherwise each frame is searched from scratch. */
   follow: boolean;
 }
 
-/** What is shown, but for the time. */
+/** Everything that determines the picture, except for the time. */
 export interface Setup {
   scene: SceneChoice;
   edits: readonly Edit[];
   panels: readonly PanelChoice[];
   structure: boolean;
   overlaps: boolean;
-  /** The box whose tests are wanted; -1: none. */
+  /** The box to report tests of; -1: none. */
   selected: number;
 }
 
-/** The first message to the bench: the engine's modules, packed as unpack.ts says. */
+/** The first message to the bench: the engine's modules, packed as in unpack.ts. */
 export interface Start {
   kind: "start";
   engine: string;
@@ -35,23 +36,23 @@ export type Request =
   | { kind: "measure"; counts: number[]; specs: string[] }
   | { kind: "duel" };
 
-/** What a box is, as a number that the painter has a colour for. */
+/** State of a box, as a number that the painter maps to a colour. */
 export const Mark = { none: 0, lit: 1, tested: 2, testedLit: 3, selected: 4, faded: 5 } as const;
 
-/** Some boxes that were not compared with the selected one, and why. */
+/** Some boxes that were not compared with the selected one, and the reason. */
 export interface Untested {
   why: string;
   count: number;
 }
 
-/** What became of the selected box. */
+/** Results for the selected box. */
 export interface Selection {
   box: number;
   tested: Uint32Array;
-  /** How many of the tested ones overlap it. */
+  /** How many of the tested boxes overlap it. */
   hits: number;
   untested: Untested[];
-  /** Of the whole observation: equal to the statistics' tests. */
+  /** Tests of the whole observation: equal to the statistics' tests. */
   tests: number;
 }
 
@@ -61,7 +62,7 @@ export interface PanelResult {
   statistics: Statistics;
   explanation: string;
   milliseconds: number;
-  /** The tracker's memory; 0 where there is none. */
+  /** The tracker's memory; 0 without a tracker. */
   bytes: number;
   begun: number;
   ended: number;
@@ -69,11 +70,11 @@ export interface PanelResult {
   selection?: Selection;
   /** Why no tests of the selected box are shown. */
   unobserved?: string;
-  /** A mark for each box, where the panel has its own. */
+  /** A mark for each box, if the panel has its own marks. */
   marks?: Uint8Array<ArrayBuffer>;
   /** Why it did not search. */
   error?: string;
-  /** Its search takes long: these are an earlier frame's results. */
+  /** Its search takes long: these are results of an earlier frame. */
   late: boolean;
 }
 
@@ -87,7 +88,7 @@ export interface Shown {
   marks: Uint8Array<ArrayBuffer>;
   /** [a0, b0, ...] of this frame. */
   pairs: Uint32Array;
-  /** Where pairs overlap, as boxes. */
+  /** Intersections of the pairs, as boxes. */
   overlaps: Float32Array<ArrayBuffer>;
   panels: PanelResult[];
 }
@@ -110,7 +111,7 @@ export interface Opened {
   name: string;
   boxes: number;
   frames: number;
-  /** How it was read, where that is not certain. */
+  /** How the file was interpreted, if that is uncertain. */
   warning: string;
 }
 

@@ -11,7 +11,10 @@ function meets(a: Float32Array, at: number, b: Float32Array, bt: number, dimensi
   return true;
 }
 
-/** The parts of the lowest level that each box is looked for in: all levels for cells of several sizes. */
+/**
+ * The parts of the lowest level in which each box is looked up; all levels for cells of several
+ * sizes.
+ */
 function partsOf(outline: Outline, boxes: Float32Array, box: number, dimension: number): [number, number][] {
   const found: [number, number][] = [];
   const level = outline.levels.length - 1;
@@ -26,8 +29,9 @@ function partsOf(outline: Outline, boxes: Float32Array, box: number, dimension: 
 const partNames: Record<string, string> = { cells: "cell", stripes: "stripe", nodes: "node" };
 
 /**
- * Groups of the boxes that were not compared with one. The first group is what the algorithm's structure keeps apart,
- * the others are told by where boxes lie: on which axis they end before the other one begins.
+ * Groups of the boxes that were not compared with a given box. The first group is separated by the
+ * algorithm's structure. The others are grouped by the axis on which one box ends before the other
+ * begins.
  */
 export function reasons(boxes: Float32Array, dimension: number, box: number, tested: ReadonlySet<number>,
                         outline: Outline | undefined): Untested[] {

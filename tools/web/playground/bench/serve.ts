@@ -1,4 +1,5 @@
-// Serves the bench behind a port: a worker's own scope, or the page itself where there is no worker.
+// Serves the bench behind a port: a worker's global scope, or the page itself if there is no
+// worker.
 import { loadEngine } from "../engine/engine.ts";
 import { Bench } from "./bench.ts";
 import type { Reply, Request, Start } from "./protocol.ts";
@@ -9,7 +10,7 @@ export interface Port {
   onmessage: ((event: { data: Request | Start }) => void) | null;
 }
 
-/** What a reply hands over instead of copying. */
+/** The buffers that a reply transfers instead of copying. */
 function buffersOf(reply: Reply): Transferable[] {
   if (reply.kind !== "shown") return [];
   const { boxes, marks, overlaps, panels } = reply.shown;
@@ -33,7 +34,7 @@ async function start(port: Port, { engine, observing }: Start): Promise<void> {
   }
 }
 
-/** The first message holds the engine; the others wait until it has started. */
+/** The first message holds the engine; later ones wait until it has started. */
 export function serve(port: Port): void {
   port.onmessage = ({ data }) => void start(port, data as Start);
 }

@@ -1,11 +1,15 @@
-// Times on a clock that browsers make coarse: a tenth of a millisecond, where a search may take some microseconds.
+// Times with a coarse clock: browsers round to a tenth of a millisecond, and a search may take
+// microseconds.
 import type { Engine } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
 
-/** Up to here, in ms, a single time says little. */
+/** Up to this time, in ms, a single measurement is too coarse. */
 const coarse = 0.5;
 
-/** The times of the last frames as one: the median, or the mean where the clock is too coarse for it. */
+/**
+ * Summarises the times of the last frames: the median, or the mean if the clock is too coarse for
+ * it.
+ */
 export class RecentTimes {
   private readonly recent: number[] = [];
 
@@ -15,13 +19,16 @@ export class RecentTimes {
     const sorted = [...this.recent].sort((a, b) => a - b);
     const median = sorted[Math.floor(sorted.length / 2)]!;
     if (median > coarse) return median;
-    // Without what something else on the machine has added.
+    // Without outliers, which other work on the machine has caused.
     const usual = sorted.filter((one) => one <= coarse);
     return usual.reduce((sum, one) => sum + one, 0) / Math.max(1, usual.length);
   }
 }
 
-/** The time of a search: of as many runs as the clock can tell, the least of some rounds. */
+/**
+ * The time of a search: the shortest of some rounds, each with enough runs for the clock's
+ * resolution.
+ */
 export function timeOf(engine: Engine, spec: string, boxes: Float32Array, dimension: Dimension, budget: number): number {
   const begin = performance.now();
   const first = engine.find(spec, boxes, dimension).milliseconds;

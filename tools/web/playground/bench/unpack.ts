@@ -1,6 +1,7 @@
-// The engine's modules as the page holds them: compressed, as text, so that they need no request and little room.
+// The engine's modules as the page embeds them: compressed, as text, so that they need no request
+// and little room.
 
-/** The bytes of a text of base64 that was compressed by gzip. */
+/** Decodes a text in base64 that was compressed by gzip. */
 export async function unpack(text: string): Promise<Uint8Array<ArrayBuffer>> {
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   if (typeof DecompressionStream === "undefined")

@@ -1,27 +1,34 @@
-// Boxes as a graphics card takes them: those of a few pixels as points, the others as shapes; none that is out of sight.
+// Prepares boxes for a graphics card: boxes of a few pixels as points, the others as shapes;
+// invisible boxes are left out.
 //
-// A box that is drawn as a shape costs several vertices and two or more triangles, whatever its size. In a crowd nearly
-// all boxes are so small that a point, one vertex, covers them.
+// A box drawn as a shape costs several vertices and two or more triangles, whatever its size. In a
+// crowd, nearly all boxes are small enough for a point, which is one vertex.
 import type { Dimension } from "../scene/scene.ts";
 
 /** How boxes are seen. */
 export interface Lens {
   /** To clip space. */
   matrix: ArrayLike<number>;
-  /** Half the panel's size, in pixels of the device. */
+  /** Half the panel's size, in device pixels. */
   pixels: readonly [number, number];
-  /** Up to how many pixels a box is drawn as a point, on its longer side. */
-  mostPoint: number;
+  /** A box whose longer side has up to this many pixels is drawn as a point. */
+  maxPoint: number;
 }
 
-/** What is just beyond the panel's edge may reach into it: tiny boxes are drawn larger than they are. */
+/** Boxes just beyond the panel's edge may reach into it, because tiny boxes are drawn enlarged. */
 const edge = 1.02;
 
-/** How many texels a texture's row has: a power of two. A texel holds two coordinates of a box, or its mark. */
+/**
+ * Texels in a row of a texture: a power of two. A texel holds two coordinates of a box, or its
+ * mark.
+ */
 export const rowTexels = 2048;
 
 export class Batch {
-  /** First the boxes that are points, then the others; whole rows, of which the last may hold remains. */
+  /**
+   * First the boxes drawn as points, then the others; in whole rows. The end of the last row may
+   * hold old data.
+   */
   boxes = new Float32Array(0);
   marks = new Uint8Array(0);
   points = 0;
@@ -38,7 +45,7 @@ export class Batch {
     this.points = this.shapes = 0;
   }
 
-  /** Replaces what is in it. Boxes without marks have mark 0. */
+  /** Replaces the contents. Boxes without marks have mark 0. */
   set(boxes: Float32Array, marks: Uint8Array | undefined, lens: Lens): void {
     const stride = 2 * this.dimension;
     const count = boxes.length / stride;
@@ -64,29 +71,29 @@ export class Batch {
     this.marks[to] = marks === undefined ? 0 : marks[box]!;
   }
 
-  /** Takes the points, and returns the number of larger boxes. */
-  private addFlat(boxes: Float32Array, marks: Uint8Array | undefined, { matrix, pixels, mostPoint }: Lens): number {
+  /** Adds the boxes drawn as points, and returns the number of larger boxes. */
+  private addFlat(boxes: Float32Array, marks: Uint8Array | undefined, { matrix, pixels, maxPoint }: Lens): number {
     const { large } = this;
     const [scaleX, scaleY, shiftX, shiftY] = [matrix[0]!, matrix[5]!, matrix[12]!, matrix[13]!];
     const [left, right] = [(-edge - shiftX) / scaleX, (edge - shiftX) / scaleX];
     const [top, bottom] = [(edge - shiftY) / scaleY, (-edge - shiftY) / scaleY];  // y grows downwards in the world
-    const most = mostPoint / (scaleX * pixels[0]);
+    const maxExtent = maxPoint / (scaleX * pixels[0]);
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 4) {
       const x0 = boxes[at]!, y0 = boxes[at + 1]!, x1 = boxes[at + 2]!, y1 = boxes[at + 3]!;
       // Absent boxes have x0 > x1.
       if (!(x0 <= x1 && x0 <= right && x1 >= left && y0 <= bottom && y1 >= top)) continue;
-      if (x1 - x0 <= most && y1 - y0 <= most) this.put(points++, boxes, marks, box);
+      if (x1 - x0 <= maxExtent && y1 - y0 <= maxExtent) this.put(points++, boxes, marks, box);
       else large[found++] = box;
     }
     this.points = points;
     return found;
   }
 
-  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, mostPoint }: Lens): number {
+  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, maxPoint }: Lens): number {
     const { large } = this;
     const norm = (row: number): number => Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!);
-    const most = Math.sqrt(0.75) * mostPoint / (norm(1) * pixels[1]);  // radius of a cube, by its distance
+    const maxRadius = Math.sqrt(0.75) * maxPoint / (norm(1) * pixels[1]);  // radius of a cube, by its distance
     const [slackX, slackY] = [norm(0) + norm(3), norm(1) + norm(3)];
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 6) {
@@ -96,10 +103,10 @@ export class Batch {
       const x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1), z = 0.5 * (z0 + z1);
       const radius = 0.5 * Math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0) + (z1 - z0) * (z1 - z0));
       const w = m[3]! * x + m[7]! * y + m[11]! * z + m[15]!;
-      // Infinite boxes have centres that are no numbers, for which all of these are false.
+      // Infinite boxes have centres of NaN, for which all of these comparisons are false.
       if (w < -radius || Math.abs(m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) > w + slackX * radius ||
         Math.abs(m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) > w + slackY * radius) continue;
-      if (radius <= most * w) this.put(points++, boxes, marks, box);
+      if (radius <= maxRadius * w) this.put(points++, boxes, marks, box);
       else large[found++] = box;
     }
     this.points = points;

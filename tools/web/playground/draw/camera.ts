@@ -1,4 +1,4 @@
-// What part of the world a panel shows, and where a pixel is in it.
+// The part of the world that a panel shows, and conversions between pixels and coordinates.
 import { m4, v3 } from "twgl.js";
 
 import type { Bounds } from "../scene/scene.ts";
@@ -8,20 +8,22 @@ export interface Size {
   height: number;
 }
 
-/** How the visitor looks at the boxes: the same in every panel. */
+/** The visitor's view of the boxes: the same in every panel. */
 export interface View {
   zoom: number;
-  /** What is in the middle, as a share of the bounds' size from their middle. */
+  /** Centre of the view, relative to the middle of the bounds, in multiples of their size. */
   x: number;
   y: number;
-  /** Of the camera in 3D, in radians. */
+  /** Angle of the camera in 3D, in radians. */
   turn: number;
   tilt: number;
 }
 
-export const standardView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
+export const defaultView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
 
-/** A flat camera: pixels of a panel from coordinates by `x * scale + left` and `y * scale + top`; y grows downwards. */
+/**
+ * A flat camera. Pixels of a panel are `x * scale + left` and `y * scale + top`; y grows downwards.
+ */
 export interface Flat {
   scale: number;
   left: number;
@@ -40,7 +42,7 @@ export function toWorld({ scale, left, top }: Flat, x: number, y: number): [numb
   return [(x - left) / scale, (y - top) / scale];
 }
 
-/** From coordinates to the clip space of a panel, as WebGL's matrix. */
+/** WebGL matrix from coordinates to the clip space of a panel. */
 export function flatMatrix({ scale, left, top }: Flat, { width, height }: Size): m4.Mat4 {
   const [x, y] = [2 * scale / width, 2 * scale / height];
   return [x, 0, 0, 0, 0, -y, 0, 0, 0, 0, 0, 0, 2 * left / width - 1, 1 - 2 * top / height, 0, 1];
@@ -52,7 +54,7 @@ export function solidMatrix(bounds: Bounds, { width, height }: Size, view: View)
   const centre = low.map((one, axis) => (one + high[axis]!) / 2);
   const radius = Math.hypot(...low.map((one, axis) => high[axis]! - one)) / 2 || 1;
   const field = Math.PI / 5;
-  // The narrower side of the panel must hold the ball around the bounds.
+  // The bounding sphere of the bounds must fit into the narrower side of the panel.
   const narrow = Math.min(1, width / height);
   const away = radius / Math.sin(field / 2) / narrow / view.zoom * 0.8;
   const eye = [
@@ -66,7 +68,7 @@ export function solidMatrix(bounds: Bounds, { width, height }: Size, view: View)
   return m4.multiply(projection, looking);
 }
 
-/** Where a pixel's ray begins, and which way it goes. */
+/** Origin and direction of the ray through a pixel. */
 export function rayAt(matrix: m4.Mat4, { width, height }: Size, x: number, y: number):
     { origin: number[]; direction: number[] } {
   const back = m4.inverse(matrix);

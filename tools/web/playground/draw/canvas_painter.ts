@@ -1,11 +1,11 @@
-// Paints by a plain canvas, where there is no WebGL.
+// Paints on a 2D canvas if there is no WebGL.
 import { m4 } from "twgl.js";
 
 import { flatCamera, solidMatrix } from "./camera.ts";
 import { fills, levelColour } from "./colours.ts";
-import { mostTestLines, overlapStrength, testLines, type Painter, type Painting, type PanelPainting } from "./painting.ts";
+import { maxTestLines, overlapStrength, testLines, type Painter, type Painting, type PanelPainting } from "./painting.ts";
 
-/** Where a box is in the panel's pixels: a rectangle, in 3D that around its corners. */
+/** Projects a box to panel pixels: a rectangle, in 3D the bounding rectangle of its corners. */
 export type Projection = (boxes: Float32Array, at: number) => [x: number, y: number, width: number, height: number];
 
 export function projectionOf(painting: Painting, panel: PanelPainting): Projection {
@@ -97,7 +97,7 @@ export class CanvasPainter implements Painter {
     context.globalAlpha = overlapStrength(painting);
     for (let at = 0; at < painting.overlaps.length; at += stride) context.fillRect(...project(painting.overlaps, at));
     if (panel.tests === undefined) return;
-    const others = panel.tests.others.subarray(0, mostTestLines);
+    const others = panel.tests.others.subarray(0, maxTestLines);
     const lines = testLines(boxes, dimension, panel.tests.box, others);
     context.strokeStyle = palette.marks[2]!;
     context.globalAlpha = 0.8;

@@ -1,13 +1,13 @@
-// The colours of what is drawn, of each theme: one accent for each state of a pair.
+// Colours of each theme: one accent for each state of a pair.
 
-/** Red, green and blue from 0 to 1, and how opaque it is. */
+/** Red, green, blue and opacity, from 0 to 1. */
 export type Colour = readonly [number, number, number, number];
 
 export interface Palette {
   background: string;
   text: string;
   muted: string;
-  /** By mark: a box on its own, in a pair, tested, tested and in a pair, selected, faded. */
+  /** By mark: in no pair, in a pair, tested, tested and in a pair, selected, faded. */
   marks: readonly string[];
   overlap: string;
   /** Levels of a structure, from the coarsest down. */
@@ -28,7 +28,7 @@ export const dark: Palette = {
   levels: ["#2fc49a", "#b49cf0", "#2fc49a", "#b49cf0"],
 };
 
-/** How opaque the inside of a box is, by mark. */
+/** Opacity of a box's inside, by mark. */
 export const fills: readonly number[] = [0.16, 0.34, 0.32, 0.5, 0.45, 0.07];
 
 export function rgb(text: string): [number, number, number] {

@@ -1,10 +1,10 @@
-// What a painter paints: the same for WebGL, for a plain canvas and for SVG.
+// The input of painters: the same for WebGL, for a 2D canvas and for SVG.
 import type { Outline } from "../engine/types.ts";
 import type { Bounds, Dimension } from "../scene/scene.ts";
 import type { Palette } from "./colours.ts";
 import type { View } from "./camera.ts";
 
-/** A part of the picture, in pixels from its top left corner. */
+/** A rectangle of the picture, in pixels from its top left corner. */
 export interface Place {
   x: number;
   y: number;
@@ -15,9 +15,9 @@ export interface Place {
 export interface PanelPainting {
   place: Place;
   outline: Outline | undefined;
-  /** A mark for each box, where the panel has its own. */
+  /** A mark for each box, if the panel has its own marks. */
   marks: Uint8Array | undefined;
-  /** The selected box and those that it was tested against. */
+  /** The selected box and the boxes that it was tested against. */
   tests: { box: number; others: Uint32Array } | undefined;
 }
 
@@ -32,22 +32,25 @@ export interface Painting {
   palette: Palette;
 }
 
-/** What a picture took of the graphics card. */
+/** The graphics card's work for a picture. */
 export interface Drawn {
   vertices: number;
-  /** Handed over for it. */
+  /** Bytes uploaded for it. */
   bytes: number;
 }
 
 export interface Painter {
-  /** What the last picture took, where that is known. */
+  /** Work for the last picture, if known. */
   readonly drawn?: Drawn;
-  /** Sets the size of the picture, in CSS pixels and in those of the device for each. */
+  /** Sets the size of the picture in CSS pixels, and the number of device pixels per CSS pixel. */
   resize(width: number, height: number, ratio: number): void;
   paint(painting: Painting): void;
 }
 
-/** How opaque overlaps are: less where many lie over each other, so that the boxes under them can be seen. */
+/**
+ * Opacity of overlaps: lower if many lie on top of each other, so that the boxes below stay
+ * visible.
+ */
 export function overlapStrength({ overlaps, bounds, dimension }: Painting): number {
   const volume = (of: ArrayLike<number>, at: number): number => {
     let product = 1;
@@ -60,14 +63,14 @@ export function overlapStrength({ overlaps, bounds, dimension }: Painting): numb
   return (dimension === 2 ? 0.62 : 0.4) / Math.max(1, sum / (0.12 * world));
 }
 
-/** The most lines from a selected box to those that it was tested against. */
-export const mostTestLines = 3000;
+/** Maximum number of lines from a selected box to the boxes that it was tested against. */
+export const maxTestLines = 3000;
 
 /** Lines between centres: two points each. */
 export function testLines(boxes: Float32Array, dimension: Dimension, box: number, others: Uint32Array):
     Float32Array<ArrayBuffer> {
   const stride = 2 * dimension;
-  const count = Math.min(mostTestLines, others.length);
+  const count = Math.min(maxTestLines, others.length);
   const lines = new Float32Array(6 * count);
   const centre = (of: number, axis: number): number =>
     axis < dimension ? (boxes[stride * of + axis]! + boxes[stride * of + dimension + axis]!) / 2 : 0;

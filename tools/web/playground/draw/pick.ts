@@ -1,16 +1,16 @@
-// Which box is under the pointer.
+// Finds the box under the pointer.
 
-/** The smallest box within a reach of a point in 2D; -1: none. */
+/** The smallest box within a given distance of a point in 2D; -1: none. */
 export function pickFlat(boxes: Float32Array, x: number, y: number, reach: number): number {
   let best = -1;
-  let least = Infinity;
+  let minSize = Infinity;
   for (let at = 0; at < boxes.length; at += 4) {
     const [left, bottom, right, top] = [boxes[at]!, boxes[at + 1]!, boxes[at + 2]!, boxes[at + 3]!];
     if (x < left - reach || x > right + reach || y < bottom - reach || y > top + reach) continue;
-    // Boxes that hold the point come before those that are near it.
+    // Boxes that contain the point take precedence over boxes near it.
     const inside = x >= left && x <= right && y >= bottom && y <= top;
     const size = (right - left) * (top - bottom) + (inside ? 0 : 1e30);
-    if (size < least) [best, least] = [at / 4, size];
+    if (size < minSize) [best, minSize] = [at / 4, size];
   }
   return best;
 }

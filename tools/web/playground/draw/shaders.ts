@@ -1,5 +1,6 @@
-// The programs that draw boxes, which they take from textures by the vertex's number: all of a picture's boxes are one
-// or two calls. An instance a box would be simpler, but some drivers draw instances one by one.
+// Shaders for boxes. They read boxes from textures by vertex number, so that all boxes of a picture
+// are drawn in one or two calls. One instance per box would be simpler, but some drivers draw
+// instances one by one.
 import { rowTexels } from "./batch.ts";
 
 const fetchBox = `
@@ -25,12 +26,15 @@ void fetchBox(int box, out vec3 low, out vec3 high, out int mark) {
 }
 `;
 
-/** Boxes as rectangles with a border of a pixel or so, four vertices each; tiny ones, in 3D as well, as points. */
+/**
+ * Boxes as rectangles with a border of about a pixel, four vertices each; tiny boxes, also in 3D,
+ * as points.
+ */
 export const flatVertex = `#version 300 es
 ${fetchBox}
 uniform mat4 matrix;
 uniform vec4 viewport;
-uniform float least;
+uniform float minExtent;
 uniform bool points;
 flat out vec4 place;
 flat out vec4 ink;
@@ -55,7 +59,7 @@ void main() {
     middle = centre.xy / centre.w;
     extent = (0.5 * (mat3(abs(turn[0]), abs(turn[1]), abs(turn[2])) * (high - low)) / centre.w).xy;
   }
-  extent = max(extent, least / pixels);
+  extent = max(extent, minExtent / pixels);
   // A box over all of the picture leaves the others their colours.
   if (extent.x * extent.y > 0.5) fill *= 0.3;
   place = vec4(viewport.xy + (middle + 1.0) * pixels, extent * pixels);
@@ -65,7 +69,9 @@ void main() {
   gl_Position = vec4(middle + corner * (extent + 0.5 / pixels), 0.0, 1.0);
 }`;
 
-/** Each pixel by how much of it the box and its inside cover, which is what multisampling would estimate. */
+/**
+ * Each pixel by how much of it the box and its inside cover, as multisampling would estimate it.
+ */
 export const flatFragment = `#version 300 es
 precision highp float;
 flat in vec4 place;
@@ -82,7 +88,7 @@ void main() {
   colour = ink * (covered(away, place.zw) - (1.0 - fill) * covered(away, place.zw - border));
 }`;
 
-/** Boxes in 3D: their faces, translucent, or their edges; eight vertices each. */
+/** Boxes in 3D: translucent faces, or edges; eight vertices each. */
 export const solidVertex = `#version 300 es
 ${fetchBox}
 uniform mat4 matrix;

@@ -3,8 +3,8 @@ import { projectionOf } from "./canvas_painter.ts";
 import { fills, levelColour } from "./colours.ts";
 import { overlapStrength, testLines, type Painting } from "./painting.ts";
 
-/** More boxes than this are a picture that few programs open. */
-export const mostSvgBoxes = 20_000;
+/** A picture of more boxes than this opens in few programs. */
+export const maxSvgBoxes = 20_000;
 
 function escaped(text: string): string {
   return text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/"/g, "&quot;");
@@ -12,12 +12,12 @@ function escaped(text: string): string {
 
 const short = (value: number): string => String(Math.round(value * 100) / 100);
 
-/** The panels side by side, each under its caption. */
+/** The panels side by side, each with its caption above. */
 export function svgOf(painting: Painting, captions: readonly string[]): string {
   const { boxes, dimension, palette } = painting;
   const stride = 2 * dimension;
-  if (boxes.length / stride > mostSvgBoxes)
-    throw new Error(`${boxes.length / stride} boxes; an SVG takes up to ${mostSvgBoxes}. Save a PNG instead.`);
+  if (boxes.length / stride > maxSvgBoxes)
+    throw new Error(`${boxes.length / stride} boxes; an SVG takes up to ${maxSvgBoxes}. Save a PNG instead.`);
   const width = Math.max(...painting.panels.map(({ place }) => place.x + place.width));
   const height = Math.max(...painting.panels.map(({ place }) => place.y + place.height));
   const parts: string[] = [];

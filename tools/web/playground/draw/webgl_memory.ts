@@ -1,7 +1,8 @@
-// What a graphics card holds for the painter: boxes, the vertices of shapes, and a picture before it is on the canvas.
+// Graphics memory of the painter: boxes, vertices of shapes, and a picture before it is copied to
+// the canvas.
 import { rowTexels } from "./batch.ts";
 
-/** A texture of numbers, row by row, which grows. */
+/** A growing texture of numbers, filled row by row. */
 export class Texels {
   readonly texture: WebGLTexture;
   private rows = 0;
@@ -17,7 +18,7 @@ export class Texels {
     this.gl.bindTexture(this.gl.TEXTURE_2D, this.texture);
   }
 
-  /** Takes the first texels of an array of whole rows; returns how many bytes that were. */
+  /** Uploads the first texels of an array of whole rows; returns the number of bytes. */
   set(data: Float32Array | Uint8Array, texels: number): number {
     const { gl } = this;
     const [inside, format, type, size] = this.format === "marks"
@@ -34,7 +35,7 @@ export class Texels {
   }
 }
 
-/** The indices of a shape's vertices, for a number of boxes that grows. */
+/** The indices of a shape's vertices, for a growing number of boxes. */
 export class Indices {
   private readonly buffer: WebGLBuffer;
   private boxes = 0;
@@ -43,7 +44,7 @@ export class Indices {
     this.buffer = gl.createBuffer()!;
   }
 
-  /** Returns how many bytes were handed over. */
+  /** Returns the number of bytes uploaded. */
   bind(boxes: number): number {
     const { gl, shape: { vertices, indices } } = this;
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffer);
@@ -58,7 +59,7 @@ export class Indices {
   }
 }
 
-/** A picture whose lines and edges are smoothed, to be copied to the canvas. */
+/** An antialiased picture, to be copied to the canvas. */
 export class Smooth {
   private readonly frame: WebGLFramebuffer;
   private readonly colours: WebGLRenderbuffer;

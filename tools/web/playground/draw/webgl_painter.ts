@@ -1,4 +1,5 @@
-// Paints by WebGL 2. All panels share one canvas, and boxes are handed over anew where panels differ.
+// Paints by WebGL 2. All panels share one canvas; boxes are uploaded again only where panels
+// differ.
 import {
   createBufferInfoFromArrays, createProgramInfo, drawBufferInfo, setAttribInfoBufferFromArray, setBuffersAndAttributes,
   setUniforms, type BufferInfo, type ProgramInfo,
@@ -17,7 +18,9 @@ import {
 } from "./shaders.ts";
 import { Indices, Smooth, Texels } from "./webgl_memory.ts";
 
-/** The triangles or lines of a shape, by its vertices: bit k of a vertex is its place on axis k. */
+/**
+ * The triangles or lines of a shape, by its vertices: bit k of a vertex is its position on axis k.
+ */
 const shapes = {
   flat: { vertices: 4, indices: [0, 1, 2, 2, 1, 3] },
   faces: {
@@ -28,13 +31,16 @@ const shapes = {
   edges: { vertices: 8, indices: [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7] },
 };
 
-/** Lines and edges of cubes are smoothed for up to so many boxes: by software that takes four times as long. */
-const mostSmooth = 1000;
+/**
+ * Lines and edges of cubes are antialiased up to this number of boxes. In software that takes four
+ * times as long.
+ */
+const maxSmooth = 1000;
 
-/** Of more boxes than this, fewer details are drawn. */
-const leastCrowd = 20_000;
+/** Above this number of boxes, fewer details are drawn. */
+const minCrowd = 20_000;
 
-/** A drawing of boxes, as the graphics card has it. */
+/** Boxes in graphics memory. */
 class Layer {
   readonly boxes: Texels;
   readonly marks: Texels;
@@ -46,9 +52,12 @@ class Layer {
     this.marks = new Texels(gl, "marks");
   }
 
-  /** Takes boxes; returns how many bytes were handed over. Most panels show what the one before them showed. */
+  /**
+   * Uploads boxes; returns the number of bytes. Most panels show what the previous panel showed,
+   * which costs nothing.
+   */
   set(dimension: 2 | 3, boxes: Float32Array, marks: Uint8Array | undefined, lens: Lens): number {
-    const now = [boxes, marks, ...Array.from(lens.matrix), ...lens.pixels, lens.mostPoint];
+    const now = [boxes, marks, ...Array.from(lens.matrix), ...lens.pixels, lens.maxPoint];
     if (now.every((one, at) => one === this.last[at])) return 0;
     this.last = now;
     const batch = this.batches[dimension];
@@ -62,8 +71,8 @@ interface Style {
   inks: number[];
   fills: number[];
   border: number;
-  least: number;
-  /** What is drawn of a box in 3D. */
+  minExtent: number;
+  /** The parts of a 3D box to draw. */
   parts: readonly ("faces" | "edges")[];
 }
 
@@ -82,7 +91,8 @@ export class WebglPainter implements Painter {
   drawn: Drawn = { vertices: 0, bytes: 0 };
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    // Flat boxes are smoothed by their own shader; what is not is drawn to `smooth` first, which needs the same format.
+    // Flat boxes are antialiased by their own shader. Everything else is drawn to `smooth` first,
+    // which needs the same format.
     const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
     if (gl === null) throw new Error("this browser has no WebGL 2");
     this.gl = gl;
@@ -110,7 +120,7 @@ export class WebglPainter implements Painter {
     const { gl } = this;
     const { dimension, boxes, palette, panels } = painting;
     this.drawn = { vertices: 0, bytes: 0 };
-    const smooth = boxes.length / (2 * dimension) <= mostSmooth &&
+    const smooth = boxes.length / (2 * dimension) <= maxSmooth &&
       (dimension === 3 || panels.some(({ tests }) => tests !== undefined));
     if (smooth) this.smooth.begin(this.canvas.width, this.canvas.height);
     gl.disable(gl.SCISSOR_TEST);
@@ -118,7 +128,7 @@ export class WebglPainter implements Painter {
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     gl.enable(gl.BLEND);
-    // Colours are multiplied by their opacity.
+    // Colours are premultiplied by their opacity.
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     const strength = overlapStrength(painting);
     for (const panel of panels) this.paintPanel(painting, panel, strength);
@@ -137,22 +147,23 @@ export class WebglPainter implements Painter {
     const matrix = dimension === 2
       ? flatMatrix(flatCamera(bounds, panel.place, view), panel.place) : solidMatrix(bounds, panel.place, view);
     const count = boxes.length / (2 * dimension);
-    const isCrowd = count > leastCrowd;
-    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], mostPoint: (isCrowd ? 16 : 8) * ratio };
+    const isCrowd = count > minCrowd;
+    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], maxPoint: (isCrowd ? 16 : 8) * ratio };
     const draw = (layer: Layer, style: Style): void => this.draw(layer, dimension, matrix, viewport, style);
     if (panel.outline !== undefined && this.setStructure(panel.outline, dimension, lens)) {
       const flat = dimension === 2;
       draw(this.structure, {
         inks: inksOf(palette.levels.length, (level) => [...rgb(levelColour(palette, level)), flat ? 0.75 : 0.4]),
-        fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), least: 0, parts: ["edges"],
+        fills: Array<number>(6).fill(0.05), border: Math.max(1, ratio), minExtent: 0, parts: ["edges"],
       });
     }
-    // Borders of crowds would cover what is in them; the selected box and those tested against it stand out.
+    // In a crowd, borders would cover the insides; the selected box and the boxes tested against it
+    // keep theirs.
     const strengthOf = (mark: number): number =>
       isCrowd && (mark === Mark.none || mark === Mark.lit || mark === Mark.faded) ? 0.5 : 1;
     const style: Style = {
       inks: palette.marks.flatMap((ink, mark) => [...rgb(ink), strengthOf(mark)]), fills: [...fills],
-      border: Math.max(1, ratio), least: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
+      border: Math.max(1, ratio), minExtent: (isCrowd ? 0.4 : 0.75) * ratio, parts: ["faces", "edges"],
     };
     const marks = panel.marks?.length === count ? panel.marks : painting.marks;
     this.drawn.bytes += this.scene.set(dimension, boxes, marks, lens);
@@ -161,7 +172,7 @@ export class WebglPainter implements Painter {
       this.drawn.bytes += this.overlaps.set(dimension, overlaps, undefined, lens);
       draw(this.overlaps, {
         ...style, inks: inksOf(1, () => [...rgb(palette.overlap), strength]), fills: Array<number>(6).fill(1),
-        least: isCrowd ? 0 : style.least, parts: ["faces"],
+        minExtent: isCrowd ? 0 : style.minExtent, parts: ["faces"],
       });
     }
     if (panel.tests !== undefined && panel.tests.others.length > 0) {
@@ -174,7 +185,7 @@ export class WebglPainter implements Painter {
     }
   }
 
-  /** All levels at once; a part's mark tells its level's colour. */
+  /** All levels at once; a part's mark selects its level's colour. */
   private setStructure({ levels }: Outline, dimension: 2 | 3, lens: Lens): boolean {
     const length = levels.reduce((sum, parts) => sum + parts.length, 0);
     const all = new Float32Array(length);
@@ -197,7 +208,7 @@ export class WebglPainter implements Painter {
     };
     const useFlat = (points: boolean, first: number): void => {
       gl.useProgram(this.flat.program);
-      setUniforms(this.flat, { ...shared, viewport, first, points, border: style.border, least: style.least });
+      setUniforms(this.flat, { ...shared, viewport, first, points, border: style.border, minExtent: style.minExtent });
     };
     if (batch.points > 0) {
       useFlat(true, 0);
@@ -226,7 +237,7 @@ export class WebglPainter implements Painter {
   }
 }
 
-/** Six inks, as many as shaders have; those beyond `count` repeat. */
+/** Six colours, the number in the shaders; beyond `count` they repeat. */
 function inksOf(count: number, ink: (at: number) => number[]): number[] {
   return Array.from({ length: 6 }, (_, at) => ink(at % count)).flat();
 }

@@ -1,4 +1,5 @@
-// The library in a page or in Node: two modules of WebAssembly, one as users have it and one that writes its tests down.
+// The library in a page or in Node: two WebAssembly modules, the regular build and one that records
+// its tests.
 import engineBytes from "../../../build/playground/engine/engine.wasm";
 import observingBytes from "../../../build/playground/engine/observing.wasm";
 
@@ -8,13 +9,13 @@ import type { Algorithm, Engine, Frame, Observation, Outline, Scene, Search, Sta
 
 export type { Engine } from "./types.ts";
 
-/** The two modules, as their files have them. */
+/** The bytes of the two modules' files. */
 export interface EngineBytes {
   engine: BufferSource;
   observing: BufferSource;
 }
 
-/** Makes an engine, without a request: the bytes are in the bundle unless they are given. */
+/** Creates an engine, without a request: by default, the bytes are in the bundle. */
 export async function loadEngine(bytes: EngineBytes = { engine: engineBytes, observing: observingBytes }):
     Promise<Engine> {
   const [plain, observing] = await Promise.all([EngineModule.load(bytes.engine), EngineModule.load(bytes.observing)]);

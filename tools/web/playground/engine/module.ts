@@ -1,7 +1,7 @@
 // A module of the engine (engine.cpp): its memory, its texts and its functions' errors.
 import { importsOf } from "../../../bindings/wasm/src/imports.ts";
 
-/** What engine.cpp exports. */
+/** The exports of engine.cpp. */
 interface Exports {
   memory: WebAssembly.Memory;
   _initialize(): void;
@@ -25,12 +25,14 @@ interface Exports {
   free_tracker(tracker: number): void;
   list_scenes(): number;
   make_boxes(count: number, seed: number, dimension: number): number;
-  /** Not of the observing module. */
+  /** Missing in the observing module. */
   read_file(): number;
 }
 
-/** What the package's module takes, and what else the standard library asks of the system: files, arguments and a clock,
- * which there are not. */
+/**
+ * The imports of the package's module, and stubs for what else the standard library asks of the
+ * system: files, arguments and a clock.
+ */
 function imports(module: WebAssembly.Module, memory: () => ArrayBufferLike): WebAssembly.Imports {
   const all: WebAssembly.Imports = importsOf(memory);
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
@@ -65,7 +67,7 @@ export class EngineModule {
     new Uint8Array(this.#exports.memory.buffer, at, bytes.length).set(bytes);
   }
 
-  /** Returns how many boxes these are. */
+  /** Returns the number of boxes. */
   putBoxes(boxes: Float32Array, dimension: 2 | 3): number {
     if (dimension !== 2 && dimension !== 3) throw new Error(`dimension ${dimension}; expected 2 or 3`);
     if (boxes.length % (2 * dimension) !== 0)
@@ -75,7 +77,9 @@ export class EngineModule {
     return boxes.length / (2 * dimension);
   }
 
-  /** Calls a function. Returns the milliseconds it took; throws the library's message where it fails. */
+  /**
+   * Calls a function. Returns the milliseconds it took; throws the library's message if it fails.
+   */
   call(body: (exports: Exports) => number): number {
     const begin = performance.now();
     const failed = body(this.#exports);
@@ -88,7 +92,7 @@ export class EngineModule {
     this.#exports.free_tracker(tracker);
   }
 
-  // Answers are copied: the next call overwrites them, and memory that grows leaves views of it empty.
+  // Copies the answers: the next call overwrites them, and growing memory detaches views of it.
 
   text(): string {
     const { memory, answer_text, answer_text_size } = this.#exports;
@@ -100,7 +104,7 @@ export class EngineModule {
     return new Uint32Array(memory.buffer, answer_pairs(), 2 * answer_pair_count()).slice();
   }
 
-  /** Tests of a search that was observed; pairs that ended with a frame. */
+  /** Tests of an observed search; pairs that ended with a frame. */
   morePairs(): Uint32Array<ArrayBuffer> {
     const { memory, answer_more_pairs, answer_more_pair_count } = this.#exports;
     return new Uint32Array(memory.buffer, answer_more_pairs(), 2 * answer_more_pair_count()).slice();

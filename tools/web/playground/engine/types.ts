@@ -1,21 +1,21 @@
-// What the playground asks of the library, and the steps of the draft's algorithms.
+// The playground's interface to the library, and the steps of the draft's algorithms.
 //
-// Boxes are packed: the minima of one box and then its maxima, so 4 numbers a box in 2D and 6 in 3D. An id is a box's
-// place in the array, from 0.
+// Boxes are packed: the minima of one box and then its maxima, so 4 numbers per box in 2D and 6 in
+// 3D. An id is a box's index in the array, from 0.
 
 import type { Recorded } from "../scene/frames.ts";
 
-/** What a search counted. */
+/** Counts of a search. */
 export interface Statistics {
   tests: number;       // pairs of boxes compared
   references: number;  // entries of boxes in cells, nodes or lists
-  cells: number;       // cells or nodes that there are; 0 where an algorithm does not count them
-  hits: number;        // of the tests, those of boxes that overlap; 0 unless they were observed
+  cells: number;       // cells or nodes; 0 if an algorithm does not count them
+  hits: number;        // tests that found an overlap; 0 unless the search was observed
 }
 
-/** What an algorithm lays over the boxes. */
+/** The structure of an algorithm over the boxes. */
 export interface Outline {
-  kind: string;  // "cells", "stripes", "nodes" or "sweep"; empty where there is nothing to draw
+  kind: string;  // "cells", "stripes", "nodes" or "sweep"; empty if there is nothing to draw
   caption: string;
   sweptAxis: number;       // the axis along which boxes are sorted; -1: none
   levels: Float32Array[];  // boxes, from the coarsest level down
@@ -24,9 +24,9 @@ export interface Outline {
 export interface Tunable {
   name: string;
   summary: string;
-  default: string;  // "auto" where the algorithm chooses by itself
+  default: string;  // "auto" if the algorithm chooses the value
   type: "number" | "integer" | "choice";
-  min?: number;  // of a number or an integer
+  min?: number;  // for a number or an integer
   max?: number;
   choices?: string[];
 }
@@ -44,16 +44,18 @@ export interface Algorithm {
 export interface Search {
   pairs: Uint32Array;  // [a0, b0, a1, b1, ...]
   statistics: Statistics;
-  explanation: string;  // of auto: which algorithm it took, and why; of others empty
+  explanation: string;  // for auto, the chosen algorithm and the reason; otherwise empty
   milliseconds: number;
 }
 
 export interface Observation extends Search {
-  /** [a0, b0, ...]: each pair of boxes that was compared, in order. tests.length / 2 === statistics.tests. */
+  /**
+   * [a0, b0, ...]: each compared pair of boxes, in order. tests.length / 2 === statistics.tests.
+   */
   tests: Uint32Array;
 }
 
-/** What one update of a tracker told. */
+/** Events of one update of a tracker. */
 export interface Frame {
   begun: Uint32Array;  // [a0, b0, ...]
   ended: Uint32Array;
@@ -63,9 +65,12 @@ export interface Frame {
 }
 
 export interface Tracker {
-  /** Box i of this frame is box i of the last one. A box whose minimum is above its maximum is absent. */
+  /**
+   * Box i of this frame is box i of the last one. A box whose minimum is above its maximum is
+   * absent.
+   */
   update(boxes: Float32Array): Frame;
-  /** Gives its memory back. Nothing may be called afterwards. */
+  /** Frees its memory. No method may be called afterwards. */
   free(): void;
 }
 
@@ -75,31 +80,39 @@ export interface Scene {
   dimension: number;
 }
 
-/** The library in the page. What it refuses is thrown as an Error with the library's message. */
+/**
+ * The library in the page. Input that it refuses is thrown as an Error with the library's message.
+ */
 export interface Engine {
   algorithms(): Algorithm[];
-  /** The library as it is. */
+  /** The regular build of the library. */
   find(spec: string, boxes: Float32Array, dimension: 2 | 3): Search;
-  /** The observing build of the same templates; slower, so its milliseconds say nothing of the library. */
+  /**
+   * The observing build of the same templates. It is slower, so its times say nothing about the
+   * library.
+   */
   observe(spec: string, boxes: Float32Array, dimension: 2 | 3): Observation;
   outline(spec: string, boxes: Float32Array, dimension: 2 | 3): Outline;
   tracker(spec: string, dimension: 2 | 3): Tracker;
-  /** What `auto` takes for these boxes, and why. */
+  /** The algorithm that `auto` chooses for these boxes, and the reason. */
   advise(boxes: Float32Array, dimension: 2 | 3): string;
-  /** The lab's generators; one with two dimensions is there twice. */
+  /** The lab's generators; one for 2D and 3D is listed twice. */
   scenes(): Scene[];
   scene(spec: string, count: number, seed: number, dimension?: 2 | 3): Float32Array<ArrayBuffer>;
-  /** The boxes of a file, by the program's own readers (docs/formats.md); the warning says how it was read. */
+  /**
+   * The boxes of a file, by the program's own readers (docs/formats.md); the warning says how it
+   * was interpreted.
+   */
   read(name: string, bytes: Uint8Array): Recorded & { warning: string };
 }
 
 /**
- * Where a search of the draft's algorithms stands. Arrays are shared between steps: do not change them. `cells` and
- * `nodes` are made when they are asked for, so ask once for what is drawn.
+ * State of a search by one of the draft's algorithms. Arrays are shared between steps: do not
+ * change them. `cells` and `nodes` are computed on access, so read them once.
  */
 export type StepState = BruteForceState | GridState | SweepState | QuadtreeState;
 
-/** Algorithm 1: the two places of the loops; -1 before one has begun. */
+/** Algorithm 1: the indices of the two loops; -1 before a loop has begun. */
 export interface BruteForceState {
   kind: "brute_force";
   i: number;
@@ -120,30 +133,33 @@ export interface GridState {
   size: number;  // the side of a cell
   columns: number;
   rows: number;
-  cells: readonly (readonly number[])[];  // ids by column * rows + row; empty before Algorithm 2 has ended
-  current: number;                        // the cell that is filled or searched; -1: none
-  /** While a box is inserted: the first and last column and row that it is in. */
+  cells: readonly (readonly number[])[];  // ids by column * rows + row; empty until Algorithm 2 has ended
+  current: number;                        // the cell being filled or searched; -1: none
+  /** While a box is inserted: the first and last column and row that it covers. */
   span?: readonly [firstColumn: number, lastColumn: number, firstRow: number, lastRow: number];
-  /** Of two boxes that overlap: the greater minimum on each axis. The cell that holds it reports the pair. */
+  /**
+   * For two overlapping boxes: the greater minimum on each axis. The cell that contains this point
+   * reports the pair.
+   */
   point?: readonly [x: number, y: number];
 }
 
 /** Algorithms 5 and 6, along the x axis. */
 export interface SweepState {
   kind: "sweep_and_prune";
-  order: readonly number[];   // ids by their least x, once they are sorted
-  next: number;               // the place in the order of the box that the sweep is at; -1 before
-  position: number;           // where the sweep line stands: the least x of that box; NaN before
+  order: readonly number[];   // ids by their minimum x, once they are sorted
+  next: number;               // index in the order of the current box of the sweep; -1 before
+  position: number;           // position of the sweep line: that box's minimum x; NaN before
   active: readonly number[];  // F: the boxes that the line may still meet
 }
 
 export interface QuadtreeNode {
   depth: number;
-  parent: number;  // a place in `nodes`; -1: none
-  /** The world's part of the node; nodes at the border go on without end. */
+  parent: number;  // index in `nodes`; -1: none
+  /** The node's part of the world; nodes at the border are unbounded. */
   box: readonly [left: number, top: number, right: number, bottom: number];
   origin: readonly [x: number, y: number];
-  children?: readonly [qi: number, qii: number, qiii: number, qiv: number];  // places in `nodes`; a leaf has none
+  children?: readonly [qi: number, qii: number, qiii: number, qiv: number];  // indices in `nodes`; a leaf has none
   boxes: readonly number[];  // ids, in a leaf and in a node that is being split
   count: number;
 }
@@ -154,31 +170,34 @@ export interface QuadtreeState {
   world: World;
   capacity: number;
   nodes: readonly QuadtreeNode[];  // a node's children come after it
-  current: number;                 // the node that is filled, split or searched; -1: none
-  point?: readonly [x: number, y: number];  // as for the grid: the leaf that holds it reports the pair
+  current: number;                 // the node being filled, split or searched; -1: none
+  point?: readonly [x: number, y: number];  // as for the grid: the leaf that contains it reports the pair
 }
 
 export interface Step {
   line: number;  // the current line: an index into the listing
-  text: string;  // what happens here, with the boxes named by id
-  boxes: number[];  // the boxes it is about
-  pair?: [number, number];  // that is tested
-  /** test: it is about to be compared; hit and miss: what came out; reported: a hit that is written. */
+  text: string;  // what happens in this step, with the boxes named by id
+  boxes: number[];  // the boxes involved
+  pair?: [number, number];  // the pair being tested
+  /** test: about to be compared; hit and miss: the result; reported: a hit that is written. */
   outcome?: "test" | "hit" | "miss" | "reported";
   state: StepState;
 }
 
 export type StepAlgorithm = StepState["kind"];
 
-/** The tunables of the mended listings; what is left out is chosen as paper_grid and paper_quadtree choose it. */
+/**
+ * Tunables of the mended listings; omitted ones are chosen as paper_grid and paper_quadtree choose
+ * them.
+ */
 export interface StepOptions {
   cell?: number;      // grid: the side of a cell
-  capacity?: number;  // quadtree: boxes that a leaf holds before it splits; 8 if left out
+  capacity?: number;  // quadtree: maximum number of boxes of a leaf before it splits; default 8
 }
 
 export interface Steps {
   listing: string[];
-  steps: Step[];                 // an array, so one can step back
-  pairs: [number, number][];     // those reported, in order
+  steps: Step[];                 // an array, so that the player can step back
+  pairs: [number, number][];     // the reported pairs, in order
   tests: number;
 }

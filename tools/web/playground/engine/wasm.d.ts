@@ -1,4 +1,4 @@
-// A WebAssembly module's bytes, which the bundler puts into the bundle.
+// The bytes of a WebAssembly module, embedded by the bundler.
 declare module "*.wasm" {
   const bytes: Uint8Array<ArrayBuffer>;
   export default bytes;

@@ -2,7 +2,7 @@ import { nameOf } from "../state/spec.ts";
 import { plural } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
-const most = 1500;
+const maxTests = 1500;
 
 export const sorting: Lesson = {
   title: "Why sorting helps",
@@ -23,7 +23,7 @@ export const sorting: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>Sweep the tower of 200 boxes with fewer than {most} tests, without taking another algorithm.</p>,
+    task: <p>Sweep the tower of 200 boxes with fewer than {maxTests} tests, without taking another algorithm.</p>,
     hint: <p>Under “Algorithm”, choose the axis along which the boxes' shadows overlap least.</p>,
     check({ shown, state }) {
       const panel = shown.panels[0];
@@ -32,7 +32,7 @@ export const sorting: Lesson = {
       if (state.scene.name !== "tower" || state.scene.count < 200)
         return { done: false, text: "This is about the tower, with its 200 boxes." };
       const { tests } = panel.statistics;
-      return { done: panel.error === undefined && tests < most, text: `The sweep makes ${plural(tests, "test")}.` };
+      return { done: panel.error === undefined && tests < maxTests, text: `The sweep makes ${plural(tests, "test")}.` };
     },
   },
 };

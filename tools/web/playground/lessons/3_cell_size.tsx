@@ -2,8 +2,8 @@ import { nameOf } from "../state/spec.ts";
 import { grouped } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
-/** Tests and references together; the best cells need some 1,600. */
-const most = 1800;
+/** Limit on tests plus references; the best cell size needs about 1,600. */
+const maxTests = 1800;
 
 export const cellSize: Lesson = {
   title: "The cell-size cliff",
@@ -28,7 +28,7 @@ export const cellSize: Lesson = {
   ),
   exercise: {
     task: <p>Move the slider <b>cell</b> until tests and references of <code>paper_grid</code> add up to less than{" "}
-      {grouped(most)} for these 500 boxes.</p>,
+      {grouped(maxTests)} for these 500 boxes.</p>,
     hint: <p>Take cells about twice as wide as a usual box, and look at both counts while you drag.</p>,
     check({ shown, state }) {
       const panel = shown.panels.find(({ spec }) => nameOf(spec) === "paper_grid");
@@ -38,7 +38,7 @@ export const cellSize: Lesson = {
         return { done: false, text: "This is about the 500 boxes that the lesson begins with, and a cell that you set." };
       const { tests, references } = panel.statistics;
       return {
-        done: panel.error === undefined && tests + references < most,
+        done: panel.error === undefined && tests + references < maxTests,
         text: `${grouped(tests)} tests and ${grouped(references)} references: ${grouped(tests + references)}.`,
       };
     },

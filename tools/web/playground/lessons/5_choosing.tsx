@@ -9,10 +9,10 @@ const cases = [
   { name: "20,000 spread evenly", scene: scene("drift", 20_000, { moving: 0 }) },
 ] as const;
 
-/** Choices that were good enough, by the case's name. */
+/** Names of the cases with a good enough choice. */
 const solved = signal<ReadonlySet<string>>(new Set());
 
-/** As many times as long as the fastest is good enough. */
+/** Maximum ratio to the fastest time that is good enough. */
 const enough = 1.5;
 
 export const choosing: Lesson = {

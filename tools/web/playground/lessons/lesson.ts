@@ -2,11 +2,11 @@
 import type { ComponentChildren } from "preact";
 
 import type { Duel, PanelChoice, Shown } from "../bench/protocol.ts";
-import { standardKnobs, type Knobs } from "../scene/drift.ts";
+import { defaultKnobs, type Knobs } from "../scene/drift.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
 import type { State } from "../state/state.ts";
 
-/** What an exercise is judged by. */
+/** Facts by which an exercise is judged. */
 export interface Facts {
   state: State;
   shown: Shown;
@@ -15,7 +15,7 @@ export interface Facts {
 
 export interface Verdict {
   done: boolean;
-  /** How things stand, as a sentence. */
+  /** The current status, as a sentence. */
   text: string;
 }
 
@@ -35,13 +35,13 @@ export interface Lesson {
   title: string;
   text: ComponentChildren;
   tries: readonly Try[];
-  /** What the lesson begins with. */
+  /** Initial state of the lesson. */
   start: Partial<State>;
   exercise: Exercise;
 }
 
 export function scene(name: string, count: number, knobs: Partial<Knobs> = {}): SceneChoice {
-  return { name, count, seed: 1, knobs: { ...standardKnobs, ...knobs } };
+  return { name, count, seed: 1, knobs: { ...defaultKnobs, ...knobs } };
 }
 
 export function panels(...specs: readonly string[]): PanelChoice[] {

@@ -1,4 +1,4 @@
-// Some seconds as a GIF: small, in at most 256 colours.
+// Records some seconds as a GIF: small, in at most 256 colours.
 import { applyPalette, GIFEncoder, quantize } from "gifenc";
 
 const width = 480;

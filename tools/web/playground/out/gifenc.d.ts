@@ -1,4 +1,4 @@
-// What the page uses of gifenc, which brings no types.
+// Types for the parts of gifenc that the page uses; it ships none.
 declare module "gifenc" {
   export type Palette = number[][];
   export function quantize(pixels: Uint8ClampedArray, colours: number): Palette;

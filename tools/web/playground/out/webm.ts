@@ -1,4 +1,4 @@
-// Some seconds as a film, by the browser's own encoder.
+// Records some seconds as a film, with the browser's own encoder.
 
 export async function webmOf(canvas: HTMLCanvasElement, seconds: number): Promise<Blob> {
   if (typeof MediaRecorder === "undefined" || !MediaRecorder.isTypeSupported("video/webm"))

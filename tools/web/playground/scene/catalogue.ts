@@ -1,10 +1,10 @@
-// The scenes that can be named: those with sliders, lines, the presets, and a file.
+// The scenes by name: the one with sliders, lines, the presets, and a file.
 import { presets } from "../presets.ts";
 import { drift, type Knobs } from "./drift.ts";
 import { line } from "./line.ts";
 import { followingBounds, usualBounds, type Scene } from "./scene.ts";
 
-/** What chooses a scene. */
+/** Selects a scene. */
 export interface SceneChoice {
   name: string;
   count: number;
@@ -17,11 +17,11 @@ export interface SceneEntry {
   title: string;
   summary: string;
   dimension: 2 | 3;
-  /** How many boxes it begins with. */
+  /** Initial number of boxes. */
   count: number;
-  /** Whether the four sliders do anything. */
+  /** Whether the four sliders apply. */
   knobs: boolean;
-  /** The algorithm that it breaks, and why. */
+  /** The algorithm that it breaks, and the reason. */
   breaks?: { spec: string; follow: boolean; why: string };
 }
 
@@ -49,7 +49,7 @@ const lines: SceneEntry[] = [
   },
 ];
 
-/** "a_huge_floor" as "A huge floor". */
+/** "a_huge_floor" becomes "A huge floor". */
 function titleOf(name: string): string {
   const words = name.replace(/[_-]/g, " ");
   return words.charAt(0).toUpperCase() + words.slice(1);
@@ -67,7 +67,7 @@ export function sceneEntry(name: string): SceneEntry | undefined {
   return sceneEntries.find((entry) => entry.name === name);
 }
 
-/** The scene of that name. Throws where there is none. */
+/** The scene of that name. Throws if there is none. */
 export function makeScene({ name, count, seed, knobs }: SceneChoice): Scene {
   if (name === "drift") return drift(2, count, seed, knobs);
   if (name === "drift3") return drift(3, count, seed, knobs);

@@ -1,20 +1,21 @@
-// The scene with sliders: boxes that drift and bounce, their sizes, clusters, share that moves and speed as chosen.
+// The scene with sliders: boxes that drift and bounce, with adjustable sizes, clustering, moving
+// fraction and speed.
 import { bounce } from "./motion.ts";
 import { normalAt, randomAt } from "./random.ts";
 import type { Dimension, Scene } from "./scene.ts";
 
 export interface Knobs {
-  /** How many times as long as the smallest box the largest one is. */
+  /** Size of the largest box over that of the smallest. */
   ratio: number;
   /** 0: evenly spread; 1: tight clusters. */
   clustering: number;
-  /** The share of boxes that move. */
+  /** Fraction of boxes that move. */
   moving: number;
   /** As a factor of the usual speed. */
   speed: number;
 }
 
-export const standardKnobs: Knobs = { ratio: 3, clustering: 0, moving: 1, speed: 1 };
+export const defaultKnobs: Knobs = { ratio: 3, clustering: 0, moving: 1, speed: 1 };
 
 const size = [160, 100, 100] as const;
 const clusters = 7;
@@ -23,11 +24,11 @@ export function drift(dimension: Dimension, count: number, seed: number, knobs: 
   const start = new Float64Array(count * dimension);
   const velocity = new Float64Array(count * dimension);
   const half = new Float64Array(count * dimension);
-  // About a twelfth of the world is covered, whatever the number of boxes.
+  // Boxes cover about a twelfth of the world, whatever their number.
   const volume = size.slice(0, dimension).reduce((product, side) => product * side, 1);
   const usual = 0.5 * (0.085 * volume / count) ** (1 / dimension);
   for (let box = 0; box < count; ++box) {
-    // Few are large.
+    // Only a few are large.
     const scale = knobs.ratio ** (randomAt(seed, box, 0) ** 4) / knobs.ratio ** 0.2;
     const rests = randomAt(seed, box, 1) >= knobs.moving;
     const cluster = Math.floor(randomAt(seed, box, 2) * clusters);

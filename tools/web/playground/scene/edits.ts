@@ -1,34 +1,37 @@
-// What the visitor did to the boxes: moved, threw, added and removed some. In 2D.
+// The visitor's edits: boxes moved, thrown, added and removed. In 2D.
 import { bounce } from "./motion.ts";
 import type { Bounds } from "./scene.ts";
 
-/** From a time on, a box goes its own way: from here at this speed, bouncing at the world's borders. */
+/**
+ * From a given time on, a box moves from this place at this speed and bounces off the world's
+ * borders.
+ */
 export interface Edit {
-  /** Its place; those from the scene's number on are added. */
+  /** Its index; indices from the scene's count on are added boxes. */
   box: number;
   time: number;
   /** Its centre at that time. */
   x: number;
   y: number;
-  /** Its sides; negative: it is removed. */
+  /** Its sides; negative: removed. */
   width: number;
   height: number;
   vx: number;
   vy: number;
 }
 
-/** The edits with one more, which replaces later ones of the same box. */
+/** The edits with one more, which replaces later edits of the same box. */
 export function withEdit(edits: readonly Edit[], edit: Edit): Edit[] {
   const kept = edits.filter((one) => one.box !== edit.box || one.time < edit.time);
   return [...kept, edit].sort((a, b) => a.time - b.time);
 }
 
-/** How many boxes there are with those that edits add. */
+/** The number of boxes, including added ones. */
 export function countWith(count: number, edits: readonly Edit[]): number {
-  return edits.reduce((most, edit) => Math.max(most, edit.box + 1), count);
+  return edits.reduce((max, edit) => Math.max(max, edit.box + 1), count);
 }
 
-/** Writes one box as an edit has it at a time. */
+/** Writes one edited box at a given time. */
 export function place(boxes: Float32Array, edit: Edit, time: number, bounds: Bounds): void {
   const at = 4 * edit.box;
   if (edit.width < 0) {
@@ -38,13 +41,13 @@ export function place(boxes: Float32Array, edit: Edit, time: number, bounds: Bou
   const [left, bottom, right, top] = bounds as [number, number, number, number];
   const passed = time - edit.time;
   const [w, h] = [edit.width / 2, edit.height / 2];
-  // What was put beyond the borders, or is larger than the world, stays there unless it was thrown.
+  // A box placed beyond the borders, or larger than the world, stays there unless it was thrown.
   const x = edit.vx === 0 ? edit.x : bounce(edit.x, edit.vx, passed, left + w, right - w);
   const y = edit.vy === 0 ? edit.y : bounce(edit.y, edit.vy, passed, bottom + h, top - h);
   boxes.set([x - w, y - h, x + w, y + h], at);
 }
 
-/** The scene's boxes with the edits made up to a time; boxes that are added later are absent. */
+/** The scene's boxes with the edits up to a given time; boxes that are added later are absent. */
 export function edited(boxes: Float32Array<ArrayBuffer>, edits: readonly Edit[], time: number,
                        bounds: Bounds): Float32Array<ArrayBuffer> {
   if (edits.length === 0) return boxes;

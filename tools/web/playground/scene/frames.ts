@@ -3,7 +3,7 @@ import { numbersPerBox, usualBounds, type Dimension, type Scene } from "./scene.
 
 export const framesPerSecond = 20;
 
-/** Frames of boxes. A frame may have fewer boxes than another one; those missing are absent. */
+/** Frames of boxes. Frames may differ in the number of boxes; missing ones are absent. */
 export interface Recorded {
   dimension: Dimension;
   frames: Float32Array<ArrayBuffer>[];
@@ -11,7 +11,7 @@ export interface Recorded {
 
 export function recordedScene({ dimension, frames }: Recorded): Scene {
   const stride = numbersPerBox(dimension);
-  const most = Math.max(0, ...frames.map((frame) => frame.length));
+  const maxLength = Math.max(0, ...frames.map((frame) => frame.length));
   const absent = [...Array<number>(dimension).fill(Infinity), ...Array<number>(dimension).fill(-Infinity)];
   return {
     dimension,
@@ -19,9 +19,9 @@ export function recordedScene({ dimension, frames }: Recorded): Scene {
     duration: frames.length / framesPerSecond,
     at(time) {
       const frame = frames[Math.floor(time * framesPerSecond + 1e-6) % frames.length];
-      const boxes = new Float32Array(most);
+      const boxes = new Float32Array(maxLength);
       if (frame !== undefined) boxes.set(frame);
-      for (let at = frame?.length ?? 0; at < most; at += stride) boxes.set(absent, at);
+      for (let at = frame?.length ?? 0; at < maxLength; at += stride) boxes.set(absent, at);
       return boxes;
     },
   };

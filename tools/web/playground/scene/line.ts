@@ -1,4 +1,5 @@
-// Boxes along a line: a street along x, or a tower along y. What a sweep along the right axis is made for.
+// Boxes along a line: a street along x, or a tower along y. The best case for a sweep along the
+// right axis.
 import { randomAt } from "./random.ts";
 import type { Scene } from "./scene.ts";
 
@@ -6,7 +7,7 @@ const [long, wide] = [160, 10];
 
 export function line(along: 0 | 1, count: number, seed: number): Scene {
   const side = Math.max(0.02, 1.1 * long / count);
-  // A street is as wide as it is; a tower is hardly wider than a box.
+  // A street has the usual width; a tower is hardly wider than a box.
   const narrow = along === 0 ? wide : 1.5 * side;
   const bounds = along === 0
     ? [0, -long * 0.25, long, narrow + long * 0.25] : [-long * 0.6, 0, long * 0.6, long];

@@ -1,6 +1,6 @@
 // Motion as a function of time, so that time can be scrubbed and a link shows the same boxes.
 
-/** Where a point is that starts at `start` and bounces between two walls. */
+/** Position of a point that starts at `start` and bounces between two walls. */
 export function bounce(start: number, speed: number, time: number, low: number, high: number):
     number {
   const width = high - low;

@@ -1,6 +1,7 @@
-// Random numbers that a seed and a place fix, so that box 7 is the same box however many there are.
+// Random numbers determined by a seed and an index, so that box 7 is the same whatever the number
+// of boxes.
 
-/** A number of [0, 1) for a seed, a box and what it is for. */
+/** A number in [0, 1) for a seed, a box and a purpose. */
 export function randomAt(seed: number, box: number, purpose: number): number {
   let bits = Math.imul(seed ^ 0x9e3779b9, 0x85ebca6b) ^ Math.imul(box + 1, 0xc2b2ae35);
   bits ^= Math.imul(purpose + 1, 0x27d4eb2f);
@@ -9,7 +10,7 @@ export function randomAt(seed: number, box: number, purpose: number): number {
   return ((bits ^ (bits >>> 16)) >>> 0) / 2 ** 32;
 }
 
-/** A number of the standard normal distribution (Box and Muller). */
+/** A number from the standard normal distribution (Box and Muller). */
 export function normalAt(seed: number, box: number, purpose: number): number {
   const radius = Math.sqrt(-2 * Math.log(1 - randomAt(seed, box, purpose)));
   return radius * Math.cos(2 * Math.PI * randomAt(seed, box, purpose + 1));

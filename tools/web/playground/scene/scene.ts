@@ -1,4 +1,4 @@
-// What is shown: boxes as a function of time.
+// A scene: boxes as a function of time.
 
 export type Dimension = 2 | 3;
 
@@ -7,13 +7,13 @@ export type Bounds = readonly number[];
 
 export interface Scene {
   dimension: Dimension;
-  /** What the camera shows at first. */
+  /** The camera's initial bounds. */
   bounds: Bounds;
-  /** The seconds that there are; infinite where motion goes on. */
+  /** Length in seconds; infinite for endless motion. */
   duration: number;
-  /** What the camera shows when the boxes have gone elsewhere; undefined: always the bounds. */
+  /** The camera's bounds once the boxes have moved elsewhere; undefined: always `bounds`. */
   boundsAt?(boxes: Float32Array): Bounds;
-  /** The boxes at a time: minima and then maxima of each. The array is the caller's. */
+  /** The boxes at a given time: minima, then maxima of each. The caller owns the array. */
   at(time: number): Float32Array<ArrayBuffer>;
 }
 
@@ -21,7 +21,10 @@ export function numbersPerBox(dimension: Dimension): 4 | 6 {
   return dimension === 2 ? 4 : 6;
 }
 
-/** The bounds of boxes, without the farthest hundredth at each end: one huge box hides no others. */
+/**
+ * The bounds of boxes, without the outermost 1 % at each end, so that one huge box does not shrink
+ * the others.
+ */
 export function usualBounds(boxes: Float32Array, dimension: Dimension): Bounds {
   const stride = 2 * dimension;
   const low: number[] = [];
@@ -50,7 +53,7 @@ export function usualBounds(boxes: Float32Array, dimension: Dimension): Bounds {
   return [...low, ...high];
 }
 
-/** The mean centre of boxes on an axis, of those that are there and finite. */
+/** The mean centre on an axis of boxes that are present and finite. */
 function meanCentre(boxes: Float32Array, dimension: Dimension, axis: number): number {
   let [sum, count] = [0, 0];
   for (let at = axis; at < boxes.length; at += 2 * dimension) {
@@ -62,7 +65,7 @@ function meanCentre(boxes: Float32Array, dimension: Dimension, axis: number): nu
   return count === 0 ? 0 : sum / count;
 }
 
-/** Bounds that go with boxes which leave them all together, and stay while these only move about. */
+/** Bounds that follow boxes which leave them together, and stay while boxes only move about. */
 export function followingBounds(bounds: Bounds, first: Float32Array, dimension: Dimension):
     (boxes: Float32Array) => Bounds {
   const start = Array.from({ length: dimension }, (_, axis) => meanCentre(first, dimension, axis));

@@ -1,9 +1,9 @@
-// Few boxes, large enough to be read, for the step player.
+// A few boxes, large enough to label, for the step player.
 import { randomAt } from "./random.ts";
 
 export const stepWorld = { width: 16, height: 10 } as const;
 
-/** Boxes at quarters of a unit, so that their numbers are short. */
+/** Boxes on a grid of quarter units, so that their coordinates are short. */
 export function stepBoxes(count: number, seed: number): Float32Array<ArrayBuffer> {
   const quarters = (value: number): number => Math.round(4 * value) / 4;
   const size = Math.min(3, 5.2 / Math.sqrt(count));

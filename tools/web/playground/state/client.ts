@@ -1,4 +1,4 @@
-// The bench that the page talks to; set once when the page starts.
+// The page's bench, set once at start.
 import type { Client } from "../bench/client.ts";
 
 let client: Client | undefined;

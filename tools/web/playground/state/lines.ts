@@ -1,4 +1,4 @@
-// The lines to copy: the search that a panel shows, in a program of the visitor's.
+// Code to copy: the search of a panel, in a program of the visitor.
 import { nameOf } from "./spec.ts";
 
 export type Language = "C++" | "Python" | "JavaScript";
@@ -7,7 +7,10 @@ export const languages: readonly Language[] = ["C++", "Python", "JavaScript"];
 
 const quoted = (text: string): string => JSON.stringify(text);
 
-/** The program's lines. The draft's listings are in no package, so they stand for the algorithm of their kind. */
+/**
+ * The program's code. The draft's listings are in no package, so the library's algorithm of the
+ * same kind is used.
+ */
 export function linesFor(language: Language, spec: string, dimension: 2 | 3, follow: boolean): string {
   const own = nameOf(spec).startsWith("paper_") ? nameOf(spec).replace("paper_", "") : spec;
   const plain = own === "auto";

@@ -1,5 +1,5 @@
-// The loop: time goes on, the bench is asked for the boxes at that time, and what it shows is painted. At most one
-// frame is under way, so a slow search makes motion jerk and never makes the page wait.
+// The loop: advances time, requests the boxes at that time from the bench, and paints the results.
+// At most one frame is in progress, so a slow search makes motion jerky but never blocks the page.
 import { effect } from "@preact/signals";
 
 import type { Client } from "../bench/client.ts";
@@ -8,23 +8,23 @@ import {
   algorithms, clock, duel, duelling, duration, held, latest, measured, measuring, problem, setup, shown, state, told,
 } from "./store.ts";
 
-/** Motion does not leap when the tab was in the background. */
+/** Limits the time step, so that motion does not leap after the tab was in the background. */
 const longestStep = 0.1;
 
 /** How often counts change, in ms. */
 const tellEvery = 120;
 
-/** When a panel that was left out of a frame is asked for again, in ms. */
+/** When a panel that was left out of a frame is requested again, in ms. */
 const lateAfter = 120;
 
-/** The script's times of the last frames, in ms, for those who measure the page. */
+/** Script times of the last frames, in ms, for measurements of the page. */
 export const scriptTimes: number[] = [];
-const mostTimes = 600;
+const maxTimes = 600;
 
-/** How many frames the bench has shown. */
+/** Number of frames that the bench has shown. */
 export let frames = 0;
 
-/** When the first frame was painted, in ms from the page's start. */
+/** When the first frame was painted, in ms since the page's start. */
 export let firstFrame = NaN;
 
 export class Loop {
@@ -49,12 +49,12 @@ export class Loop {
     requestAnimationFrame((now) => this.step(now));
   }
 
-  /** Whether a frame is under way or due, or a panel's results are. */
+  /** Whether a frame, or a panel's results, are in progress or due. */
   get busy(): boolean {
     return this.underway || this.dirty || this.late;
   }
 
-  /** Another picture of the same boxes is wanted: the size, the camera or the theme changed. */
+  /** Repaints the same boxes after the size, the camera or the theme has changed. */
   repaint(): void {
     this.unpainted = true;
   }
@@ -75,7 +75,7 @@ export class Loop {
         this.unpainted = true;
         this.tell();
         this.late = reply.shown.panels.some(({ late }) => late);
-        // Time may stand still; what was too slow for this frame is still to be shown.
+        // Time may stand still, but results that were too slow for this frame must still be shown.
         if (this.late) setTimeout(() => { this.dirty = true; }, lateAfter);
         break;
       case "measured":
@@ -111,12 +111,12 @@ export class Loop {
     }
     this.script += performance.now() - begin;
     scriptTimes.push(this.script);
-    if (scriptTimes.length > mostTimes) scriptTimes.shift();
+    if (scriptTimes.length > maxTimes) scriptTimes.shift();
     this.script = 0;
     requestAnimationFrame((then) => this.step(then));
   }
 
-  /** At once where it was not told just before, else soon. */
+  /** Updates the readable counts: at once if the last update was not recent, otherwise soon. */
   private tell(): void {
     if (this.telling) return;
     this.telling = true;
@@ -133,8 +133,8 @@ export class Loop {
 
   private advance(seconds: number): void {
     const next = clock.value + seconds;
-    const most = duration.value;
-    clock.value = next > most && most > 0 ? next % most : next;
+    const end = duration.value;
+    clock.value = next > end && end > 0 ? next % end : next;
     latest.value = Math.max(latest.value, clock.value);
   }
 

@@ -1,4 +1,4 @@
-// Specs such as "grid:cell=4:update=follow", apart and together.
+// Splits and joins specs such as "grid:cell=4:update=follow".
 
 export function nameOf(spec: string): string {
   return spec.split(":", 1)[0] ?? spec;
@@ -13,7 +13,7 @@ export function settingsOf(spec: string): Map<string, string> {
   }));
 }
 
-/** The spec with a setting changed; undefined takes it away. */
+/** The spec with a setting changed; undefined removes it. */
 export function withSetting(spec: string, name: string, value: string | undefined): string {
   const settings = settingsOf(spec);
   if (value === undefined) settings.delete(name);

@@ -1,5 +1,5 @@
-// The state of the page: all that a link holds.
-import { standardKnobs } from "../scene/drift.ts";
+// The state of the page: everything that a link holds.
+import { defaultKnobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
 import { sceneEntry, type SceneChoice } from "../scene/catalogue.ts";
@@ -12,13 +12,13 @@ export interface State {
   scene: SceneChoice;
   edits: readonly Edit[];
   panels: readonly PanelChoice[];
-  /** Which panel's counts the sliders and the line to copy are about. */
+  /** The panel that the sliders and the code to copy refer to. */
   panel: number;
   structure: boolean;
   overlaps: boolean;
   selected: number;
   playing: boolean;
-  /** Seconds of the scene in a second. */
+  /** Scene seconds per second. */
   pace: number;
   /** The lesson, from 0. */
   lesson: number;
@@ -26,12 +26,12 @@ export interface State {
   embed: boolean;
 }
 
-export const mostPanels = 4;
-export const mostBoxes = 100_000;
+export const maxPanels = 4;
+export const maxBoxes = 100_000;
 
-export const standardState: State = {
+export const defaultState: State = {
   mode: "play",
-  scene: { name: "drift", count: 300, seed: 1, knobs: standardKnobs },
+  scene: { name: "drift", count: 300, seed: 1, knobs: defaultKnobs },
   edits: [],
   panels: [{ spec: "grid", follow: false }],
   panel: 0,
@@ -45,12 +45,12 @@ export const standardState: State = {
   embed: false,
 };
 
-/** What a scene begins with, whether the menu or a link names it: how many boxes, and which panels show them. */
+/** A scene's initial number of boxes and panels, whether it was chosen in the menu or by a link. */
 export function startOf(scene: string): { count: number; panels: readonly PanelChoice[] } {
   const entry = sceneEntry(scene);
-  const count = entry?.count ?? standardState.scene.count;
-  if (entry?.breaks === undefined) return { count, panels: standardState.panels };
-  // A preset shows what it breaks, beside what does better.
+  const count = entry?.count ?? defaultState.scene.count;
+  if (entry?.breaks === undefined) return { count, panels: defaultState.panels };
+  // A preset shows the algorithm that it breaks beside a better one.
   const { spec, follow } = entry.breaks;
   return { count, panels: [{ spec, follow }, { spec: "auto", follow }] };
 }

@@ -1,28 +1,31 @@
-// The state as signals: what is chosen, what is shown, and how it changes.
+// The state as signals: settings, current results, and their changes.
 import { batch, computed, signal } from "@preact/signals";
 
 import type { Algorithm } from "../engine/types.ts";
 import type { Duel, Measured, PanelChoice, Setup, Shown } from "../bench/protocol.ts";
 import { fileScene, sceneEntry } from "../scene/catalogue.ts";
 import { countWith, withEdit, type Edit } from "../scene/edits.ts";
-import { mostPanels, standardState, startOf, type State } from "./state.ts";
+import { maxPanels, defaultState, startOf, type State } from "./state.ts";
 
-export const state = signal<State>(standardState);
-/** The scene's seconds. Of what is on the screen, `shown` has its own. */
+export const state = signal<State>(defaultState);
+/** Current scene time in seconds. The results on screen have their own time in `shown`. */
 export const clock = signal(0);
-/** The latest time that there was: how far one can scrub. */
+/** The latest time so far: the end of the scrubbing range. */
 export const latest = signal(0);
 export const shown = signal<Shown | null>(null);
-/** The same some times a second, for what is read: numbers that change in each frame cannot be. */
+/**
+ * `shown`, updated a few times per second, for text: numbers that change in every frame are
+ * unreadable.
+ */
 export const told = signal<Shown | null>(null);
 export const dimension = computed(() => shown.value?.dimension ?? 2);
 export const duration = computed(() => shown.value?.duration ?? Infinity);
 export const algorithms = signal<Algorithm[]>([]);
-/** A box that the pointer holds. */
+/** The box held by the pointer. */
 export const held = signal<Edit | null>(null);
-/** What went wrong, as a sentence. */
+/** An error, as a sentence. */
 export const problem = signal("");
-/** What screen readers are told. */
+/** Text for screen readers. */
 export const said = signal("");
 export const measured = signal<readonly Measured[]>([]);
 export const measuring = signal(false);
@@ -30,7 +33,7 @@ export const duel = signal<Duel | null>(null);
 export const duelling = signal(false);
 /** The name of the file whose boxes are shown. */
 export const fileName = signal("");
-/** Whether what the pointer does to boxes is kept as it is done. */
+/** Whether a drag is recorded as a sequence of edits. */
 export const recording = signal(false);
 
 export function patch(change: Partial<State>): void {
@@ -42,13 +45,13 @@ export const setup = computed<Setup>(() => {
   return { scene, edits, panels, structure, overlaps, selected };
 });
 
-/** What the chart's times are of. */
+/** Identifies the boxes that the chart's times refer to. */
 export const timesKey = computed(() => {
   const { name, seed, knobs } = state.value.scene;
   return JSON.stringify([name, seed, knobs]);
 });
 
-/** The number of boxes, with those that were added. */
+/** The number of boxes, including added ones. */
 export const count = computed(() => countWith(state.value.scene.count, state.value.edits));
 
 export function chooseScene(name: string): void {
@@ -58,7 +61,7 @@ export function chooseScene(name: string): void {
     const { scene } = state.value;
     const start = startOf(name);
     patch({ scene: { ...scene, name, count: entry === undefined ? scene.count : start.count }, edits: [], selected: -1 });
-    // A scene without panels of its own keeps those that are there.
+    // A scene without its own panels keeps the current ones.
     if (entry?.breaks !== undefined) patch({ panels: start.panels, panel: 0 });
     clock.value = 0;
     latest.value = 0;
@@ -67,7 +70,7 @@ export function chooseScene(name: string): void {
 }
 
 export function changeScene(change: Partial<State["scene"]>): void {
-  // Boxes that were added keep their numbers only while the scene's number stays.
+  // Added boxes keep their indices only if the scene's count stays the same.
   const kept = change.count === undefined || change.count === state.value.scene.count;
   patch({
     scene: { ...state.value.scene, ...change },
@@ -81,7 +84,7 @@ export function changePanel(at: number, change: Partial<PanelChoice>): void {
 
 export function addPanel(spec: string): void {
   const { panels } = state.value;
-  if (panels.length < mostPanels) patch({ panels: [...panels, { spec, follow: false }] });
+  if (panels.length < maxPanels) patch({ panels: [...panels, { spec, follow: false }] });
 }
 
 export function removePanel(at: number): void {

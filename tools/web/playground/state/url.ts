@@ -1,9 +1,10 @@
-// The state as the part of an address behind "#", and back. Only what differs from the standard is written; the number of
-// boxes and the panels, where they differ from what the scene begins with.
-import { standardKnobs, type Knobs } from "../scene/drift.ts";
+// Writes the state to the part of an address after "#", and reads it back. Only values that differ
+// from the defaults are written. The scene determines the defaults of the number of boxes and of
+// the panels.
+import { defaultKnobs, type Knobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
-import { mostBoxes, mostPanels, standardState, startOf, type Mode, type State } from "./state.ts";
+import { maxBoxes, maxPanels, defaultState, startOf, type Mode, type State } from "./state.ts";
 
 /** Four significant digits are finer than a pixel. */
 function short(value: number): string {
@@ -21,7 +22,7 @@ function readEdits(text: string): Edit[] {
     const numbers = one.split("_").map(Number);
     if (numbers.length !== editNumbers.length || !numbers.every(Number.isFinite)) return [];
     const edit = Object.fromEntries(editNumbers.map((name, at) => [name, numbers[at]])) as unknown as Edit;
-    return Number.isInteger(edit.box) && edit.box >= 0 && edit.box < 2 * mostBoxes ? [edit] : [];
+    return Number.isInteger(edit.box) && edit.box >= 0 && edit.box < 2 * maxBoxes ? [edit] : [];
   });
 }
 
@@ -30,30 +31,30 @@ function writePanels(panels: readonly PanelChoice[]): string {
 }
 
 function readPanels(text: string): PanelChoice[] {
-  return text.split(";").filter((one) => one !== "").slice(0, mostPanels).map((one) => {
+  return text.split(";").filter((one) => one !== "").slice(0, maxPanels).map((one) => {
     const follow = one.startsWith("follow ");
     return { follow, spec: follow ? one.slice("follow ".length) : one };
   });
 }
 
-/** A number of a range, else the standard one. */
-function numberOf(text: string | null, standard: number, least: number, most: number): number {
+/** A number within a range, otherwise the default value. */
+function numberOf(text: string | null, defaultValue: number, min: number, max: number): number {
   const value = text === null || text.trim() === "" ? NaN : Number(text);
-  return Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : standard;
+  return Number.isFinite(value) ? Math.min(max, Math.max(min, value)) : defaultValue;
 }
 
-const knobNames: Record<keyof Knobs, [least: number, most: number]> = {
+const knobNames: Record<keyof Knobs, [min: number, max: number]> = {
   ratio: [1, 1000], clustering: [0, 1], moving: [0, 1], speed: [0, 10],
 };
 
-/** The state at a time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
+/** The state at a given time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
 export function writeState(state: State, time: number): string {
   const query = new URLSearchParams();
-  const put = (name: string, value: string, standard: string): void => {
-    if (value !== standard) query.set(name, value);
+  const put = (name: string, value: string, defaultValue: string): void => {
+    if (value !== defaultValue) query.set(name, value);
   };
   const { scene, steps } = state;
-  const usual = standardState;
+  const usual = defaultState;
   const start = startOf(scene.name);
   put("mode", state.mode, usual.mode);
   if (state.mode === "lesson") query.set("lesson", String(state.lesson + 1));
@@ -61,7 +62,7 @@ export function writeState(state: State, time: number): string {
   put("n", String(scene.count), String(start.count));
   put("seed", String(scene.seed), String(usual.scene.seed));
   for (const name of Object.keys(knobNames) as (keyof Knobs)[])
-    put(name, short(scene.knobs[name]), short(standardKnobs[name]));
+    put(name, short(scene.knobs[name]), short(defaultKnobs[name]));
   put("a", writePanels(state.panels), writePanels(start.panels));
   put("panel", String(state.panel), "0");
   put("structure", state.structure ? "1" : "0", "1");
@@ -79,28 +80,28 @@ export function writeState(state: State, time: number): string {
     put("capacity", String(steps.capacity), String(usual.steps.capacity));
   }
   if (state.embed) query.set("embed", "");
-  // These may stand in an address as they are, and are easier to read so.
+  // These are allowed unescaped in an address, and more readable.
   return query.toString().replace(/%3A/g, ":").replace(/%3D/g, "=").replace(/%3B/g, ";").replace(/%2C/g, ",")
     .replace(/embed=$/, "embed");
 }
 
-/** What an address says, before and behind its "#"; what it says wrongly is as usual. */
+/** Reads an address, before and after "#"; invalid values are replaced by defaults. */
 export function readState(search: string, hash: string): { state: State; time: number } {
   const query = new URLSearchParams(search.replace(/^\?/, ""));
   new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => query.set(name, value));
-  const usual = standardState;
-  const flag = (name: string, standard: boolean): boolean => {
+  const usual = defaultState;
+  const flag = (name: string, defaultValue: boolean): boolean => {
     const value = query.get(name);
-    return value === null ? standard : value !== "0" && value !== "false";
+    return value === null ? defaultValue : value !== "0" && value !== "false";
   };
   const modes: Mode[] = ["play", "steps", "lesson"];
-  const knobs = { ...standardKnobs };
-  for (const [name, [least, most]] of Object.entries(knobNames) as [keyof Knobs, [number, number]][])
-    knobs[name] = numberOf(query.get(name), standardKnobs[name], least, most);
+  const knobs = { ...defaultKnobs };
+  for (const [name, [min, max]] of Object.entries(knobNames) as [keyof Knobs, [number, number]][])
+    knobs[name] = numberOf(query.get(name), defaultKnobs[name], min, max);
   const panels = readPanels(query.get("a") ?? "");
   const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree"] as const;
-  const whole = (name: string, standard: number, least: number, most: number): number =>
-    Math.round(numberOf(query.get(name), standard, least, most));
+  const whole = (name: string, defaultValue: number, min: number, max: number): number =>
+    Math.round(numberOf(query.get(name), defaultValue, min, max));
   const name = query.get("scene") ?? usual.scene.name;
   const start = startOf(name);
   const shownPanels = panels.length > 0 ? panels : start.panels;
@@ -111,7 +112,7 @@ export function readState(search: string, hash: string): { state: State; time: n
       lesson: whole("lesson", 1, 1, 5) - 1,
       scene: {
         name,
-        count: whole("n", start.count, 1, mostBoxes),
+        count: whole("n", start.count, 1, maxBoxes),
         seed: whole("seed", usual.scene.seed, 0, 2 ** 31 - 1),
         knobs,
       },
@@ -120,7 +121,7 @@ export function readState(search: string, hash: string): { state: State; time: n
       panel: whole("panel", 0, 0, shownPanels.length - 1),
       structure: flag("structure", true),
       overlaps: flag("overlaps", true),
-      selected: whole("box", -1, -1, 2 * mostBoxes),
+      selected: whole("box", -1, -1, 2 * maxBoxes),
       playing: !flag("paused", false),
       pace: numberOf(query.get("pace"), 1, 0.05, 10),
       steps: {

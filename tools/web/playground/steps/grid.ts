@@ -1,4 +1,5 @@
-// Algorithms 2 to 4 of the draft, mended, step by step. Sizes are chosen by the rules of paper/listings/grid_listing.cpp.
+// Algorithms 2 to 4 of the draft, mended, step by step. Cell sizes are chosen by the rules of
+// paper/listings/grid_listing.cpp.
 import type { GridState, StepOptions, Steps, World } from "../engine/types.ts";
 import { isPresent, presentIds, reportPoint, worldAround, type Box } from "./boxes.ts";
 import { Listing } from "./listing.ts";
@@ -69,13 +70,16 @@ class Layout {
     return [this.column(box.minX), this.column(box.maxX), this.row(box.minY), this.row(box.maxY)];
   }
 
-  /** What lies outside the world is in the cell at its border. */
+  /** Positions outside the world are in the cell at its border. */
   #cell(x: number, begin: number, count: number): number {
     return Math.min(Math.max(Math.floor((x - begin) / this.size), 0), count - 1);
   }
 }
 
-/** Twice the mean finite extent; where the boxes have none, what gives each a cell of its own. */
+/**
+ * Twice the mean finite extent; if the boxes have no extent, the size that gives each box a cell of
+ * its own.
+ */
 function chosenSize(boxes: readonly Box[], world: World): number {
   let sum = 0;
   let count = 0;
@@ -90,11 +94,11 @@ function chosenSize(boxes: readonly Box[], world: World): number {
   return Math.max(world.width, world.height) / Math.sqrt(Math.max(1, boxes.length));
 }
 
-/** Whether there would be more cells, or more references, than a grid over these boxes may have. */
+/** Whether this grid would exceed the limit on cells or references. */
 function isTooLarge(boxes: readonly Box[], layout: Layout, isChosen: boolean): boolean {
   const count = boxes.length;
-  const mostCells = isChosen ? Math.min(4 * count, 2 ** 22) : Math.min(Math.max(16 * count, 2 ** 16), 2 ** 22);
-  if (layout.columns * layout.rows > Math.max(1, mostCells)) return true;
+  const maxCells = isChosen ? Math.min(4 * count, 2 ** 22) : Math.min(Math.max(16 * count, 2 ** 16), 2 ** 22);
+  if (layout.columns * layout.rows > Math.max(1, maxCells)) return true;
   let references = 0;
   for (const box of boxes) {
     const [left, right, top, bottom] = layout.span(box);

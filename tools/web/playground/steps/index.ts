@@ -1,4 +1,5 @@
-// The draft's four algorithms step by step, mended as in paper/listings, which a test holds them to.
+// The draft's four algorithms step by step, mended as in paper/listings; a test verifies that they
+// agree.
 import type { StepAlgorithm, StepOptions, Steps } from "../engine/types.ts";
 import { unpack } from "./boxes.ts";
 import { bruteForceSteps } from "./brute_force.ts";
@@ -8,7 +9,9 @@ import { sweepSteps } from "./sweep_and_prune.ts";
 
 export type { Step, StepAlgorithm, StepOptions, Steps, StepState } from "../engine/types.ts";
 
-/** Every step of a search of these boxes, in 2D. Throws where they are more than one would step through. */
+/**
+ * Every step of a search of these boxes, in 2D. Throws if there are too many boxes to step through.
+ */
 export function steps(algorithm: StepAlgorithm, boxes: Float32Array, options: StepOptions = {}): Steps {
   const unpacked = unpack(boxes);
   switch (algorithm) {

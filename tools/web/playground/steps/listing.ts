@@ -1,10 +1,10 @@
-// A listing with named lines, so that a step can say where it is.
+// A listing with named lines, so that a step can refer to its line.
 
 export class Listing<Line extends string> {
   readonly lines: string[];
   readonly #numbers: Map<string, number>;
 
-  /** The lines in order. The name of one that no step is at may be empty. */
+  /** The lines in order. A line that no step refers to may have an empty name. */
   constructor(lines: readonly (readonly [name: Line | "", text: string])[]) {
     this.lines = lines.map(([, text]) => text);
     this.#numbers = new Map(lines.map(([name], number) => [name, number]));

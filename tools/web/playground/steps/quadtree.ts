@@ -1,5 +1,5 @@
-// Algorithms 7 to 10 of the draft, mended, step by step. The depth is limited by the rules of
-// paper/listings/quadtree_listing.cpp.
+// Algorithms 7 to 10 of the draft, mended, step by step. The rules of
+// paper/listings/quadtree_listing.cpp limit the depth.
 import type { QuadtreeNode, QuadtreeState, StepOptions, Steps, World } from "../engine/types.ts";
 import { isPresent, presentIds, reportPoint, worldAround, type Box } from "./boxes.ts";
 import { Listing } from "./listing.ts";
@@ -52,13 +52,13 @@ const listing = new Listing<Line | "test" | "report">([
 
 const quadrants = ["QI", "QII", "QIII", "QIV"] as const;
 
-/** On which side of the origin each quadrant lies; y grows downwards. */
+/** The side of the origin on which each quadrant lies; y grows downwards. */
 const sides = [[1, -1], [-1, -1], [-1, 1], [1, 1]] as const;
 
 const deepest = 48;
 const referencesOfBox = 16;
 
-/** What a leaf holds: begin <= x < end on both axes, without end at the world's border. */
+/** The region of a leaf: begin <= x < end on both axes; unbounded at the world's border. */
 interface Region {
   begin: readonly [number, number];
   end: readonly [number, number];
@@ -68,7 +68,7 @@ function holds({ begin, end }: Region, [x, y]: readonly [number, number]): boole
   return begin[0] <= x && begin[1] <= y && (x < end[0] || end[0] === Infinity) && (y < end[1] || end[1] === Infinity);
 }
 
-/** The greatest depth at which leaves cannot hold more than 16 references a box. */
+/** The greatest depth at which leaves cannot hold more than 16 references per box. */
 function chosenDepth(boxes: readonly Box[], world: World): number {
   const referencesAt = (depth: number, box: Box): number => {
     const nodes = 2 ** depth;
@@ -201,20 +201,20 @@ class Quadtree {
     }
   }
 
-  /** Not where all boxes share a point: some subnode would get every one of them. */
+  /** False if all boxes share a point: some child would get all of them. */
   #canSplit(node: number): boolean {
     const { depth, boxes: ids } = this.#node(node);
     if (depth === this.#depthMax) return false;
     const boxes = ids.map((id) => this.#boxes[id]!);
-    const least = (side: (box: Box) => number): number => boxes.reduce((most, box) => Math.min(most, side(box)), Infinity);
+    const minOf = (side: (box: Box) => number): number => boxes.reduce((min, box) => Math.min(min, side(box)), Infinity);
     const common = {
-      minX: -least((box) => -box.minX), minY: -least((box) => -box.minY),
-      maxX: least((box) => box.maxX), maxY: least((box) => box.maxY),
+      minX: -minOf((box) => -box.minX), minY: -minOf((box) => -box.minY),
+      maxX: minOf((box) => box.maxX), maxY: minOf((box) => box.maxY),
     };
     return !isPresent(common);
   }
 
-  /** Half the width and height of a node: halved level by level, as the C++ does. */
+  /** Half the width and height of a node: halved level by level, as in C++. */
   #halfExtent(depth: number): [number, number] {
     return [this.#world.width * 0.5 ** (depth + 1), this.#world.height * 0.5 ** (depth + 1)];
   }

@@ -1,12 +1,12 @@
-// Writes down the steps of a search, its pairs and its tests.
+// Records the steps of a search, its pairs and its tests.
 import type { Step, Steps, StepState } from "../engine/types.ts";
 import { overlap, type Box } from "./boxes.ts";
 import type { Listing } from "./listing.ts";
 
-/** Beyond that many steps nobody steps; the page would run out of memory. */
-const mostSteps = 300_000;
+/** Nobody looks at more steps, and the page would run out of memory. */
+const maxSteps = 300_000;
 
-/** The lines of Algorithm 1, which the others call on each of their collections. */
+/** The lines of Algorithm 1, which the other algorithms call on each of their collections. */
 export type TestLine = "test" | "report";
 
 export class Recorder<Line extends string, State extends StepState> {
@@ -20,12 +20,15 @@ export class Recorder<Line extends string, State extends StepState> {
   }
 
   step(line: Line | TestLine, text: string, boxes: number[], state: State, more: Partial<Step> = {}): void {
-    if (this.#steps.length === mostSteps)
-      throw new Error(`the search takes more than ${mostSteps} steps; expected fewer boxes`);
+    if (this.#steps.length === maxSteps)
+      throw new Error(`the search takes more than ${maxSteps} steps; expected fewer boxes`);
     this.#steps.push({ line: this.#listing.line(line), text, boxes, state, ...more });
   }
 
-  /** One test of the boxes `a` and `b`, and what becomes of it: `refusal` says why a hit is not reported here. */
+  /**
+   * One test of the boxes `a` and `b`, and its outcome: `refusal` says why a hit is not reported
+   * here.
+   */
   test(boxes: readonly Box[], a: number, b: number, state: State, refusal?: () => string | undefined,
        hitState: State = state): void {
     ++this.#tests;

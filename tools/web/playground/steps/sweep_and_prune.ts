@@ -37,7 +37,8 @@ export function sweepSteps(boxes: readonly Box[]): Steps {
     { kind: "sweep_and_prune", order: [], next: -1, position: NaN, active: [] };
   recorder.step("begin", `E has ${ids.length} boxes`, [...ids], state);
 
-  // Insertion sort: the order does not depend on how one sorts, and this one can be watched.
+  // Insertion sort: the result does not depend on the sorting algorithm, and this one is easy to
+  // watch.
   const isBefore = (a: number, b: number): boolean =>
     boxes[a]!.minX < boxes[b]!.minX || (boxes[a]!.minX === boxes[b]!.minX && a < b);
   for (const id of ids) {
@@ -60,7 +61,10 @@ export function sweepSteps(boxes: readonly Box[]): Steps {
   return recorder.finish();
 }
 
-/** Algorithm 6. The last box fills the gap of one that is removed, as in the C++: tests come in the same order. */
+/**
+ * Algorithm 6. The last box fills the gap of a removed one, as in C++, so tests come in the same
+ * order.
+ */
 function prune(recorder: Recorder<Line, SweepState>, boxes: readonly Box[], state: SweepState, e: number): SweepState {
   const ends = state.active.filter((active) => boxes[active]!.maxX < boxes[e]!.minX).length;
   recorder.step("prune", `${ends} of ${state.active.length} active boxes end before box ${e} begins`,

@@ -1,4 +1,5 @@
-// An array that changes step by step, of which each version can be seen again: what changed is kept, not each version.
+// An array with a version for each step. It stores changes, not copies, and can restore each
+// version.
 
 export class Versions<T> {
   readonly #items: T[] = [];

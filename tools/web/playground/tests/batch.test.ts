@@ -1,24 +1,24 @@
-// Which boxes are drawn as points, which as shapes, and which not at all.
+// Which boxes are drawn as points, which as shapes, and which are left out.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 
 import { Batch, rowTexels, type Lens } from "../draw/batch.ts";
-import { flatCamera, flatMatrix, solidMatrix, standardView, type View } from "../draw/camera.ts";
+import { flatCamera, flatMatrix, solidMatrix, defaultView, type View } from "../draw/camera.ts";
 
 const size = { width: 400, height: 300 };
 const pixels = [200, 150] as const;
 
-function flatLens(bounds: number[], view: View = standardView): Lens {
-  return { matrix: flatMatrix(flatCamera(bounds, size, view), size), pixels, mostPoint: 8 };
+function flatLens(bounds: number[], view: View = defaultView): Lens {
+  return { matrix: flatMatrix(flatCamera(bounds, size, view), size), pixels, maxPoint: 8 };
 }
 
-function solidLens(bounds: number[], view: View = standardView): Lens {
-  return { matrix: solidMatrix(bounds, size, view), pixels, mostPoint: 8 };
+function solidLens(bounds: number[], view: View = defaultView): Lens {
+  return { matrix: solidMatrix(bounds, size, view), pixels, maxPoint: 8 };
 }
 
 function seen(dimension: 2 | 3, boxes: number[][], lens: Lens): { points: number[]; shapes: number[] } {
   const batch = new Batch(dimension);
-  // Marks tell the boxes apart.
+  // Marks identify the boxes.
   batch.set(Float32Array.from(boxes.flat()), Uint8Array.from(boxes.keys()), lens);
   for (let at = 0; at < batch.count; ++at) {
     const copy = [...batch.boxes.subarray(2 * dimension * at, 2 * dimension * (at + 1))];
@@ -42,7 +42,7 @@ describe("a batch", () => {
   test("draws more as shapes where the visitor comes nearer", () => {
     const boxes = [[48, 35, 50, 37], [52, 35, 54, 37]];
     assert.deepEqual(seen(2, boxes, flatLens(flat)), { points: [0, 1], shapes: [] });
-    assert.deepEqual(seen(2, boxes, flatLens(flat, { ...standardView, zoom: 4 })), { points: [], shapes: [0, 1] });
+    assert.deepEqual(seen(2, boxes, flatLens(flat, { ...defaultView, zoom: 4 })), { points: [], shapes: [0, 1] });
   });
 
   test("leaves out what is absent and what is out of sight, and keeps what reaches into the picture", () => {

@@ -7,12 +7,12 @@ import { refusal } from "../bench/budget.ts";
 import { Mark, type Reply, type Setup, type Shown } from "../bench/protocol.ts";
 import { reasons } from "../bench/reasons.ts";
 import { sceneEntries } from "../scene/catalogue.ts";
-import { standardKnobs } from "../scene/drift.ts";
+import { defaultKnobs } from "../scene/drift.ts";
 import { asText, pairsByDefinition } from "./law.ts";
 import { loadEngine } from "./naive_engine.ts";
 
 const setup: Setup = {
-  scene: { name: "drift", count: 60, seed: 1, knobs: standardKnobs }, edits: [],
+  scene: { name: "drift", count: 60, seed: 1, knobs: defaultKnobs }, edits: [],
   panels: [{ spec: "grid", follow: false }], structure: true, overlaps: true, selected: -1,
 };
 

@@ -11,7 +11,10 @@ const chromiumPath = "/usr/bin/chromium";
 const web = process.env["BROADSIDE_WEB"] ?? join(process.cwd(), "web");
 export const pagePath = process.env["BROADSIDE_PLAYGROUND_PAGE"] ??
   fileURLToPath(new URL("page/index.html", import.meta.url));
-/** Whether the page has the library; else it has a naive engine, by which only the page itself can be tested. */
+/**
+ * Whether the page has the library. Otherwise it has a naive engine, which suffices only to test
+ * the page itself.
+ */
 export const hasLibrary = existsSync(pagePath) && /id="engine">[^<]{1000}/.test(readFileSync(pagePath, "utf8"));
 
 export const missing = !existsSync(chromiumPath) ? "skipped: chromium is missing"
@@ -27,7 +30,7 @@ interface Options {
   width?: number;
   height?: number;
   dark?: boolean;
-  /** What is put before the page's hash. */
+  /** Text before the hash of the page's address. */
   search?: string;
   /** Runs before the page's own scripts. */
   before?: () => void;
@@ -38,11 +41,11 @@ export async function launch(): Promise<Browser> {
   return playwright.chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox"] });
 }
 
-/** Waits for something in the page, and tells what the page showed if it does not come. */
+/** Waits for a condition in the page; on a timeout, reports what the page showed. */
 export async function until<Argument>(page: Page, what: (argument: Argument) => boolean, argument?: Argument):
     Promise<void> {
   try {
-    // Frames come slowly where software draws them.
+    // Frames come slowly if software draws them.
     await page.waitForFunction(what as (argument: unknown) => boolean, argument, { polling: 50 });
   } catch (error) {
     const address = await page.evaluate(() => `${window.playground?.address()}, frame ${window.playground?.frames}`);
@@ -58,7 +61,7 @@ export async function open(browser: Browser, hash = "", options: Options = {}): 
   page.setDefaultTimeout(60_000);
   const problems: string[] = [];
   page.on("console", (message) => {
-    // Software that stands for a graphics card tells that it is slow.
+    // A software renderer warns that it is slow.
     if (["error", "warning"].includes(message.type()) && !/GL Driver Message|software WebGL/i.test(message.text()))
       problems.push(message.text());
   });
@@ -74,7 +77,7 @@ export async function open(browser: Browser, hash = "", options: Options = {}): 
   return { page, problems };
 }
 
-/** What is shown, as plain numbers. */
+/** The results on screen, as plain numbers. */
 export interface Seen {
   time: number;
   dimension: number;
@@ -97,7 +100,7 @@ export async function seen(page: Page): Promise<Seen> {
   return JSON.parse(text) as Seen;
 }
 
-/** What is wrong with the pairs that are shown; undefined: they are the definition's, in each panel. */
+/** What is wrong with the shown pairs; undefined if they match the definition in each panel. */
 export function unlawful({ boxes, pairs, dimension, panels }: Seen): string | undefined {
   const expected = pairsByDefinition(boxes, dimension);
   if (asText(pairs).join() !== expected.join()) return `${pairs.length / 2} pairs; expected ${expected.length}`;
@@ -105,7 +108,7 @@ export function unlawful({ boxes, pairs, dimension, panels }: Seen): string | un
   return other === undefined ? undefined : `${other.spec}: ${other.error ?? `${other.pairs} pairs; expected ${expected.length}`}`;
 }
 
-/** Waits until what is shown is of the state's scene and panels. */
+/** Waits until the results match the state's scene and panels. */
 export async function settled(page: Page): Promise<void> {
   const before = await page.evaluate(() => window.playground.frames);
   await until(page, (count) => window.playground.frames > count + 1 || !window.playground.busy, before);

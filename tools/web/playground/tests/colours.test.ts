@@ -1,4 +1,4 @@
-// What is drawn can be told from the background in both themes (WCAG 2.2, 1.4.11: 3 to 1).
+// Everything drawn contrasts with the background in both themes (WCAG 2.2, 1.4.11: 3 to 1).
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

@@ -1,4 +1,4 @@
-// The engine in Node: its searches, what it observes, trackers, outlines, scenes and errors.
+// The engine in Node: searches, observations, trackers, outlines, scenes and errors.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -8,11 +8,11 @@ import { named, overlappingPairs, randomBoxes } from "./boxes.ts";
 const engine = await loadEngine();
 
 const kinds = [
-  { count: 0, places: 10, mostExtent: 3 },
-  { count: 1, places: 10, mostExtent: 3 },
-  { count: 40, places: 30, mostExtent: 6 },
-  { count: 300, places: 60, mostExtent: 5 },
-  { count: 700, places: 400, mostExtent: 40 },
+  { count: 0, places: 10, maxExtent: 3 },
+  { count: 1, places: 10, maxExtent: 3 },
+  { count: 40, places: 30, maxExtent: 6 },
+  { count: 300, places: 60, maxExtent: 5 },
+  { count: 700, places: 400, maxExtent: 40 },
 ];
 
 function eachSearch(body: (spec: string, boxes: Float32Array<ArrayBuffer>, dimension: 2 | 3) => void): void {
@@ -60,7 +60,7 @@ test("what is observed are the tests that the search counts", () => {
 });
 
 test("absent boxes are in no pair and in no test", () => {
-  const boxes = randomBoxes(3, 60, { dimension: 2, places: 20, mostExtent: 6 });
+  const boxes = randomBoxes(3, 60, { dimension: 2, places: 20, maxExtent: 6 });
   for (let box = 0; box < 60; box += 3) boxes.set([Infinity, Infinity, -Infinity, -Infinity], 4 * box);
   for (const spec of ["grid", "bvh", "paper_quadtree"]) {
     const { tests, pairs, statistics } = engine.observe(spec, boxes, 2);
@@ -77,7 +77,7 @@ test("a tracker tells what begins and what ends", () => {
     const now = new Set<string>();
     for (let frame = 0; frame < 6; ++frame) {
       // Boxes come and go: the number changes from frame to frame.
-      const boxes = randomBoxes(frame % 3, 80 - 7 * frame, { dimension: 2, places: 30, mostExtent: 5 });
+      const boxes = randomBoxes(frame % 3, 80 - 7 * frame, { dimension: 2, places: 30, maxExtent: 5 });
       const { begun, ended, bytes } = tracker.update(boxes);
       for (const pair of named(ended)) assert.ok(now.delete(pair), `${spec}: ${pair}`);
       for (const pair of named(begun)) {
@@ -87,14 +87,14 @@ test("a tracker tells what begins and what ends", () => {
       assert.deepEqual([...now].sort(), overlappingPairs(boxes, 2), `${spec}, frame ${frame}`);
       assert.ok(bytes > 0);
     }
-    assert.deepEqual(tracker.update(randomBoxes(2, 45, { dimension: 2, places: 30, mostExtent: 5 })).begun.length, 0);
+    assert.deepEqual(tracker.update(randomBoxes(2, 45, { dimension: 2, places: 30, maxExtent: 5 })).begun.length, 0);
     tracker.free();
     assert.throws(() => tracker.update(new Float32Array(4)), /was freed/);
   }
 });
 
 test("an outline has the boxes of each level", () => {
-  const boxes = randomBoxes(4, 300, { dimension: 2, places: 200, mostExtent: 9 });
+  const boxes = randomBoxes(4, 300, { dimension: 2, places: 200, maxExtent: 9 });
   const kindOf: Record<string, string> = {
     grid: "cells", sweep_and_prune: "sweep", quadtree: "nodes", bvh: "nodes", paper_grid: "cells", brute_force: "",
   };
@@ -113,7 +113,7 @@ test("an outline has the boxes of each level", () => {
 });
 
 test("auto says what it takes and why", () => {
-  assert.match(engine.advise(randomBoxes(1, 50, { dimension: 2, places: 50, mostExtent: 3 }), 2),
+  assert.match(engine.advise(randomBoxes(1, 50, { dimension: 2, places: 50, maxExtent: 3 }), 2),
                /^brute_force, since 50 boxes are so few/);
 });
 
@@ -129,7 +129,7 @@ test("a scene is the same for the same seed", () => {
 });
 
 test("what is refused says what was found and what was expected", () => {
-  const boxes = randomBoxes(1, 5, { dimension: 2, places: 9, mostExtent: 3 });
+  const boxes = randomBoxes(1, 5, { dimension: 2, places: 9, maxExtent: 3 });
   assert.throws(() => engine.find("gird", boxes, 2), /gird.*grid/);
   assert.throws(() => engine.find("grid:cell=-1", boxes, 2), /cell is '-1'; expected/);
   assert.throws(() => engine.find("paper_grid", boxes.slice(0, 0), 3), /3D|dimension/);
@@ -138,7 +138,7 @@ test("what is refused says what was found and what was expected", () => {
   boxes[0] = NaN;
   assert.throws(() => engine.find("grid", boxes, 2), /box 0|index 0|at 0/i);
   boxes[0] = 0;
-  assert.equal(engine.find("grid", boxes.slice(0, 8), 2).pairs.length % 2, 0);  // and it goes on
+  assert.equal(engine.find("grid", boxes.slice(0, 8), 2).pairs.length % 2, 0);  // it still works
 });
 
 test("it takes many boxes, and its memory grows", () => {

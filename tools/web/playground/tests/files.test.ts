@@ -1,4 +1,4 @@
-// Files, as the engine reads them: by the program's readers, in each format that the page takes.
+// Files in each format that the page accepts, read by the engine with the program's readers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 

@@ -1,6 +1,6 @@
 // The definition of a pair, for tests.
 
-/** All pairs that overlap, as sorted "a b" with a < b. */
+/** All overlapping pairs, as sorted "a b" with a < b. */
 export function pairsByDefinition(boxes: ArrayLike<number>, dimension: number): string[] {
   const stride = 2 * dimension;
   const found: string[] = [];

@@ -1,4 +1,4 @@
-// The engine's contract in some lines of JavaScript: brute force under every name. For tests of the page alone.
+// The engine's contract in a few lines: brute force under every name. For tests of the page alone.
 import type { Algorithm, Engine, Observation, Outline, Search } from "../engine/types.ts";
 
 function naive(boxes: Float32Array, dimension: number): Observation {
@@ -32,7 +32,7 @@ const algorithms = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree"
   tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", default: "auto", type: "number", min: 0 }] : [],
 }));
 
-/** Of a table with the columns frame, box and bounds, in order; or of a point of GeoJSON. */
+/** Frames of a table with the columns frame, box and bounds, in order; or of a GeoJSON point. */
 function framesOf(name: string, text: string): Float32Array<ArrayBuffer>[] {
   if (text.startsWith("{")) {
     const [x, y] = (JSON.parse(text) as { coordinates: [number, number] }).coordinates;

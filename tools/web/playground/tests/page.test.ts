@@ -1,4 +1,4 @@
-// The playground in headless Chromium: what a visitor does in it.
+// The playground in headless Chromium: what visitors do in it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, test } from "node:test";
@@ -12,7 +12,7 @@ describe("the playground", { skip: missing }, () => {
   before(async () => { browser = await launch(); });
   after(async () => { await browser?.close(); });
 
-  /** How many pixels of the picture are near a colour. */
+  /** Number of pixels of the picture near a colour. */
   function pixels(page: Page, colour: [number, number, number]): Promise<number> {
     return page.evaluate(([red, green, blue]) => {
       const picture = document.querySelector<HTMLCanvasElement>("canvas.picture")!;
@@ -96,7 +96,7 @@ describe("the playground", { skip: missing }, () => {
 
   test("a box that is let go while it moves flies on", async () => {
     const { page } = await open(browser, "n=40&moving=0");
-    // Within the page, so that no wait between two events is taken for holding still.
+    // Within the page, so that no pause between two events counts as holding still.
     await page.evaluate(async () => {
       const window_ = document.querySelector(".window")!;
       const [x, y] = window.playground.where(3)!;
@@ -244,7 +244,7 @@ describe("the playground", { skip: missing }, () => {
         if (at >= 0) await tries.nth(at).click();
         await settled(page);
         const now = await seen(page);
-        // A naive search of more would take long; the bench's own test has all.
+        // A naive search of more would take long; the bench's own test checks all.
         if (now.boxes.length / 4 <= 5000 && hasLibrary) assert.equal(unlawful(now), undefined, `lesson ${lesson}, ${at}`);
         if (!hasLibrary) break;
       }
@@ -324,11 +324,11 @@ describe("the playground", { skip: missing }, () => {
   });
 
   test("hands a crowd over once, and draws tiny boxes by one vertex each", async () => {
-    // Without the library a naive engine would take minutes for as many.
+    // Without the library, a naive engine would take minutes for that many.
     const count = hasLibrary ? 100_000 : 2000;
     const { page, problems } = await open(browser, `paused=1&n=${count}&a=grid`);
     const drawn = async (): Promise<{ vertices: number; bytes: number }> => {
-      // The picture is painted in the frame after the one that asks for it.
+      // The picture is painted in the frame after the one that requests it.
       await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
       return page.evaluate(() => window.playground.drawn!);
     };
@@ -339,16 +339,17 @@ describe("the playground", { skip: missing }, () => {
       return [of.length / 4, (panels[0]!.outline?.levels ?? []).reduce((sum, level) => sum + level.length / 4, 0)] as const;
     });
     const boxes = count + overlaps + parts;
-    // A box is 16 bytes and its mark; the last row of a texture is handed over whole. A shape has 24 bytes of indices.
+    // A box is 16 bytes and its mark; the last row of a texture is uploaded whole. A shape has 24
+    // bytes of indices.
     assert.ok(first.bytes >= 17 * count && first.bytes <= 17 * (boxes + 3 * 2048) + 24 * 1.5 * 2 * boxes,
       `${first.bytes} bytes for ${boxes} boxes`);
     if (hasLibrary) assert.ok(first.vertices >= count && first.vertices <= 1.01 * boxes, `${first.vertices} vertices`);
-    // In other colours, they are the same boxes.
+    // With other colours, the boxes are the same.
     await page.getByRole("button", { name: "Dark theme" }).click();
     const dark = await drawn();
     assert.equal(dark.vertices, first.vertices);
     assert.ok(dark.bytes <= 17 * (parts + 2048), `${dark.bytes} bytes for another theme`);
-    // Nearer, what is out of sight is left out.
+    // After zooming in, invisible boxes are left out.
     for (let step = 0; step < 10; ++step) await page.getByRole("button", { name: "Zoom in" }).click();
     const near = await drawn();
     assert.ok(near.vertices < first.vertices / 2, `${near.vertices} vertices`);
@@ -364,7 +365,7 @@ describe("the playground", { skip: missing }, () => {
           window.playground.scriptTimes.length = 0;
           return window.playground.frames;
         });
-        await until(page, (least) => window.playground.frames > least, before + frames);
+        await until(page, (min) => window.playground.frames > min, before + frames);
         const times = (await page.evaluate(() => [...window.playground.scriptTimes])).sort((a, b) => a - b);
         context.diagnostic(`${count} boxes: script a frame, median ${times[times.length >> 1]!.toFixed(1)} ms, ` +
           `nine in ten up to ${times[Math.floor(0.9 * times.length)]!.toFixed(1)} ms; ` +
@@ -383,7 +384,7 @@ function namelessControls(page: Page): Promise<string[]> {
     .map((one) => one.outerHTML));
 }
 
-/** Texts whose contrast is below WCAG's 4.5 to 1 (3 to 1 where they are large). */
+/** Texts with a contrast below WCAG's 4.5 to 1 (3 to 1 for large text). */
 function paleTexts(page: Page): Promise<string[]> {
   return page.evaluate(() => {
     const channels = (text: string): number[] => (text.match(/[\d.]+/g) ?? []).map(Number);

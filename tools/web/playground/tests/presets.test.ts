@@ -1,4 +1,4 @@
-// Each preset breaks the algorithm that it says it breaks, and auto holds.
+// Each preset breaks the algorithm that it claims to break, and auto copes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -9,7 +9,7 @@ import { named, overlappingPairs } from "./boxes.ts";
 
 const engine = await loadEngine();
 
-/** The tests a box that found no pair or found one again, and so were for nothing. */
+/** Wasted tests per box: tests that found no pair, or found a pair again. */
 function waste({ tests }: Statistics, pairs: number, boxes: number): number {
   return (tests - pairs) / boxes;
 }
@@ -21,7 +21,7 @@ function wasteOfSearch(spec: string, { dimension, settings, boxes }: Preset, see
   return waste(statistics, pairs.length / 2, settings.count);
 }
 
-/** The mean over two seconds of frames, each shown to one tracker. */
+/** The mean over two seconds of frames, each followed by one tracker. */
 function wasteOfTracker(spec: string, { dimension, settings, boxes }: Preset, seed: number): number {
   const tracker = engine.tracker(spec, dimension);
   tracker.update(boxes(settings.count, seed, 0));
@@ -35,8 +35,8 @@ function wasteOfTracker(spec: string, { dimension, settings, boxes }: Preset, se
   return sum / frames;
 }
 
-/** What each wastes at least, in tests a box, and how many times as much as auto. */
-const least: Record<string, { waste: number; times: number }> = {
+/** Minimum waste of each, in tests per box, and as a multiple of the waste of auto. */
+const minWaste: Record<string, { waste: number; times: number }> = {
   drifting_crowd: { waste: 150, times: 10 },
   huge_floor: { waste: 60, times: 3 },
   one_point: { waste: 1000, times: 100 },
@@ -57,7 +57,7 @@ for (const preset of presets) {
         preset.follows ? wasteOfTracker(spec, preset, seed) : wasteOfSearch(spec, preset, seed, 1);
       const broken = wasteOf(preset.breaks);
       const auto = wasteOf("auto");
-      const { waste: mostly, times } = least[preset.name]!;
+      const { waste: mostly, times } = minWaste[preset.name]!;
       const found = `${broken.toFixed(1)} tests a box for nothing, auto ${auto.toFixed(1)}`;
       assert.ok(broken >= mostly, `${found}; expected at least ${mostly}`);
       assert.ok(broken >= times * auto, `${found}; expected at least ${times} times auto's`);

@@ -1,4 +1,4 @@
-// The state in an address and back; edits; specs; lines to copy.
+// The state in an address and back; edits; specs; code to copy.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -6,7 +6,7 @@ import { sceneEntries } from "../scene/catalogue.ts";
 import { edited, withEdit, type Edit } from "../scene/edits.ts";
 import { linesFor } from "../state/lines.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
-import { standardState, startOf, type State } from "../state/state.ts";
+import { defaultState, startOf, type State } from "../state/state.ts";
 import { readState, writeState } from "../state/url.ts";
 
 const edit: Edit = { box: 3, time: 1.5, x: 20, y: 30, width: 4, height: 5, vx: 6, vy: -7 };
@@ -26,9 +26,9 @@ test("an address holds the whole state", () => {
   assert.equal(time, 3.25);
 });
 
-test("the standard state is an empty address, and an empty address the standard state", () => {
-  assert.equal(writeState(standardState, 0), "");
-  assert.deepEqual(readState("", "").state, standardState);
+test("the default state is an empty address, and an empty address the default state", () => {
+  assert.equal(writeState(defaultState, 0), "");
+  assert.deepEqual(readState("", "").state, defaultState);
 });
 
 test("a link that names only a scene shows what the menu shows", () => {
@@ -39,7 +39,7 @@ test("a link that names only a scene shows what the menu shows", () => {
   for (const { name, count } of sceneEntries) {
     const read = readState("", `#scene=${name}`).state;
     assert.deepEqual([read.scene.count, read.panels], [count, startOf(name).panels]);
-    const other: State = { ...read, panels: standardState.panels, scene: { ...read.scene, count: 7 } };
+    const other: State = { ...read, panels: defaultState.panels, scene: { ...read.scene, count: 7 } };
     assert.deepEqual(readState("", writeState(other, 0)).state, other);
   }
 });
@@ -48,8 +48,8 @@ test("what an address says wrongly is as usual, and numbers keep to their range"
   const { state } = readState("?embed", "#n=1e9&ratio=none&a=;;&edits=1_2~x&box=1.6&lesson=99&pace=");
   assert.equal(state.embed, true);
   assert.equal(state.scene.count, 100_000);
-  assert.equal(state.scene.knobs.ratio, standardState.scene.knobs.ratio);
-  assert.deepEqual(state.panels, standardState.panels);
+  assert.equal(state.scene.knobs.ratio, defaultState.scene.knobs.ratio);
+  assert.deepEqual(state.panels, defaultState.panels);
   assert.deepEqual(state.edits, []);
   assert.equal(state.lesson, 4);
   assert.equal(state.pace, 1);

@@ -1,4 +1,5 @@
-// The steps are those of the C++: the same pairs in the same order, and the same tests one by one.
+// The steps match the C++ listings: the same pairs in the same order, and the same tests one by
+// one.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -12,10 +13,13 @@ const engine = await loadEngine();
 
 const algorithms: StepAlgorithm[] = ["brute_force", "grid", "sweep_and_prune", "quadtree"];
 
-/** Small scenes of all kinds: spread, crowded, points, with a huge one, an infinite one, absent ones, in one place. */
+/**
+ * Small scenes of all kinds: spread, crowded, points, with a huge box, with an infinite box, with
+ * absent boxes, all in one place.
+ */
 function sceneOf(seed: number): Float32Array<ArrayBuffer> {
   const of = (purpose: number, below: number): number => Math.floor(below * randomAt(seed, 1_000_000, purpose));
-  const boxes = randomBoxes(seed, of(0, 41), { dimension: 2, places: [2, 12, 60, 400][of(1, 4)]!, mostExtent: of(2, 9) });
+  const boxes = randomBoxes(seed, of(0, 41), { dimension: 2, places: [2, 12, 60, 400][of(1, 4)]!, maxExtent: of(2, 9) });
   const count = boxes.length / 4;
   const shift = [0, -17.25, 1e-3][of(3, 3)]!;
   for (let at = 0; at < boxes.length; ++at) boxes[at] = boxes[at]! * [1, 0.37][of(4, 2)]! + shift;
@@ -108,7 +112,7 @@ test("quadtree: boxes end in the leaves, as many as the C++ has references", () 
 });
 
 test("too many boxes are refused before the page runs out of memory", () => {
-  const boxes = randomBoxes(1, 1500, { dimension: 2, places: 9000, mostExtent: 3 });
+  const boxes = randomBoxes(1, 1500, { dimension: 2, places: 9000, maxExtent: 3 });
   assert.throws(() => steps("brute_force", boxes), /more than 300000 steps; expected fewer boxes/);
 });
 

@@ -18,14 +18,14 @@ export function embedding(): string {
   return `<iframe src="${src}" width="640" height="420" title="Broadside playground" loading="lazy"></iframe>`;
 }
 
-/** Browsers refuse an address that changes too often. */
+/** Browsers refuse too frequent changes of the address. */
 const every = 400;
 
-/** Keeps the address up to date: at once enough to be copied, and not in each frame. */
+/** Keeps the address up to date: soon enough to be copied, but not in every frame. */
 export function keepAddress(): void {
   let due: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
-    // Time goes on without the address, until it stands still.
+    // Running time alone does not update the address; pausing does.
     void state.value;
     if (!state.value.playing) void clock.value;
     due ??= setTimeout(() => {

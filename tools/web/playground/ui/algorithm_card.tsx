@@ -1,12 +1,13 @@
-// The current panel's algorithm: what it is, its tunables, why auto chose what it chose; and more panels.
+// The current panel's algorithm: its description, its tunables and the reason for auto's choice;
+// and buttons for more panels.
 import type { Tunable } from "../engine/types.ts";
-import { mostPanels } from "../state/state.ts";
+import { maxPanels } from "../state/state.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
 import { addPanel, algorithms, changePanel, state, told } from "../state/store.ts";
 import { Card, Choice, Slider, Switch } from "./field.tsx";
 
-/** How far a slider goes where the tunable has no end of its own. */
-function rangeOf(tunable: Tunable, worldWidth: number): [least: number, most: number] {
+/** The range of a slider for a tunable without bounds of its own. */
+function rangeOf(tunable: Tunable, worldWidth: number): [min: number, max: number] {
   if (tunable.name === "capacity") return [Math.max(1, tunable.min ?? 1), 256];
   if (tunable.name === "cell") return [worldWidth / 400, worldWidth];
   return [Math.max(tunable.min ?? 0, -1e6), Math.min(tunable.max ?? 100, 1e6)];
@@ -25,23 +26,26 @@ function TunableField({ tunable, spec, worldWidth, onChange }:
       options={[...new Set([tunable.default, ...(tunable.choices ?? [])])].map((one) => ({ value: one, label: one }))}
       onChange={(one) => set(one === tunable.default ? undefined : one)} />;
   }
-  const [least, most] = rangeOf(tunable, worldWidth);
-  const logarithmic = least > 0;
+  const [min, max] = rangeOf(tunable, worldWidth);
+  const logarithmic = min > 0;
   const number = Number(value);
   const on = value !== undefined && Number.isFinite(number);
-  const middle = logarithmic ? Math.sqrt(least * most) : (least + most) / 2;
+  const middle = logarithmic ? Math.sqrt(min * max) : (min + max) / 2;
   const written = (one: number): string => tunable.type === "integer" ? String(Math.round(one)) : short(one);
   return (
     <div class="tunable" title={tunable.summary}>
       <Switch label={`set ${tunable.name}`} value={on} onChange={(yes) => set(yes ? written(middle) : undefined)} />
-      {on ? <Slider label={tunable.name} value={number} least={least} most={most} logarithmic={logarithmic}
+      {on ? <Slider label={tunable.name} value={number} min={min} max={max} logarithmic={logarithmic}
         text={written} onChange={(one) => set(written(one))} hint={tunable.summary} />
         : <span class="note">{tunable.default}</span>}
     </div>
   );
 }
 
-/** Threads need shared memory, which a page from a folder has not; a declared world is the bounds. */
+/**
+ * Threads need shared memory, which a page from a folder does not have; the declared world is the
+ * bounds.
+ */
 const hidden = new Set(["threads", "left", "top", "width", "height", "reinsert"]);
 
 export function AlgorithmCard() {
@@ -50,7 +54,7 @@ export function AlgorithmCard() {
   const known = algorithms.value.find(({ name }) => name === nameOf(choice.spec));
   const bounds = told.value?.bounds;
   const worldWidth = bounds === undefined ? 100 : bounds[told.value!.dimension]! - bounds[0]!;
-  // What only trackers take does nothing in a search.
+  // A tunable of trackers has no effect in a search.
   const tunables = (known?.tunables ?? []).filter(({ name }) =>
     !hidden.has(name) && (choice.follow || !["update", "detect"].includes(name)));
   const explanation = told.value?.panels[panel]?.explanation ?? "";
@@ -64,7 +68,7 @@ export function AlgorithmCard() {
       ))}
       {explanation !== "" && <p class="explanation">{explanation}</p>}
       <div class="row">
-        <button type="button" disabled={panels.length >= mostPanels}
+        <button type="button" disabled={panels.length >= maxPanels}
           onClick={() => addPanel(nextSpec())}>Add a panel</button>
         {panels.length > 1 && panels.map((one, at) => (
           <button key={at} type="button" aria-pressed={at === panel} aria-label={`Settings of panel ${at + 1}: ${one.spec}`}

@@ -1,4 +1,4 @@
-// Which algorithm a panel shows.
+// Chooses a panel's algorithm.
 import type { Dimension } from "../scene/scene.ts";
 import { algorithms } from "../state/store.ts";
 import { nameOf } from "../state/spec.ts";
@@ -12,7 +12,8 @@ export function AlgorithmChoice({ spec, dimension, label, onChange }:
   const name = nameOf(spec);
   const options = known.map((one) =>
     ({ value: one.name, label: one.name, group: groups[one.kind] ?? one.kind }));
-  // What the scene's dimension rules out is still told, with the error of the search beside it.
+  // An algorithm that does not support the scene's dimension stays listed, with its search's error
+  // beside it.
   if (!options.some(({ value }) => value === name)) options.unshift({ value: name, label: name, group: "Chosen" });
   return <Choice label={label} value={name} options={options} onChange={onChange} bare />;
 }

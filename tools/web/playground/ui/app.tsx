@@ -1,4 +1,4 @@
-// The page: its head, the picture, and what is beside it.
+// The page: its head, the picture, and the column beside it.
 import type { Mode } from "../state/state.ts";
 import { patch, said, state } from "../state/store.ts";
 import { address } from "./address.ts";

@@ -8,7 +8,7 @@ import { duration } from "./numbers.ts";
 
 const record = signal(0);
 
-/** Below that, noise decides. */
+/** Ratios below this may be noise. */
 const lost = 1.25;
 
 function judge(ratio: number): string {

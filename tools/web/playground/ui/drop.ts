@@ -1,4 +1,4 @@
-// Files that are dropped on the page or chosen. They stay in it.
+// Files dropped on the page or chosen. They never leave it.
 import { batch, signal } from "@preact/signals";
 
 import type { Opened } from "../bench/protocol.ts";
@@ -11,7 +11,7 @@ import { wholeView } from "./view.ts";
 /** Whether a file hovers over the page. */
 export const hovering = signal(false);
 
-/** Has the bench read a file, which then answers that it is opened, or why not. */
+/** Lets the bench read a file; it replies that the file is open, or why not. */
 export async function openFile(file: File): Promise<void> {
   try {
     bench().send({ kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });

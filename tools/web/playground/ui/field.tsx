@@ -1,13 +1,13 @@
-// The page's controls: each with its label, and what it says now.
+// The page's controls, each with its label and current value.
 import type { ComponentChildren } from "preact";
 import { useId } from "preact/hooks";
 
 interface SliderProps {
   label: string;
   value: number;
-  least: number;
-  most: number;
-  /** Steps of the slider; on a logarithmic one, of the logarithm. */
+  min: number;
+  max: number;
+  /** Steps of the slider; on a logarithmic one, steps of the logarithm. */
   step?: number;
   logarithmic?: boolean;
   /** The value as text. */
@@ -16,7 +16,7 @@ interface SliderProps {
   hint?: string | undefined;
 }
 
-export function Slider({ label, value, least, most, step, logarithmic = false, text, onChange, hint }: SliderProps) {
+export function Slider({ label, value, min, max, step, logarithmic = false, text, onChange, hint }: SliderProps) {
   const id = useId();
   const inward = (one: number): number => logarithmic ? Math.log10(one) : one;
   const outward = (one: number): number => logarithmic ? 10 ** one : one;
@@ -25,8 +25,8 @@ export function Slider({ label, value, least, most, step, logarithmic = false, t
     <div class="field">
       <label for={id}>{label}</label>
       <output for={id}>{said}</output>
-      <input id={id} type="range" min={inward(least)} max={inward(most)} title={hint}
-        step={step ?? (inward(most) - inward(least)) / 200} value={inward(Math.max(least, value))} aria-valuetext={said}
+      <input id={id} type="range" min={inward(min)} max={inward(max)} title={hint}
+        step={step ?? (inward(max) - inward(min)) / 200} value={inward(Math.max(min, value))} aria-valuetext={said}
         onInput={(event) => onChange(outward(event.currentTarget.valueAsNumber))} />
     </div>
   );
@@ -37,7 +37,7 @@ interface ChoiceProps {
   value: string;
   options: readonly { value: string; label: string; group?: string }[];
   onChange: (value: string) => void;
-  /** Whether the label is for screen readers alone. */
+  /** Whether the label is only for screen readers. */
   bare?: boolean;
   class?: string;
 }
@@ -80,7 +80,7 @@ interface ButtonsProps<Value extends string> {
   onChange: (value: Value) => void;
 }
 
-/** A few choices that exclude each other. */
+/** A few mutually exclusive choices. */
 export function Buttons<Value extends string>({ label, value, options, onChange }: ButtonsProps<Value>) {
   return (
     <div class="buttons" role="group" aria-label={label}>

@@ -1,4 +1,4 @@
-// The selected box: which boxes it was compared with, and why the others were not.
+// The selected box: the boxes that it was compared with, and why the others were skipped.
 import { patch, state, told } from "../state/store.ts";
 import { Card } from "./field.tsx";
 import { grouped, plural } from "./numbers.ts";

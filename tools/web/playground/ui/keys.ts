@@ -1,4 +1,4 @@
-// What keys do in a panel's window.
+// Keyboard control of a panel's window.
 import { clock, edit, patch, say, shown, state } from "../state/store.ts";
 import { addBox, removeBox } from "./pointer.ts";
 import { plural } from "./numbers.ts";
@@ -8,10 +8,10 @@ export const keysHelp = "Space plays and pauses. Tab leaves. N and P select the 
   "it, or the camera if none is selected. A adds a box, Delete removes the selected one, Escape lets it go. " +
   "Plus and minus zoom, 0 shows all. Comma and period step back and forward in time.";
 
-/** Half the way across the picture takes this many presses. */
+/** One press moves by this fraction of the picture's width. */
 const stride = 0.02;
 
-/** Seconds between two frames at which one steps. */
+/** Seconds per step when stepping frame by frame. */
 const frame = 1 / 30;
 
 function moveSelected(dx: number, dy: number): void {
@@ -29,7 +29,7 @@ function select(way: 1 | -1): void {
   const now = shown.value!;
   const count = now.boxes.length / (2 * now.dimension);
   let box = state.value.selected;
-  // Absent boxes are passed over.
+  // Absent boxes are skipped.
   for (let tries = 0; tries < count; ++tries) {
     box = box < 0 ? (way > 0 ? 0 : count - 1) : (box + way + count) % count;
     if (now.boxes[2 * now.dimension * box]! <= now.boxes[(2 * box + 1) * now.dimension]!) break;

@@ -8,7 +8,7 @@ import type { State } from "../state/state.ts";
 import { clock, duel, latest, patch, say, shown, state } from "../state/store.ts";
 import { wholeView } from "./view.ts";
 
-/** Shows what a lesson wants to show. */
+/** Applies a change of state that the lesson requests. */
 function show(change: Partial<State>): void {
   clock.value = 0;
   latest.value = 0;
@@ -50,7 +50,7 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
   const verdict = useSignal<Verdict | null>(null);
   useEffect(() => {
     const judge = (): void => {
-      // What is shown has to be of what is chosen now.
+      // The results must be those of the current settings.
       const now = shown.value;
       const specs = state.value.panels.map(({ spec }) => spec).join(";");
       if (now === null || now.panels.map(({ spec }) => spec).join(";") !== specs) return;

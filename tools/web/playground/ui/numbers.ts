@@ -1,4 +1,4 @@
-// Numbers as the page writes them.
+// Number formats of the page.
 
 export function grouped(value: number): string {
   return Math.round(value).toLocaleString("en");

@@ -1,4 +1,5 @@
-// What the pointer does in a panel's window: select, drag, throw, add and paint boxes; move and turn the camera.
+// Pointer control of a panel's window: select, drag, throw, add and paint boxes; move and turn the
+// camera.
 import type { Edit } from "../scene/edits.ts";
 import { flatCamera, rayAt, solidMatrix, toWorld } from "../draw/camera.ts";
 import { pickFlat, pickSolid } from "../draw/pick.ts";
@@ -7,9 +8,9 @@ import type { Stage } from "./stage.ts";
 import { tool } from "./tools.ts";
 import { view, zoomBy } from "./view.ts";
 
-/** What a held box's speed is taken from, in ms. */
+/** A held box's speed is measured over this time, in ms. */
 const memory = 90;
-/** A recorded drag is kept at this many ms. */
+/** A recorded drag is sampled at this interval, in ms. */
 const recordEvery = 80;
 
 interface Trail {
@@ -18,7 +19,7 @@ interface Trail {
   y: number;
 }
 
-/** The width of a box that is added, as a share of the world's. */
+/** The width of an added box, as a fraction of the world's width. */
 export const addedShare = 0.035;
 
 export class PointerInput {
@@ -26,7 +27,7 @@ export class PointerInput {
   private camera: { x: number; y: number } | undefined;
   private painted: { x: number; y: number } | undefined;
   private moved = false;
-  /** Two fingers' distance, while they pinch. */
+  /** Positions of fingers, for pinching with two of them. */
   private readonly touches = new Map<number, { x: number; y: number }>();
 
   constructor(private readonly stage: Stage, private readonly panel: number, private readonly element: HTMLElement) {
@@ -38,7 +39,7 @@ export class PointerInput {
       if (shown.value?.dimension === 2 && this.boxAt(event) < 0) this.add(...this.world(event));
     });
     element.addEventListener("wheel", (event) => {
-      // The page scrolls on, unless the window was chosen.
+      // The page scrolls on unless the window has the focus.
       if (!event.ctrlKey && document.activeElement !== element) return;
       event.preventDefault();
       zoomBy(event.deltaY < 0 ? 1.15 : 1 / 1.15);
@@ -70,7 +71,7 @@ export class PointerInput {
 
   private down(event: PointerEvent): void {
     if (event.button !== 0 || shown.value === null) return;
-    // A pointer that has gone meanwhile cannot be captured.
+    // A pointer that has already gone cannot be captured.
     if (event.isTrusted) this.element.setPointerCapture(event.pointerId);
     this.touches.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.moved = false;
@@ -163,7 +164,7 @@ export class PointerInput {
     this.grip = this.camera = this.painted = undefined;
   }
 
-  /** The speed at which the box was let go; one that was held still stays. */
+  /** The speed at which the box was released; a box that was held still stays. */
   private throwSpeed(now: number): { vx: number; vy: number } {
     const trail = this.grip!.trail.filter(({ at }) => now - at < memory);
     const [first, last] = [trail[0], trail[trail.length - 1]];
@@ -193,7 +194,7 @@ function addedSize(): number {
 /** Adds a box at a place and selects it. */
 export function addBox(x: number, y: number): void {
   const size = addedSize();
-  // A scene may have other boxes than it was asked for.
+  // A scene may have another number of boxes than requested.
   const box = Math.max(count.value, shown.value!.boxes.length / 4);
   edit({ box, time: clock.value, x, y, width: size, height: size, vx: 0, vy: 0 });
   if (tool.value !== "paint") patch({ selected: box });

@@ -1,7 +1,7 @@
-// The boxes: a scene or a file, how many, and the sliders with cliffs.
+// The boxes: a scene or a file, their number, and the sliders that expose performance cliffs.
 import { sceneEntries, sceneEntry, fileScene } from "../scene/catalogue.ts";
 import type { Knobs } from "../scene/drift.ts";
-import { mostBoxes } from "../state/state.ts";
+import { maxBoxes } from "../state/state.ts";
 import { changeScene, chooseScene, fileName, patch, state } from "../state/store.ts";
 import { openFile } from "./drop.ts";
 import { Card, Choice, Slider, Switch } from "./field.tsx";
@@ -10,8 +10,8 @@ import { grouped } from "./numbers.ts";
 interface Knob {
   name: keyof Knobs;
   label: string;
-  least: number;
-  most: number;
+  min: number;
+  max: number;
   logarithmic?: boolean;
   text: (value: number) => string;
   hint: string;
@@ -20,17 +20,17 @@ interface Knob {
 const percent = (value: number): string => `${Math.round(100 * value)} %`;
 
 const knobs: readonly Knob[] = [
-  { name: "ratio", label: "Size ratio", least: 1, most: 300, logarithmic: true, text: (value) => `1 to ${value < 10 ? value.toFixed(1) : Math.round(value)}`,
+  { name: "ratio", label: "Size ratio", min: 1, max: 300, logarithmic: true, text: (value) => `1 to ${value < 10 ? value.toFixed(1) : Math.round(value)}`,
     hint: "How many times as long as the smallest box the largest is" },
-  { name: "clustering", label: "Clustering", least: 0, most: 1, text: percent, hint: "From evenly spread to tight clusters" },
-  { name: "moving", label: "Share that moves", least: 0, most: 1, text: percent, hint: "The other boxes rest" },
-  { name: "speed", label: "Speed", least: 0, most: 6, text: (value) => `${value.toFixed(1)}×`, hint: "Of the boxes that move" },
+  { name: "clustering", label: "Clustering", min: 0, max: 1, text: percent, hint: "From evenly spread to tight clusters" },
+  { name: "moving", label: "Share that moves", min: 0, max: 1, text: percent, hint: "The other boxes rest" },
+  { name: "speed", label: "Speed", min: 0, max: 6, text: (value) => `${value.toFixed(1)}×`, hint: "Of the boxes that move" },
 ];
 
-/** Two digits are enough to drag. */
+/** Two significant digits are enough for dragging. */
 function rounded(count: number): number {
   const unit = 10 ** Math.max(0, Math.floor(Math.log10(count)) - 1);
-  return Math.min(mostBoxes, Math.max(1, Math.round(count / unit) * unit));
+  return Math.min(maxBoxes, Math.max(1, Math.round(count / unit) * unit));
 }
 
 export function SceneCard() {
@@ -43,10 +43,10 @@ export function SceneCard() {
       <Choice label="Scene" value={scene.name} options={options} onChange={chooseScene} />
       <p class="note">{entry?.summary ?? "Boxes of a file that was dropped here. It stays in this page."}</p>
       {entry?.breaks !== undefined && <p class="note">It breaks <code>{entry.breaks.spec}</code>: {entry.breaks.why}</p>}
-      {scene.name !== fileScene && <Slider label="Number of boxes" value={scene.count} least={10} most={mostBoxes}
+      {scene.name !== fileScene && <Slider label="Number of boxes" value={scene.count} min={10} max={maxBoxes}
         logarithmic text={grouped} onChange={(value) => changeScene({ count: rounded(value) })} />}
-      {entry?.knobs === true && knobs.map(({ name, label, least, most, logarithmic, text, hint }) => (
-        <Slider key={name} label={label} value={scene.knobs[name]} least={least} most={most} text={text} hint={hint}
+      {entry?.knobs === true && knobs.map(({ name, label, min, max, logarithmic, text, hint }) => (
+        <Slider key={name} label={label} value={scene.knobs[name]} min={min} max={max} text={text} hint={hint}
           logarithmic={logarithmic ?? false}
           onChange={(value) => changeScene({ knobs: { ...scene.knobs, [name]: value } })} />
       ))}

@@ -1,4 +1,4 @@
-// What one takes along: the link, the page to embed, lines of a program, pictures and films.
+// Sharing: the link, the page to embed, code, pictures and films.
 import { signal } from "@preact/signals";
 
 import { gifOf } from "../out/gif.ts";
@@ -19,7 +19,7 @@ async function copy(text: string, what: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // A page from a folder may have no clipboard but the old one.
+    // A page from a folder may have only the old clipboard interface.
     const area = document.createElement("textarea");
     area.value = text;
     document.body.append(area);
@@ -37,7 +37,7 @@ function captions(): string[] {
   });
 }
 
-/** Tells what went wrong instead of saving. */
+/** Reports an error instead of saving. */
 async function attempt(work: () => Promise<void> | void): Promise<void> {
   try {
     await work();

@@ -1,4 +1,4 @@
-// The picture: one canvas behind all panels, and where each panel's window is on it.
+// The picture: one canvas behind all panels, and the position of each panel's window on it.
 import { effect } from "@preact/signals";
 
 import { flatCamera } from "../draw/camera.ts";
@@ -9,8 +9,8 @@ import { shown, state } from "../state/store.ts";
 import { palette } from "./themes.ts";
 import { view } from "./view.ts";
 
-/** Finer pixels than this cost much and show little. */
-const mostRatio = 2;
+/** A finer resolution than this costs much and shows little. */
+const maxRatio = 2;
 
 export class Stage {
   readonly canvas = document.createElement("canvas");
@@ -19,7 +19,7 @@ export class Stage {
   private places: Place[] = [];
   private readonly observed = new WeakSet<Element>();
   private readonly observer = new ResizeObserver(() => this.measure());
-  /** Called where another picture of the same boxes is due. */
+  /** Called when the same boxes must be repainted. */
   onChange: () => void = () => {};
 
   constructor() {
@@ -54,9 +54,10 @@ export class Stage {
   measure(): void {
     if (this.holder === undefined) return;
     const all = this.holder.getBoundingClientRect();
-    this.painter.resize(all.width, all.height, Math.min(mostRatio, window.devicePixelRatio));
+    this.painter.resize(all.width, all.height, Math.min(maxRatio, window.devicePixelRatio));
     this.places = [...this.holder.querySelectorAll(".window")].map((one) => {
-      // Counts that wrap take height from a window. What is observed anew is told of at once, so only once.
+      // Counts that wrap take height from a window. Observing an element triggers a notification at
+      // once, so each is observed only once.
       if (!this.observed.has(one)) {
         this.observed.add(one);
         this.observer.observe(one);
@@ -67,7 +68,7 @@ export class Stage {
     this.onChange();
   }
 
-  /** Where the middle of a flat box is in the first panel, in pixels of the page. */
+  /** Position of the middle of a flat box in the first panel, in pixels of the page. */
   where(box: number): [x: number, y: number] | undefined {
     const [now, place] = [shown.value, this.places[0]];
     if (now === null || place === undefined || now.dimension !== 2 || this.holder === undefined) return undefined;
@@ -81,7 +82,7 @@ export class Stage {
     return this.places[panel];
   }
 
-  /** What the last picture took of the graphics card. */
+  /** The graphics card's work for the last picture. */
   get drawn(): Drawn | undefined {
     return this.painter.drawn;
   }

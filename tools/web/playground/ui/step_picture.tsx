@@ -1,4 +1,4 @@
-// Where a search of the draft's algorithms stands, drawn over its boxes.
+// State of a search by one of the draft's algorithms, drawn over its boxes.
 import type { GridState, QuadtreeState, Step, StepState, SweepState } from "../engine/types.ts";
 import { stepWorld } from "../scene/step_boxes.ts";
 
@@ -49,7 +49,7 @@ function Quadtree({ tree }: { tree: QuadtreeState }) {
   return (
     <g>
       {tree.nodes.map(({ box: [left, top, right, bottom], children }, at) => {
-        // Nodes at the border go on without end.
+        // Nodes at the border are unbounded.
         const [x0, y0] = [Math.max(left, -margin), Math.max(top, -margin)];
         const [x1, y1] = [Math.min(right, stepWorld.width + margin), Math.min(bottom, stepWorld.height + margin)];
         return <rect key={at} class={`cell ${at === tree.current ? "current" : ""} ${children === undefined ? "leaf" : ""}`}
@@ -68,7 +68,7 @@ function Structure({ state }: { state: StepState }) {
   }
 }
 
-/** The world, and the cells that reach beyond it. */
+/** The world, and cells that extend beyond it. */
 function viewBox(state: StepState): string {
   let [right, bottom] = [stepWorld.width as number, stepWorld.height as number];
   if (state.kind === "grid" && state.cells.length > 0) {
@@ -90,7 +90,7 @@ export function StepPicture({ boxes, step, found }:
     return found.has(id) ? "box lit" : "box";
   };
   const count = boxes.length / 4;
-  // What the step is about is drawn last, over the others.
+  // The boxes of the current step are drawn last, over the others.
   const order = Array.from({ length: count }, (_, id) => id)
     .sort((a, b) => Number(step.boxes.includes(a) || pair?.includes(a)) - Number(step.boxes.includes(b) || pair?.includes(b)));
   return (

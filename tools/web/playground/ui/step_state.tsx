@@ -1,4 +1,4 @@
-// What a search keeps, as text: cells, the active list, nodes.
+// The state of a search as text: cells, the active list, nodes.
 import type { StepState } from "../engine/types.ts";
 
 const list = (ids: readonly number[]): string => ids.length === 0 ? "none" : ids.join(", ");

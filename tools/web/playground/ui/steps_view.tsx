@@ -51,7 +51,7 @@ export function StepsView() {
   const listing = useRef<HTMLOListElement>(null);
   const step = result.steps[at];
   useEffect(() => {
-    // The list alone is scrolled, never the page.
+    // Scrolls only the list, never the page.
     const [list, line] = [listing.current, listing.current?.children[step?.line ?? 0]];
     if (list === null || !(line instanceof HTMLElement)) return;
     const top = line.offsetTop - list.offsetTop;
@@ -64,7 +64,7 @@ export function StepsView() {
   const reported = past.filter(({ outcome }) => outcome === "reported");
   const found = new Set(reported.flatMap(({ pair }) => pair ?? []));
   const onKey = (event: KeyboardEvent): void => {
-    // A slider has its own arrows.
+    // A slider handles arrows itself.
     if (event.target instanceof HTMLInputElement) return;
     if (event.key === "ArrowRight") go(at + 1);
     else if (event.key === "ArrowLeft") go(at - 1);
@@ -88,7 +88,7 @@ export function StepsView() {
           <button type="button" disabled={at === last} onClick={() => go(at + 1)}>Step forward ▸</button>
           <button type="button" aria-label="Last step" disabled={at === last} onClick={() => go(last)}>▸|</button>
         </div>
-        <Slider label="Step" value={at} least={0} most={last} step={1} text={(one) => `${grouped(one + 1)} of ${grouped(last + 1)}`}
+        <Slider label="Step" value={at} min={0} max={last} step={1} text={(one) => `${grouped(one + 1)} of ${grouped(last + 1)}`}
           onChange={(one) => go(Math.round(one))} />
         <dl class="step-counts">
           <div><dt>tests so far</dt><dd>{grouped(tests)} of {grouped(result.tests)}</dd></div>
@@ -110,13 +110,13 @@ export function StepsView() {
         </section>
         <section class="card" aria-label="Boxes">
           <h2>Boxes</h2>
-          <Slider label="Number of boxes" value={count} least={2} most={40} step={1}
+          <Slider label="Number of boxes" value={count} min={2} max={40} step={1}
             onChange={(value) => change({ count: Math.round(value), at: 0 })} />
-          {algorithm === "grid" && <Slider label="Cell" value={cell} least={0} most={8} step={0.25}
+          {algorithm === "grid" && <Slider label="Cell" value={cell} min={0} max={8} step={0.25}
             text={(value) => value === 0 ? "by itself" : String(value)} onChange={(value) => change({ cell: value, at: 0 })} />}
-          {algorithm === "quadtree" && <Slider label="Capacity" value={capacity} least={1} most={16} step={1}
+          {algorithm === "quadtree" && <Slider label="Capacity" value={capacity} min={1} max={16} step={1}
             onChange={(value) => change({ capacity: Math.round(value), at: 0 })} />}
-          <Slider label="Steps in a second" value={pace.value} least={0.5} most={30} logarithmic
+          <Slider label="Steps in a second" value={pace.value} min={0.5} max={30} logarithmic
             text={(value) => value.toFixed(1)} onChange={(value) => { pace.value = value; }} />
           <button type="button" onClick={() => {
             changeScene({ seed: state.value.scene.seed % 1000 + 1 });

@@ -1,4 +1,4 @@
-// The theme: the visitor's choice, else the system's.
+// The theme: the visitor's choice, otherwise the system's.
 import { computed, effect, signal } from "@preact/signals";
 
 import { dark, light } from "../draw/colours.ts";

@@ -1,4 +1,5 @@
-// Time against the number of boxes: measured over all numbers, or as one drags the number.
+// Time by number of boxes: measured over the whole range, or collected while the visitor drags the
+// number.
 import { useEffect, useRef } from "preact/hooks";
 import UPlot from "uplot";
 
@@ -9,7 +10,7 @@ import { Card } from "./field.tsx";
 import { duration, grouped } from "./numbers.ts";
 import { theme } from "./themes.ts";
 
-/** Eight to each power of ten, from 10 to 100,000. */
+/** Eight per power of ten, from 10 to 100,000. */
 const counts = Array.from({ length: 33 }, (_, at) => Math.round(10 ** (1 + at / 8)));
 
 /** Five colours that colour-blind people can tell apart (after Okabe and Ito); light and dark. */
@@ -18,7 +19,7 @@ const inks: readonly (readonly [string, string])[] = [
 ];
 const dashes = [[], [6, 3], [2, 3], [8, 3, 2, 3], []];
 
-/** The series by spec; where a number was measured twice, the least time counts. */
+/** The series by spec; of several times for one number, the shortest counts. */
 function table(): { specs: string[]; data: UPlot.AlignedData } {
   const bySpec = new Map<string, Map<number, number>>();
   for (const { spec, count, milliseconds } of measured.value) {
@@ -29,7 +30,7 @@ function table(): { specs: string[]; data: UPlot.AlignedData } {
   const xs = [...new Set([...bySpec.values()].flatMap((times) => [...times.keys()]))].sort((a, b) => a - b);
   return {
     specs: [...bySpec.keys()],
-    // A logarithm has no nought.
+    // A logarithm cannot show 0.
     data: [xs, ...[...bySpec.values()].map((times) => xs.map((x) => Math.max(1e-4, times.get(x) ?? NaN) || null))],
   };
 }
@@ -59,7 +60,7 @@ function options(specs: readonly string[], width: number): UPlot.Options {
   };
 }
 
-/** What is on the screen is a measurement as well. */
+/** The results on screen are measurements as well. */
 function noteShown(): void {
   const now = shown.value;
   if (now === null || state.value.scene.name === fileScene || state.value.edits.length > 0) return;

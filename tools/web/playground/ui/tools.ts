@@ -1,4 +1,4 @@
-// What the pointer does to boxes.
+// The pointer's tools for boxes.
 import { signal } from "@preact/signals";
 
 export type Tool = "move" | "paint" | "remove";

@@ -7,11 +7,11 @@ import { view, wholeView, zoomBy } from "./view.ts";
 
 const frame = 1 / 30;
 
-/** By itself, since it changes often. */
+/** A component of its own, because it changes often. */
 function TimeSlider() {
-  const most = Number.isFinite(duration.value) ? duration.value : Math.max(10, latest.peek());
+  const max = Number.isFinite(duration.value) ? duration.value : Math.max(10, latest.peek());
   const now = state.value.playing ? told.value?.time ?? 0 : clock.value;
-  return <Slider label="Time" value={now} least={0} most={most} step={most / 1000}
+  return <Slider label="Time" value={now} min={0} max={max} step={max / 1000}
     text={(value) => `${value.toFixed(1)} s`}
     onChange={(value) => {
       patch({ playing: false });
@@ -29,7 +29,7 @@ export function Transport() {
         <button type="button" onClick={() => stepTime(-frame)} aria-label="One frame back">◂ back</button>
         <button type="button" onClick={() => stepTime(frame)} aria-label="One frame forward">forward ▸</button>
         <TimeSlider />
-        <Slider label="Pace" value={pace} least={0.1} most={4} logarithmic text={(value) => `${value.toFixed(1)}×`}
+        <Slider label="Pace" value={pace} min={0.1} max={4} logarithmic text={(value) => `${value.toFixed(1)}×`}
           onChange={(value) => patch({ pace: value })} />
       </div>
       <div class="row">

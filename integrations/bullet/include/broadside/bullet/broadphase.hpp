@@ -93,9 +93,9 @@ inline void BulletBroadphase::setAabb(btBroadphaseProxy* moved, const btVector3&
   if (is_ghost(proxy)) offer_overlaps_of(proxy);
 }
 
-/// Moves the proxy's box in the world, unless that would change nothing but what queries find.
+/// Moves the proxy's box in the world, unless the move would affect only queries.
 inline void BulletBroadphase::move(Proxy& proxy, const bullet_detail::Box& box) {
-  // The world makes the enlarged box smaller of a box that has shrunk.
+  // If a box has shrunk, the world shrinks its enlarged box.
   const bool stays =
       options_.events == WorldEvents::enlarged && bullet_detail::encloses(proxy.enlarged, box) &&
       bullet_detail::sides_of(proxy.enlarged) - bullet_detail::sides_of(box) <= 2 * proxy.spare;
@@ -116,7 +116,7 @@ inline void BulletBroadphase::tell(Proxy& proxy, const bullet_detail::Box& box) 
   note_enlarged(proxy, box);
 }
 
-/// Takes the proxy's enlarged box from the world, which was told `box`.
+/// Copies the proxy's enlarged box from the world, which has just got `box`.
 inline void BulletBroadphase::note_enlarged(Proxy& proxy, const bullet_detail::Box& box) {
   proxy.is_untold = false;
   if (options_.events != WorldEvents::enlarged) return;
@@ -145,7 +145,7 @@ inline void BulletBroadphase::rayTest(const btVector3& from, const btVector3& to
                                       btBroadphaseRayCallback& callback, const btVector3& min,
                                       const btVector3& max) {
   const btVector3 way = to - from;
-  // The end of the line is rounded: a box that touches it is found all the same.
+  // The end of the line is rounded; a box that touches it must still be found.
   const btScalar end = 1 + 4 * std::numeric_limits<btScalar>::epsilon();
   const BoxCast<3, btScalar> cast = {
       bullet_detail::box_of(from + min, from + max), {way.x(), way.y(), way.z()}, end};
@@ -239,7 +239,7 @@ inline void BulletBroadphase::printStats() {
               now.bytes.total(), now.explanation.c_str());
 }
 
-/// The proxy, if it is one of this broad phase that was not destroyed.
+/// The proxy, if it is a proxy of this broad phase and was not destroyed.
 inline bullet_detail::Proxy& BulletBroadphase::used(const btBroadphaseProxy* proxy,
                                                     const char* function) const {
   const bool is_own = proxies_.owns(proxy);
@@ -261,15 +261,15 @@ inline btBroadphaseProxy* BulletBroadphase::proxy(Handle handle) const {
   return &proxy;
 }
 
-/// With Bullet's callback for ghost objects, every client object is a btCollisionObject: that callback takes
-/// it for granted as well.
+/// With Bullet's callback for ghost objects, every client object is a btCollisionObject; that callback relies
+/// on it, too.
 inline bool BulletBroadphase::is_ghost(const Proxy& proxy) const {
   if (own_cache_ == nullptr || !own_cache_->has_ghosts() || proxy.m_clientObject == nullptr) return false;
   return static_cast<const btCollisionObject*>(proxy.m_clientObject)->getInternalType() ==
          btCollisionObject::CO_GHOST_OBJECT;
 }
 
-/// A character controller sets its ghost's box and looks at once what it meets.
+/// A character controller sets its ghost's box and reads its overlaps at once.
 inline void BulletBroadphase::offer_overlaps_of(Proxy& proxy) {
   const bullet_detail::Box box = bullet_detail::box_of(proxy.m_aabbMin, proxy.m_aabbMax);
   if (!is_present(box)) return;
@@ -282,14 +282,14 @@ inline void BulletBroadphase::offer_overlaps_of(Proxy& proxy) {
   }
 }
 
-/// Has the world filter by the proxy's group and mask, unless a callback decides.
+/// Passes the proxy's group and mask to the world's filter, unless a callback decides.
 inline void BulletBroadphase::tell_filter(Proxy& proxy, bool is_callback_deciding) {
   world_.set_filter(proxy.handle, is_callback_deciding ? Filter{} : filter_of(proxy));
   proxy.filter_group = proxy.m_collisionFilterGroup;
   proxy.filter_mask = proxy.m_collisionFilterMask;
 }
 
-/// Takes in what anyone may have written into the proxy.
+/// Adopts group and mask if the user has changed them in the proxy.
 inline void BulletBroadphase::check_filter(Proxy& proxy) {
   if (proxy.filter_group != proxy.m_collisionFilterGroup || proxy.filter_mask != proxy.m_collisionFilterMask)
     tell_filter(proxy, is_callback_deciding_);
@@ -297,7 +297,7 @@ inline void BulletBroadphase::check_filter(Proxy& proxy) {
   proxy.checked = step_;
 }
 
-/// Bullet sets each box in each step, unless told otherwise: then nothing is left to do here.
+/// Unless told otherwise, Bullet sets each box in each step; then there is nothing left to do.
 inline void BulletBroadphase::check_filters() {
   const bool decides = pair_cache_->getOverlapFilterCallback() != nullptr;
   if (decides != is_callback_deciding_) {

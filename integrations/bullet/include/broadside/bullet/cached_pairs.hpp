@@ -1,4 +1,4 @@
-// The world's pairs in Bullet's pair cache, which the cache may refuse and its user may change.
+// Keeps the world's pairs in Bullet's pair cache, which may refuse pairs, and which the user may change.
 #pragma once
 
 #include <algorithm>
@@ -16,20 +16,20 @@
 
 namespace broadside::bullet_detail {
 
-/// Keeps a pair cache at the world's pairs that it accepts: its filter is asked when a pair begins and, while
-/// it says no, whenever one of the two boxes has moved.
+/// Synchronises a pair cache with the world's pairs that it accepts. The cache's filter is called when a pair
+/// begins and, while it refuses the pair, whenever one of the two boxes has moved.
 class CachedPairs {
  public:
   explicit CachedPairs(btOverlappingPairCache& cache)
       : cache_(cache), expected_(cache.getNumOverlappingPairs()) {}
 
-  /// Takes in what an update of the world brought. `step` is the one in which boxes moved before it.
+  /// Applies the events of a world's update. `step` is the step in which boxes moved before it.
   void apply(const World& world, const Events& events, std::uint32_t step, btDispatcher* dispatcher);
 
-  /// Offers a pair that overlaps now and that no update has told of yet.
+  /// Offers an overlapping pair that no update has reported yet.
   void offer_early(Proxy& a, Proxy& b);
 
-  /// Takes out all pairs of a proxy that is going to be destroyed.
+  /// Removes all pairs of a proxy that is about to be destroyed.
   void remove_all_of(Proxy& proxy, btDispatcher* dispatcher) {
     const int before = cache_.getNumOverlappingPairs();
     cache_.removeOverlappingPairsContainingProxy(&proxy, dispatcher);
@@ -44,7 +44,7 @@ class CachedPairs {
   }
 
  private:
-  /// A pair and its proxies; these may have been destroyed since.
+  /// A pair and its proxies; they may have been destroyed since.
   struct Link {
     HandlePair pair;
     Proxy* first;
@@ -75,9 +75,9 @@ class CachedPairs {
   void make_equal(const World& world, btDispatcher* dispatcher);
 
   btOverlappingPairCache& cache_;
-  std::vector<Link> absent_;  // pairs of the world that the cache does not hold; sorted
-  std::vector<Link> early_;   // pairs that the cache holds and no update has told of
-  int expected_;              // pairs in the cache, unless somebody else has changed it
+  std::vector<Link> absent_;  // sorted pairs of the world that the cache does not hold
+  std::vector<Link> early_;   // pairs in the cache that no update has reported yet
+  int expected_;              // number of pairs in the cache, unless other code has changed it
 };
 
 inline void CachedPairs::offer_early(Proxy& a, Proxy& b) {
@@ -94,7 +94,7 @@ inline void CachedPairs::offer_early(Proxy& a, Proxy& b) {
 
 inline void CachedPairs::apply(const World& world, const Events& events, std::uint32_t step,
                                btDispatcher* dispatcher) {
-  // A callback of the cache's may throw: then this is what the next call goes by.
+  // If a callback of the cache throws, the next call sees -1.
   const int expected = std::exchange(expected_, -1);
   if (cache_.getNumOverlappingPairs() != expected) return make_equal(world, dispatcher);
 
@@ -127,7 +127,7 @@ inline void CachedPairs::apply(const World& world, const Events& events, std::ui
   expected_ = cache_.getNumOverlappingPairs();
 }
 
-/// Takes pairs out of the cache, where it holds them.
+/// Removes pairs from the cache if it holds them.
 inline void CachedPairs::remove(const std::vector<Link>& links, btDispatcher* dispatcher) {
   if (!cache_.hasDeferredRemoval()) {
     for (const Link& one : links) {
@@ -135,7 +135,7 @@ inline void CachedPairs::remove(const std::vector<Link>& links, btDispatcher* di
     }
     return;
   }
-  // Such a cache leaves it to the broad phase to take pairs out of its array.
+  // With such a cache, the broad phase must remove pairs from the cache's array.
   std::vector<std::uint64_t> keys;
   for (const Link& one : links) {
     if (one.is_live()) keys.push_back(key(*one.first, *one.second));
@@ -153,8 +153,8 @@ inline void CachedPairs::remove(const std::vector<Link>& links, btDispatcher* di
   pairs.resize(kept);
 }
 
-/// After somebody else has changed the cache, or a callback threw: removes what is no pair of the world's,
-/// and offers what is missing.
+/// After other code has changed the cache, or a callback threw: removes pairs that the world does not have,
+/// and offers missing ones.
 inline void CachedPairs::make_equal(const World& world, btDispatcher* dispatcher) {
   absent_.clear();
   early_.clear();

@@ -1,4 +1,4 @@
-// The proxies of a BulletBroadphase: what Bullet calls an object's box, and the memory that they live in.
+// The proxies of a BulletBroadphase, which is Bullet's name for an object's box, and their memory pool.
 #pragma once
 
 #include <bit>
@@ -25,7 +25,7 @@ inline Box box_of(const btVector3& min, const btVector3& max) {
   return {{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}};
 }
 
-/// Whether a box lies in another; not if one of them has a NaN.
+/// Whether one box contains another; false for NaN.
 inline bool encloses(const Box& outer, const Box& inner) {
   bool is_inside = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -36,12 +36,12 @@ inline bool encloses(const Box& outer, const Box& inner) {
   return is_inside;
 }
 
-/// The lengths of a box's sides, in all.
+/// The sum of the lengths of a box's sides.
 inline btScalar sides_of(const Box& box) {
   return box.max[0] - box.min[0] + box.max[1] - box.min[1] + box.max[2] - box.min[2];
 }
 
-/// At least by how much `outer` reaches beyond `inner` on any side.
+/// The smallest distance by which `outer` extends beyond `inner` on any side.
 inline btScalar reach_beyond(const Box& outer, const Box& inner) {
   btScalar reach = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,7 @@ inline btScalar reach_beyond(const Box& outer, const Box& inner) {
   return reach;
 }
 
-/// The box with at least `reach` on every side.
+/// The box enlarged by at least `reach` on every side.
 inline Box widened(Box box, btScalar reach) {
   constexpr btScalar infinity = std::numeric_limits<btScalar>::infinity();
   if (reach == 0) return box;
@@ -63,22 +63,22 @@ inline Box widened(Box box, btScalar reach) {
   return box;
 }
 
-/// A box of the world's, as Bullet sees it.
+/// Bullet's record of a box in the world.
 struct Proxy : btBroadphaseProxy {
   Handle handle{};            ///< Handle{} unless the proxy is in use
-  std::uint32_t moved = 0;    ///< the step in which its box changed last
+  std::uint32_t moved = 0;    ///< the step in which its box last changed
   std::uint32_t checked = 0;  ///< the step in which `filter_group` and `filter_mask` were last compared
-  int filter_group = 0;       ///< what the world was told; the members of the base may be changed by anyone
+  int filter_group = 0;       ///< as the world has it; anyone may change the members of the base class
   int filter_mask = 0;
-  Box enlarged{};          ///< the world's, in which the box may move without the world being told
-  btScalar spare = 0;      ///< by how much the enlarged box's sides exceed the told one's, in all
-  bool is_untold = false;  ///< the box has moved since the world was last told
+  Box enlarged{};          ///< the world's enlarged box, in which the box may move without telling the world
+  btScalar spare = 0;      ///< sum of the enlarged box's sides minus that of the box that the world has
+  bool is_untold = false;  ///< the box has moved since the world last got it
 
   bool is_used() const noexcept { return handle != Handle{}; }
 };
 
-/// Bullet's rule is the world's: two meet if each one's mask has a bit of the other one's group. The sign is
-/// extended, so that Bullet's standard filter is the world's.
+/// Bullet's rule is the world's: two boxes can pair if each one's mask has a bit of the other's group. The
+/// sign is extended, so that Bullet's default filter becomes the world's.
 inline Filter filter_of(const Proxy& proxy) noexcept {
   return {.category = static_cast<std::uint64_t>(std::int64_t{proxy.m_collisionFilterGroup}),
           .mask = static_cast<std::uint64_t>(std::int64_t{proxy.m_collisionFilterMask})};
@@ -92,17 +92,17 @@ inline Proxy& proxy_in(std::uint64_t user_data) noexcept {
   return *std::bit_cast<Proxy*>(static_cast<std::uintptr_t>(user_data));
 }
 
-/// Proxies at fixed addresses. Their memory is kept until the pool goes, so that a proxy which was destroyed
-/// can still be told from one in use.
+/// Proxies at fixed addresses. Their memory is kept as long as the pool, so that a destroyed proxy can still
+/// be distinguished from one in use.
 class ProxyPool {
  public:
-  /// Makes room for one more proxy, and says which one take() is going to be.
+  /// Ensures capacity for one more proxy, and returns the one that take() will allocate.
   Proxy& next() {
     if (free_.empty()) add_chunk();
     return *free_.back();
   }
 
-  /// Takes next() out of the pool.
+  /// Allocates next().
   void take() noexcept {
     free_.pop_back();
     ++used_;
@@ -111,11 +111,11 @@ class ProxyPool {
   void give_back(Proxy& proxy) noexcept {
     proxy.handle = {};
     proxy.m_clientObject = nullptr;
-    free_.push_back(&proxy);  // there is room for all
+    free_.push_back(&proxy);  // the capacity suffices for all proxies
     --used_;
   }
 
-  /// Whether the pointer, which may point anywhere, is to a proxy of this pool, used or not.
+  /// Whether an arbitrary pointer is a proxy of this pool, in use or not.
   bool owns(const btBroadphaseProxy* proxy) const noexcept {
     const auto address = std::bit_cast<std::uintptr_t>(proxy);
     // The last chunk is the largest.
@@ -135,7 +135,7 @@ class ProxyPool {
     }
   }
 
-  /// Once none is used: hands out the same addresses in the same order again.
+  /// If no proxy is in use: the same addresses will be allocated in the same order again.
   void reset() noexcept {
     free_.clear();
     for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) list_free(*chunk);
@@ -151,7 +151,7 @@ class ProxyPool {
 
   void add_chunk() {
     const std::size_t before = used_ + free_.size();
-    const std::size_t size = before < 64 ? 64 : before;  // doubles what there is
+    const std::size_t size = before < 64 ? 64 : before;  // doubles the capacity
     free_.reserve(before + size);
     chunks_.push_back({std::make_unique<Proxy[]>(size), size});
     list_free(chunks_.back());
@@ -162,7 +162,7 @@ class ProxyPool {
   }
 
   std::vector<Chunk> chunks_;
-  std::vector<Proxy*> free_;  // the next one is the last
+  std::vector<Proxy*> free_;  // a stack: the next proxy is the last element
   std::size_t used_ = 0;
 };
 

@@ -91,13 +91,14 @@ template <typename S>
 S FclCollisionManager<S>::beyond(S reached, std::span<const Box<3, S>> boxes, bool are_own) const {
   constexpr std::size_t samples = 64;
   const BoxIndex<3, S>& all = box_index();
-  S least = std::numeric_limits<S>::infinity();
+  S min_distance = std::numeric_limits<S>::infinity();
   const std::size_t step = std::max<std::size_t>(boxes.size() / samples, 1);
   for (std::size_t place = 0; place < boxes.size(); place += step) {
     const std::optional<BoxId> except = are_own ? std::optional(BoxId(place)) : std::nullopt;
-    least = std::min(least, detail::distance_beyond(boxes[place], reached, all, objects_.boxes(), except));
+    min_distance =
+        std::min(min_distance, detail::distance_beyond(boxes[place], reached, all, objects_.boxes(), except));
   }
-  return least;
+  return min_distance;
 }
 
 template <typename S>
@@ -117,7 +118,9 @@ void FclCollisionManager<S>::distance(Object* object, void* data, DistanceCallBa
                         {.except = self});
       },
       [&](S reached) { return detail::distance_beyond(box, reached, all, boxes, self); },
-      [&](const auto& pair, S& least) { return callback(objects[pair.first], object, data, least); });
+      [&](const auto& pair, S& min_distance) {
+        return callback(objects[pair.first], object, data, min_distance);
+      });
 }
 
 template <typename S>
@@ -140,8 +143,8 @@ void FclCollisionManager<S>::distance(void* data, DistanceCallBack callback) con
         pairs_.finder().find(enlarged, function);
       },
       [&](S reached) { return beyond(reached, boxes, true); },
-      [&](const auto& pair, S& least) {
-        return callback(objects[pair.first], objects[pair.second], data, least);
+      [&](const auto& pair, S& min_distance) {
+        return callback(objects[pair.first], objects[pair.second], data, min_distance);
       });
 }
 
@@ -168,10 +171,10 @@ void FclCollisionManager<S>::distance(Manager* other_manager, void* data, Distan
         pairs_.finder().find_between(enlarged, other_boxes, function);
       },
       [&](S reached) { return beyond(reached, other_boxes, false); },
-      [&](const auto& pair, S& least) {
+      [&](const auto& pair, S& min_distance) {
         Object* const first = objects_.objects()[pair.first];
         Object* const second = other.objects_.objects()[pair.second];
-        return first != second && callback(first, second, data, least);
+        return first != second && callback(first, second, data, min_distance);
       });
 }
 

@@ -1,4 +1,4 @@
-// The overlapping pairs of boxes that change often and are asked for now and then, and an index of the boxes.
+// The overlapping pairs of boxes that change often and are queried rarely, and an index of the boxes.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 
 namespace broadside::detail {
 
-/// Places that changed since somebody last looked, each once.
+/// Indices that changed since the last call of below(), without duplicates.
 class ChangedPlaces {
  public:
-  /// Makes room for places below `size`, so that add() does not throw.
+  /// Ensures capacity for indices below `size`, so that add() does not throw.
   void reserve(std::size_t size) {
     if (size <= listed_.size()) return;
     listed_.resize(size);
@@ -34,7 +34,8 @@ class ChangedPlaces {
   std::size_t count() const noexcept { return places_.size(); }
   bool contains(BoxId place) const noexcept { return listed_[index(place)] != 0; }
 
-  /// Those below `size`, in the order in which they were added; the others are forgotten, and gone.
+  /// The indices below `size`, in the order in which they were added. Clears the set; other indices are
+  /// dropped.
   std::span<const BoxId> below(std::size_t size) {
     std::erase_if(places_, [&](BoxId place) {
       if (index(place) < size) return false;
@@ -51,33 +52,34 @@ class ChangedPlaces {
 
  private:
   std::vector<BoxId> places_;
-  std::vector<std::uint8_t> listed_;  // by place
+  std::vector<std::uint8_t> listed_;  // by index
 };
 
-/// Finds the pairs when they are asked for: anew where many boxes changed since, which costs nothing for
-/// bookkeeping; else by asking the index about those that changed. It is made when it is first needed.
+/// Finds the pairs on demand. If many boxes changed, it searches from scratch, without bookkeeping; otherwise
+/// it queries the index for the changed boxes. The index is built when first needed.
 template <typename S>
 class LazyPairs {
  public:
   explicit LazyPairs(std::string_view algorithm) : finder_(algorithm) {}
 
-  /// Makes room for as many boxes, so that changed() does not throw.
+  /// Ensures capacity for that many boxes, so that changed() does not throw.
   void reserve(std::size_t size) {
     for_pairs_.reserve(size);
     for_index_.reserve(size);
   }
 
-  /// Says that the box at `place` is another one, or new.
+  /// Marks the box at index `place` as changed or new.
   void changed(std::size_t place) noexcept {
     for_pairs_.add(place);
     for_index_.add(place);
     are_current_ = index_is_current_ = false;
   }
 
-  /// Says that there are fewer boxes.
+  /// Call this after boxes were removed.
   void shrunk() noexcept { are_current_ = index_is_current_ = false; }
 
-  /// The pairs of `boxes`, in an order fixed by the calls since construction. Valid until they change.
+  /// The pairs of `boxes`, in an order determined by the calls since construction. Valid until the boxes
+  /// change.
   std::span<const Pair> pairs(std::span<const Box<3, S>> boxes) {
     if (are_current_) return pairs_;
     const bool follows = are_known_ && for_pairs_.count() <= max_followed(boxes.size());
@@ -92,10 +94,10 @@ class LazyPairs {
     return pairs_;
   }
 
-  /// For searches of other boxes, so that they reuse its memory.
+  /// For searches of other boxes, to reuse its memory.
   Finder<3, S>& finder() noexcept { return finder_; }
 
-  /// Not touched where it is current: other threads may be asking it.
+  /// Not modified if it is current: other threads may be querying it.
   const BoxIndex<3, S>& box_index(std::span<const Box<3, S>> boxes) {
     if (index_is_current_) return index_;
     index_.update({.boxes = boxes, .changed = for_index_.below(boxes.size())});
@@ -105,8 +107,9 @@ class LazyPairs {
   }
 
  private:
-  /// The most changed boxes for which asking the index cost less than finding all pairs anew: some 15 % of
-  /// 10,000, which the cache holds, and 5 to 6 % of more (bench/fcl_manager, on two cores of an AMD EPYC).
+  /// The maximum number of changed boxes for which querying the index cost less than a search from scratch:
+  /// about 15 % of 10,000 boxes, which fit into the cache, and 5 to 6 % of more (bench/fcl_manager, on two
+  /// cores of an AMD EPYC).
   static std::size_t max_followed(std::size_t boxes) noexcept {
     return std::min(boxes / 8, boxes / 16 + 500);
   }
@@ -125,7 +128,7 @@ class LazyPairs {
     });
     for (const BoxId place : for_pairs_.below(boxes.size())) {
       const auto add = [&](BoxId other) {
-        // Of two that changed, the lesser one adds the pair.
+        // If both boxes changed, the one with the lower index adds the pair.
         if (place < other)
           pairs_.push_back({place, other});
         else if (!for_pairs_.contains(other))
@@ -139,8 +142,8 @@ class LazyPairs {
   BoxIndex<3, S> index_;
   ChangedPlaces for_pairs_;  // since the last pairs(), and since the last box_index()
   ChangedPlaces for_index_;
-  bool are_known_ = false;    // pairs_ were right at the last pairs()
-  bool are_current_ = false;  // and are so now
+  bool are_known_ = false;    // pairs_ were correct at the last pairs()
+  bool are_current_ = false;  // pairs_ are correct now
   bool index_is_current_ = false;
   std::vector<Pair> pairs_;
 };

@@ -1,4 +1,4 @@
-// The objects of an FCL manager in one array, and their boxes as they were when it was last told of them.
+// The objects of an FCL manager in one array, with their boxes as of the last registration or update.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@
 
 namespace broadside::detail {
 
-/// Objects at places counted from 0, without gaps: the last one takes the place of one that is removed.
+/// Objects at contiguous indices from 0: the last object replaces a removed one.
 ///
-/// Every function that changes something takes all of what it is given or, if it throws, nothing. Those that
-/// change boxes call `changed(place)`, which must not throw, for each place whose box became another one.
+/// Functions that change something have the strong exception guarantee. Functions that change boxes call
+/// `changed(place)`, which must not throw, for each index whose box changed.
 template <typename S>
 class FclObjectSet {
  public:
@@ -34,7 +34,7 @@ class FclObjectSet {
   std::span<const Box<3, S>> boxes() const noexcept { return boxes_; }
   std::size_t size() const noexcept { return objects_.size(); }
 
-  /// Where the object is; nothing where it is not.
+  /// The object's index; empty if it is not registered.
   std::optional<BoxId> place_of(const Object* object) const {
     const auto found = places_.find(object);
     return found == places_.end() ? std::nullopt : std::optional(found->second);
@@ -86,7 +86,7 @@ class FclObjectSet {
     places_.clear();
   }
 
-  /// Looks at the boxes of all objects.
+  /// Updates the boxes of all objects.
   template <typename Changed>
   void update(const Changed& changed) {
     moved_.resize(size());
@@ -97,7 +97,7 @@ class FclObjectSet {
     boxes_.swap(moved_);
   }
 
-  /// Looks at the boxes of these objects.
+  /// Updates the boxes of these objects.
   template <typename Changed>
   void update(std::span<Object* const> objects, const Changed& changed) {
     moved_.clear();
@@ -112,7 +112,7 @@ class FclObjectSet {
     }
   }
 
-  /// The box that the object has now. `number` is its place in what the caller handed in, for the message.
+  /// The current box of the object. `number` is its index in the caller's list, for the message.
   static Box<3, S> box_of(const Object* object, std::size_t number = 0) {
     if (object == nullptr) throw std::invalid_argument(named(number) + " is null; expected an object");
     const fcl::AABB<S>& bounds = object->getAABB();
@@ -147,7 +147,7 @@ class FclObjectSet {
   std::vector<Object*> objects_;
   std::vector<Box<3, S>> boxes_;
   std::unordered_map<const Object*, BoxId> places_;
-  std::vector<Box<3, S>> moved_;  // what update() reads before it changes anything
+  std::vector<Box<3, S>> moved_;  // boxes read by update() before it changes anything
   std::vector<BoxId> moved_places_;
 };
 
