@@ -1,6 +1,5 @@
-// One layer behind all languages: the kinds of boxes, and AnyKind, an object over boxes of any of them. A
-// class that works on boxes is a template here too; a function of another language says once what to do with
-// it.
+// One layer behind all languages: the kinds of boxes, and AnyKind, an object for boxes of any of them. A
+// binding writes each of its functions once, as a body that visits the object.
 #pragma once
 
 #include <stdexcept>
@@ -62,7 +61,7 @@ inline void check_kind(broadside_kind found, broadside_kind expected, const char
     throw OtherKind(std::string(thing) + " " + text_of(found) + "; expected " + text_of(expected));
 }
 
-/// A Class<D, Real> for boxes of any kind.
+/// A Class<D, Real>; the kind decides which. An Object is made in place: it need not be movable.
 template <template <int, typename> class Class>
 class AnyKind {
   using Object = std::variant<Class<2, float>, Class<3, float>, Class<2, double>, Class<3, double>>;

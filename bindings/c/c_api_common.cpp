@@ -18,6 +18,23 @@ void write(broadside_error& error, broadside_status status, const char* message,
   error.message[length] = 0;
 }
 
+class CallersExecutor final : public Executor {
+ public:
+  explicit CallersExecutor(const broadside_executor& executor) : executor_(executor) {}
+
+  std::size_t threads() const noexcept override { return executor_.threads(executor_.user); }
+
+  void run(std::size_t count, const std::function<void(std::size_t)>& task) override {
+    const auto call = [](void* state, std::size_t i) {
+      (*static_cast<const std::function<void(std::size_t)>*>(state))(i);
+    };
+    executor_.run(executor_.user, count, call, const_cast<std::function<void(std::size_t)>*>(&task));
+  }
+
+ private:
+  broadside_executor executor_;
+};
+
 }  // namespace
 
 broadside_status status_of_exception(broadside_error* error) noexcept {
@@ -33,23 +50,11 @@ void check_api_version(int version) {
                                 ", the version of library " BROADSIDE_VERSION);
 }
 
-CallersExecutor::CallersExecutor(const broadside_executor& executor) : executor_(executor) {
-  if (executor.threads == nullptr)
-    throw std::invalid_argument("executor.threads is null; expected a function");
-  if (executor.run == nullptr) throw std::invalid_argument("executor.run is null; expected a function");
-}
-
-std::size_t CallersExecutor::threads() const noexcept { return executor_.threads(executor_.user); }
-
-void CallersExecutor::run(std::size_t count, const std::function<void(std::size_t)>& task) {
-  const auto call = [](void* state, std::size_t i) {
-    (*static_cast<const std::function<void(std::size_t)>*>(state))(i);
-  };
-  executor_.run(executor_.user, count, call, const_cast<std::function<void(std::size_t)>*>(&task));
-}
-
 std::unique_ptr<Executor> make_executor(const broadside_executor* executor) {
   if (executor == nullptr) return nullptr;
+  if (executor->threads == nullptr)
+    throw std::invalid_argument("executor.threads is null; expected a function");
+  if (executor->run == nullptr) throw std::invalid_argument("executor.run is null; expected a function");
   return std::make_unique<CallersExecutor>(*executor);
 }
 

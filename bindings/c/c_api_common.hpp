@@ -168,20 +168,7 @@ inline void take_filters(const broadside_filter* filters, std::size_t count, std
 inline Handle handle_of(const broadside_handle& handle) { return {handle.slot, handle.generation}; }
 inline broadside_handle handle_of(const Handle& handle) { return {handle.slot, handle.generation}; }
 
-/// The caller's threads as an Executor.
-class CallersExecutor final : public Executor {
- public:
-  /// Throws std::invalid_argument if one of its functions is null.
-  explicit CallersExecutor(const broadside_executor& executor);
-
-  std::size_t threads() const noexcept override;
-  void run(std::size_t count, const std::function<void(std::size_t)>& task) override;
-
- private:
-  broadside_executor executor_;
-};
-
-/// An Executor over the caller's; null for null.
+/// The caller's threads as an Executor; null for null. Throws std::invalid_argument if a function is null.
 std::unique_ptr<Executor> make_executor(const broadside_executor* executor);
 
 /// The spec; the default one for null.

@@ -17,26 +17,6 @@ auto collector(std::vector<broadside_pair>& pairs) {
   });
 }
 
-/// Which pairs count, in the library's types.
-class Filters {
- public:
-  Filters(const broadside_find_options& options, const broadside_boxes& boxes, const broadside_boxes* right) {
-    take_filters(options.filters, boxes.count, left_);
-    if (right == nullptr && options.right_filters != nullptr)
-      throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
-    if (right != nullptr) take_filters(options.right_filters, right->count, right_);
-    for (const broadside_pair& pair : array_of(options.ignored, options.ignored_count, "ignored"))
-      ignored_.insert({BoxId{pair.first}, BoxId{pair.second}});
-  }
-
-  PairFilters get() const { return {left_, right_, ignored_.empty() ? nullptr : &ignored_}; }
-
- private:
-  std::vector<Filter> left_;
-  std::vector<Filter> right_;
-  IgnoredPairs ignored_;
-};
-
 /// Sets what finders and trackers have in common.
 template <typename Searching>
 void set_up(Searching& searching, const broadside_find_options& options, Executor* executor) {
@@ -53,11 +33,20 @@ struct FinderImpl {
 
   void find(const broadside_boxes& boxes, const broadside_boxes* right, const broadside_find_options& options,
             PairSink& found) {
-    const Filters filters(options, boxes, right);
+    std::vector<Filter> left_filters;
+    std::vector<Filter> right_filters;
+    IgnoredPairs ignored;
+    take_filters(options.filters, boxes.count, left_filters);
+    if (right == nullptr && options.right_filters != nullptr)
+      throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
+    if (right != nullptr) take_filters(options.right_filters, right->count, right_filters);
+    for (const broadside_pair& pair : array_of(options.ignored, options.ignored_count, "ignored"))
+      ignored.insert({BoxId{pair.first}, BoxId{pair.second}});
+    const PairFilters filters{left_filters, right_filters, ignored.empty() ? nullptr : &ignored};
     if (right == nullptr)
-      finder.find(view_of<D, Real>(boxes), found, filters.get());
+      finder.find(view_of<D, Real>(boxes), found, filters);
     else
-      finder.find_between(view_of<D, Real>(boxes), view_of<D, Real>(*right), found, filters.get());
+      finder.find_between(view_of<D, Real>(boxes), view_of<D, Real>(*right), found, filters);
   }
 
   std::unique_ptr<Executor> executor;

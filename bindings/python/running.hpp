@@ -173,6 +173,7 @@ nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> sh
   static_cast<void>(kept.release());
   return nb::cast(nb::ndarray<nb::numpy, Scalar>(first, shape, owner), nb::rv_policy::reference);
 }
+
 /// Likewise, with an element for each value or, where a value is several Scalars, a row of them.
 template <typename Scalar, typename T>
 nb::object array_of(std::vector<T> values) {
