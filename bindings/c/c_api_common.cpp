@@ -18,6 +18,7 @@ void write(broadside_error& error, broadside_status status, const char* message,
   error.message[length] = 0;
 }
 
+/// The caller's threads.
 class CallersExecutor final : public Executor {
  public:
   explicit CallersExecutor(const broadside_executor& executor) : executor_(executor) {}
