@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,24 +12,26 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "broadside/broadside.hpp"
 
+#include "bindings/any_kind.hpp"
 #include "bindings/c/broadside.h"
+#include "bindings/status_of_exception.hpp"
 
 namespace broadside::c {
 
-/// Thrown if a callback asks to stop.
-struct StopAsked {};
+using bindings::AnyKind;
+using bindings::kind_of;
+using bindings::StatusError;
+using bindings::with_kind;
 
-/// Thrown if the caller's buffer has too little room, after the caller was told how much is needed.
-struct TooSmall : std::invalid_argument {
-  TooSmall(std::size_t room, const char* what, std::uint64_t needed)
-      : std::invalid_argument("there is room for " + std::to_string(room) + " " + what +
-                              "; expected room for " + std::to_string(needed)) {}
-};
+/// The caller's buffer has too little room. The caller has been told how much is needed.
+inline StatusError too_small(std::size_t room, const char* what, std::uint64_t needed) {
+  return {BROADSIDE_TOO_SMALL, "there is room for " + std::to_string(room) + " " + what +
+                                   "; expected room for " + std::to_string(needed)};
+}
 
 /// Writes the exception in flight to `error`, if that is not null, and returns its status.
 broadside_status status_of_exception(broadside_error* error) noexcept;
@@ -65,40 +66,48 @@ std::span<T> array_of(T* first, std::size_t count, const char* name) {
 /// Throws std::invalid_argument if the program was compiled with the header of another version.
 void check_api_version(int version);
 
-/// Throws std::invalid_argument if `size`, of the struct `name`, is not this version's.
-void check_size(std::size_t size, std::size_t expected, const char* name);
+// An object of the C API is an AnyKind with a name, by which errors call it.
 
-/// The text of a kind, such as "3D floats".
-std::string_view text_of(broadside_kind kind);
+/// Runs body(object) for the object that the caller passed, and turns an exception into a status.
+template <typename Object, typename Body>
+broadside_status call(Object* object, broadside_error* error, const Body& body) noexcept {
+  return guarded(error, [&] { required(object, Object::name).visit(body); });
+}
 
-template <int D, typename Real>
-constexpr broadside_kind kind_of = D == 2 ? (std::same_as<Real, float> ? BROADSIDE_FLOAT_2D
-                                                                       : BROADSIDE_DOUBLE_2D)
-                                          : (std::same_as<Real, float> ? BROADSIDE_FLOAT_3D
-                                                                       : BROADSIDE_DOUBLE_3D);
+/// Gives the caller the object that `make` returns.
+template <typename Object, typename Make>
+broadside_status create(int api_version, Object** object, broadside_error* error, const Make& make) noexcept {
+  return guarded(error, [&] {
+    check_api_version(api_version);
+    required(object, Object::name);
+    *object = make();
+  });
+}
 
-/// Calls body.operator()<D, Real>() for a kind. Throws std::invalid_argument for any other number.
-template <typename Body>
-auto with_kind(broadside_kind kind, const Body& body) {
-  switch (kind) {
-    case BROADSIDE_FLOAT_2D:
-      return body.template operator()<2, float>();
-    case BROADSIDE_FLOAT_3D:
-      return body.template operator()<3, float>();
-    case BROADSIDE_DOUBLE_2D:
-      return body.template operator()<2, double>();
-    case BROADSIDE_DOUBLE_3D:
-      return body.template operator()<3, double>();
-  }
-  throw std::invalid_argument("kind is " + std::to_string(kind) + "; expected one of broadside_kind, 0 to 3");
+/// Options of the C API with their defaults.
+template <typename Options>
+Options default_options() {
+  Options options{};
+  options.size = sizeof(options);
+  return options;
+}
+
+/// The caller's options, or the defaults for null. Throws std::invalid_argument if the size of the struct, of
+/// this name, is not this version's.
+template <typename Options>
+Options options_of(const Options* options, const char* name) {
+  if (options == nullptr) return default_options<Options>();
+  if (options->size != sizeof(*options))
+    throw std::invalid_argument(std::string(name) + ".size is " + std::to_string(options->size) +
+                                "; expected " + std::to_string(sizeof(*options)) + ", as " + name +
+                                "_init() sets it");
+  return *options;
 }
 
 /// The caller's boxes, without a copy. Throws std::invalid_argument if they are of another kind.
 template <int D, typename Real>
 BoxView<D, Real> view_of(const broadside_boxes& boxes) {
-  if (boxes.kind != kind_of<D, Real>)
-    throw std::invalid_argument("boxes are " + std::string(text_of(boxes.kind)) + "; expected " +
-                                std::string(text_of(kind_of<D, Real>)));
+  bindings::check_kind(boxes.kind, kind_of<D, Real>, "boxes are");
   array_of(static_cast<const std::byte*>(boxes.first), boxes.count, "boxes.first");
   const std::size_t stride = boxes.stride == 0 ? sizeof(Box<D, Real>) : boxes.stride;
   const bool is_aligned = reinterpret_cast<std::uintptr_t>(boxes.first) % alignof(Box<D, Real>) == 0;
@@ -159,20 +168,7 @@ inline void take_filters(const broadside_filter* filters, std::size_t count, std
 inline Handle handle_of(const broadside_handle& handle) { return {handle.slot, handle.generation}; }
 inline broadside_handle handle_of(const Handle& handle) { return {handle.slot, handle.generation}; }
 
-/// The caller's threads as an Executor.
-class CallersExecutor final : public Executor {
- public:
-  /// Throws std::invalid_argument if one of its functions is null.
-  explicit CallersExecutor(const broadside_executor& executor);
-
-  std::size_t threads() const noexcept override;
-  void run(std::size_t count, const std::function<void(std::size_t)>& task) override;
-
- private:
-  broadside_executor executor_;
-};
-
-/// An Executor over the caller's; null for null.
+/// The caller's threads as an Executor; null for null. Throws std::invalid_argument if a function is null.
 std::unique_ptr<Executor> make_executor(const broadside_executor* executor);
 
 /// The spec; the default one for null.
@@ -216,25 +212,6 @@ class FrameMemory {
   std::vector<Filter> filters_;
 };
 
-/// Which boxes a query may find, in the library's types.
-class Eligible {
- public:
-  explicit Eligible(const broadside_query* query) {
-    if (query == nullptr) return;
-    if (query->filter != nullptr) filter_ = filter_of(*query->filter);
-    if (query->except != nullptr) handle = handle_of(*query->except);
-    if (query->except_place != nullptr) place = BoxId{*query->except_place};
-  }
-
-  const Filter* filter() const { return filter_ ? &*filter_ : nullptr; }
-
-  std::optional<Handle> handle;
-  std::optional<BoxId> place;
-
- private:
-  std::optional<Filter> filter_;
-};
-
 /// Appends what a query finds to the caller's buffer while there is room, and counts all of it.
 template <typename Found>
 class Buffer {
@@ -248,10 +225,10 @@ class Buffer {
     ++count_;
   }
 
-  /// Tells the caller how many there are. Throws TooSmall if there was too little room.
+  /// Tells the caller how many there are. Throws if there was too little room.
   void finish() const {
     told_ = count_;
-    if (count_ > found_.size()) throw TooSmall(found_.size(), name_, count_);
+    if (count_ > found_.size()) throw too_small(found_.size(), name_, count_);
   }
 
  private:
@@ -268,27 +245,69 @@ BoxCast<D, Real> cast_of(const void* box, const void* direction, double t_max) {
           static_cast<Real>(t_max)};
 }
 
-/// The queries that worlds and indexes share. A box is named by its handle; in an index by { place, 0 }.
-class Queried {
- public:
-  virtual ~Queried() = default;
-  virtual void hits(const void* box, const void* direction, double t_max, const Eligible& eligible,
-                    Buffer<broadside_hit>& hits) const = 0;
-  virtual std::optional<broadside_hit> first_hit(const void* box, const void* direction, double t_max,
-                                                 const Eligible& eligible) const = 0;
-  virtual void nearest(const void* point, std::size_t count, double max_distance, const Eligible& eligible,
-                       Buffer<broadside_neighbour>& neighbours) const = 0;
-};
+// The queries that worlds and indexes share. The class behind such an object has index(), the BoxIndex to
+// ask; handle_of(id), the name of a box in C; and except(query), the box to leave out.
 
-/// The C API's functions of these names, for a world or an index. Errors call it `name`.
-broadside_status hits(const Queried* queried, const char* name, const void* box, const void* direction,
-                      double t_max, const broadside_query* query, broadside_hit* hits, std::size_t room,
-                      std::size_t* count, broadside_error* error) noexcept;
-broadside_status first_hit(const Queried* queried, const char* name, const void* box, const void* direction,
-                           double t_max, const broadside_query* query, broadside_hit* hit, int* found,
-                           broadside_error* error) noexcept;
-broadside_status nearest(const Queried* queried, const char* name, const void* point, double max_distance,
+/// Calls ask(index, options, object), and turns an exception into a status.
+template <typename Object, typename Ask>
+broadside_status ask_index(const Object* object, const broadside_query* query, broadside_error* error,
+                           const Ask& ask) noexcept {
+  return call(object, error, [&](const auto& queried) {
+    const broadside_query which = query == nullptr ? broadside_query{} : *query;
+    const Filter filter = which.filter == nullptr ? Filter() : filter_of(*which.filter);
+    ask(queried.index(),
+        QueryOptions<BoxId>{which.filter == nullptr ? nullptr : &filter, queried.except(which)}, queried);
+  });
+}
+
+template <typename Object>
+broadside_status hits(const Object* object, const void* box, const void* direction, double t_max,
+                      const broadside_query* query, broadside_hit* hits, std::size_t room, std::size_t* count,
+                      broadside_error* error) noexcept {
+  return ask_index(
+      object, query, error,
+      [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
+        Buffer<broadside_hit> buffer(hits, room, count, "hits");
+        index.hits(
+            cast_of<D, Real>(box, direction, t_max),
+            [&](const Hit<Real>& hit) {
+              buffer.add({queried.handle_of(hit.box), hit.t_enter});
+            },
+            options);
+        buffer.finish();
+      });
+}
+
+template <typename Object>
+broadside_status first_hit(const Object* object, const void* box, const void* direction, double t_max,
+                           const broadside_query* query, broadside_hit* hit, int* found,
+                           broadside_error* error) noexcept {
+  return ask_index(
+      object, query, error,
+      [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
+        required(hit, "hit");
+        required(found, "found");
+        const auto first = index.first_hit(cast_of<D, Real>(box, direction, t_max), options);
+        *found = first ? 1 : 0;
+        if (first) *hit = {queried.handle_of(first->box), first->t_enter};
+      });
+}
+
+template <typename Object>
+broadside_status nearest(const Object* object, const void* point, double max_distance,
                          const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
-                         std::size_t* count, broadside_error* error) noexcept;
+                         std::size_t* count, broadside_error* error) noexcept {
+  return ask_index(
+      object, query, error,
+      [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
+        Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
+        index.nearest(value_of<Point<D, Real>>(point, "point"), room,
+                      [&](const Neighbour<Real>& one) {
+                        buffer.add({queried.handle_of(one.box), one.distance_squared});
+                      },
+                      {options.filter, options.except, static_cast<Real>(max_distance)});
+        buffer.finish();
+      });
+}
 
 }  // namespace broadside::c

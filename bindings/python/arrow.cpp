@@ -352,8 +352,7 @@ nb::object values_of(const TakenArray* array, const Leaf& leaf) {
   nb::capsule owner(kept.get(), [](void* held) noexcept { delete static_cast<TakenArray*>(held); });
   static_cast<void>(kept.release());
   const void* const data = bytes == nullptr ? nullptr : bytes + first * (type->bits / 8);
-  const std::size_t values = are_null.size();
-  nb::object mask = are_null.empty() ? nb::none() : array_of(std::move(are_null), {values});
+  nb::object mask = are_null.empty() ? nb::none() : array_of(std::move(are_null));
   return nb::make_tuple(array_of_type(*type, data, rows, width, owner), mask);
 }
 

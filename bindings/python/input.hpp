@@ -20,9 +20,13 @@
 #include "broadside/pair.hpp"
 #include "broadside/world.hpp"
 
+#include "bindings/any_kind.hpp"
+
 namespace broadside::python {
 
 namespace nb = nanobind;
+using bindings::AnyKind;
+using bindings::with_kind;
 
 /// The memory of an object. Python does not move or resize it while this lives. The constructor and the
 /// destructor need the GIL.
@@ -58,6 +62,12 @@ class Rows {
   /// Likewise, rows of `columns` floats or doubles: others are converted, if that loses nothing.
   static Rows of(nb::handle object, const char* name, std::size_t columns, bool are_doubles);
 
+  /// Boxes of this kind, likewise.
+  static Rows of_kind(broadside_kind kind, nb::handle object, const char* name) {
+    return of(object, name, static_cast<std::size_t>(2 * bindings::dimension_of(kind)),
+              bindings::has_doubles(kind));
+  }
+
   /// These rows as doubles.
   Rows widened(const char* name) const;
 
@@ -72,6 +82,7 @@ class Rows {
   std::size_t columns() const noexcept { return columns_; }
   bool are_doubles() const noexcept { return are_doubles_; }
   int dimension() const noexcept { return static_cast<int>(columns_ / 2); }
+  broadside_kind kind() const noexcept { return bindings::kind_with(dimension(), are_doubles()); }
 
   template <int D, typename Real>
   BoxView<D, Real> boxes() const {
@@ -108,14 +119,6 @@ class Rows {
   std::size_t stride_ = 0;
   bool are_doubles_ = false;
 };
-
-/// Calls body.operator()<D, Real>() for boxes of this kind.
-template <typename Body>
-auto with_kind(int dimension, bool are_doubles, const Body& body) {
-  if (dimension == 2)
-    return are_doubles ? body.template operator()<2, double>() : body.template operator()<2, float>();
-  return are_doubles ? body.template operator()<3, double>() : body.template operator()<3, float>();
-}
 
 /// An invalid box in the argument of this name.
 class InvalidBoxOf : public InvalidInput {

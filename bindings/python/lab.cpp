@@ -46,16 +46,10 @@ nb::list algorithms() {
   return list;
 }
 
-template <int D, typename Real>
-nb::object array_of_boxes(std::vector<Box<D, Real>> boxes) {
-  const std::size_t count = boxes.size();
-  return array_of<Real>(std::move(boxes), {count, 2 * D});
-}
-
 nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<std::size_t> threads,
                   double budget) {
   const Rows rows = Rows::of_boxes(boxes, "boxes");
-  return with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() -> nb::object {
+  return with_kind(rows.kind(), [&]<int D, typename Real>() -> nb::object {
     lab::History<D, Real> history;
     std::vector<Box<D, Real>> memory;
     const std::span<const Box<D, Real>> all = rows.array(memory);
@@ -118,7 +112,9 @@ nb::object read(const nb::bytes& name, nb::handle content, const std::string& fo
                       file.frames);
   });
   if (!invalid.empty()) warning += (warning.empty() ? "" : "\n") + invalid;
-  const nb::object array = std::visit([](auto& all) { return array_of_boxes(std::move(all)); }, found);
+  const nb::object array = std::visit(
+      []<int D, typename Real>(std::vector<Box<D, Real>>& all) { return array_of<Real>(std::move(all)); },
+      found);
   return nb::make_tuple(array, text_of(warning));
 }
 
@@ -175,7 +171,7 @@ std::string draw(nb::handle boxes, const std::string& algorithms, std::size_t mo
                  const std::string& title) {
   // Drawings are of floats.
   const Rows rows = Rows::of_boxes(boxes, "boxes");
-  return with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() -> std::string {
+  return with_kind(rows.kind(), [&]<int D, typename Real>() -> std::string {
     std::vector<Box<D, Real>> memory;
     const std::span<const Box<D, Real>> all = rows.array(memory);
     return without_gil([&](WithoutGil&) {
@@ -197,8 +193,8 @@ std::string draw(nb::handle boxes, const std::string& algorithms, std::size_t mo
 nb::object scene(const std::string& spec, std::size_t boxes, int dimension, std::uint64_t seed) {
   const lab::NamedScene named = lab::find_scene(spec);
   const lab::SceneRequest request{.boxes = boxes, .seed = seed};
-  if (dimension == 2) return array_of_boxes(lab::make_history<2>(named.scene, named.spec, request).boxes);
-  return array_of_boxes(lab::make_history<3>(named.scene, named.spec, request).boxes);
+  if (dimension == 2) return array_of<float>(lab::make_history<2>(named.scene, named.spec, request).boxes);
+  return array_of<float>(lab::make_history<3>(named.scene, named.spec, request).boxes);
 }
 
 nb::object scenes() {

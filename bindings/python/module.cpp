@@ -44,6 +44,8 @@ void translate(const std::exception_ptr& pointer, void*) {
     raise("InvalidSnapshotError", error);
   } catch (const lab::FileError& error) {
     raise("FileError", error);
+  } catch (const bindings::OtherKind& error) {
+    PyErr_SetObject(PyExc_TypeError, text_of(error.what()).ptr());
   } catch (const std::invalid_argument& error) {
     PyErr_SetObject(PyExc_ValueError, text_of(error.what()).ptr());
   } catch (const std::length_error&) {

@@ -45,26 +45,22 @@ nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algor
   std::vector<Pair> pairs = found(search, sorts);
   if (static_cast<ResultForm>(result) == ResultForm::table)
     return nb::cast(without_gil([&](WithoutGil&) { return PairTable(pairs); }));
-  const std::size_t count = pairs.size();
-  return array_of<std::uint32_t>(std::move(pairs), {count, 2});
+  return array_of<std::uint32_t>(std::move(pairs));
 }
 
 /// The places of invalid boxes.
 nb::object invalid_rows(nb::handle boxes) {
   const Rows rows = Rows::of_boxes_or_empty(boxes, "boxes");
-  std::vector<std::int64_t> invalid =
-      with_kind(rows.dimension(), rows.are_doubles(), [&]<int D, typename Real>() {
-        return without_gil([&](WithoutGil&) {
-          const BoxView<D, Real> all = rows.boxes<D, Real>();
-          std::vector<std::int64_t> found;
-          for (std::size_t i = 0; i < all.size(); ++i) {
-            if (is_invalid(all[i])) found.push_back(static_cast<std::int64_t>(i));
-          }
-          return found;
-        });
-      });
-  const std::size_t count = invalid.size();
-  return array_of(std::move(invalid), {count});
+  return with_kind(rows.kind(), [&]<int D, typename Real>() {
+    return array_of(without_gil([&](WithoutGil&) {
+      const BoxView<D, Real> all = rows.boxes<D, Real>();
+      std::vector<std::int64_t> found;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (is_invalid(all[i])) found.push_back(static_cast<std::int64_t>(i));
+      }
+      return found;
+    }));
+  });
 }
 
 }  // namespace

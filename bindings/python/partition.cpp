@@ -21,79 +21,41 @@
 namespace broadside::python {
 namespace {
 
-/// A partition for any kind of boxes.
-class AnyPartition {
- public:
-  virtual ~AnyPartition() = default;
-  virtual std::size_t size() const noexcept = 0;
-  virtual int dimension() const noexcept = 0;
-  virtual bool has_doubles() const noexcept = 0;
-  virtual nb::object regions() const = 0;
-  virtual nb::object cuts() const = 0;
-  virtual nb::object assign(nb::handle boxes, bool quarantine) const = 0;
-  virtual nb::object pairs(std::size_t part, nb::handle boxes, nb::handle other, nb::handle algorithm,
-                           nb::handle sort, nb::handle threads) const = 0;
-};
-
 template <int D, typename Real>
-class PartitionOf final : public AnyPartition {
-  using Of = broadside::Partition<D, Real>;
-  using Region = typename Of::Region;
-  using Cut = typename Of::Cut;
-
-  static constexpr bool are_doubles = std::is_same_v<Real, double>;
+class PyPartition {
+  using Partition = broadside::Partition<D, Real>;
+  using Region = typename Partition::Region;
+  using Cut = typename Partition::Cut;
 
  public:
-  explicit PartitionOf(Of partition) : partition_(std::move(partition)) {}
-
-  static PartitionOf of_sample(const Rows& sample, std::size_t parts, std::uint64_t boxes) {
-    std::vector<Box<D, Real>> memory;
-    const std::span<const Box<D, Real>> all = sample.array<Box<D, Real>>(memory);
-    return PartitionOf(without_gil([&](WithoutGil&) {
-      check(all, "sample");
-      return Of(all, parts, boxes);
-    }));
-  }
+  PyPartition(const Rows& sample, std::size_t parts, std::uint64_t boxes)
+      : partition_(of_sample(sample, parts, boxes)) {}
 
   /// From what cuts() returned, with its first array flattened.
-  static PartitionOf of_cuts(std::span<const std::uint64_t> links, const Rows& places) {
-    std::vector<std::array<Real, 1>> memory;
-    const auto at = places.array<std::array<Real, 1>>(memory);
-    if (links.size() != 3 * at.size())
-      throw std::invalid_argument("Partition: " + std::to_string(links.size()) + " links of " +
-                                  std::to_string(at.size()) + " cuts; expected three for each");
-    std::vector<Cut> cuts(at.size());
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-      const auto link = [&](std::size_t place) { return static_cast<std::uint32_t>(links[3 * i + place]); };
-      cuts[i] = {link(0), link(1), link(2), at[i][0]};
-    }
-    return PartitionOf(Of(std::move(cuts)));
-  }
+  PyPartition(const std::vector<std::uint64_t>& links, const Rows& places)
+      : partition_(cuts_of(links, places)) {}
 
-  std::size_t size() const noexcept override { return partition_.size(); }
-  int dimension() const noexcept override { return D; }
-  bool has_doubles() const noexcept override { return are_doubles; }
+  std::size_t size() const noexcept { return partition_.size(); }
 
-  nb::object regions() const override {
+  nb::object regions() const {
     std::vector<Region> regions;
     for (std::size_t part = 0; part < size(); ++part) regions.push_back(partition_.region(part));
-    return array_of<Real>(std::move(regions), {size(), std::size_t{2 * D}});
+    return array_of<Real>(std::move(regions));
   }
 
-  nb::object cuts() const override {
-    std::vector<std::uint32_t> links;
-    std::vector<Real> places;
+  nb::object cuts() const {
+    std::vector<std::array<std::uint32_t, 3>> links;
+    std::vector<std::array<Real, 1>> places;
     for (const Cut& cut : partition_.cuts()) {
-      links.insert(links.end(), {cut.axis, cut.below, cut.above});
-      places.push_back(cut.at);
+      links.push_back({cut.axis, cut.below, cut.above});
+      places.push_back({cut.at});
     }
-    const std::size_t count = places.size();
-    return nb::make_tuple(array_of(std::move(links), {count, 3}), array_of(std::move(places), {count, 1}));
+    return nb::make_tuple(array_of<std::uint32_t>(std::move(links)), array_of<Real>(std::move(places)));
   }
 
   /// Where the rows of each part begin; and, part after part, the ascending rows of the boxes that touch it.
-  nb::object assign(nb::handle boxes, bool quarantine) const override {
-    const Rows rows = Rows::of(boxes, "boxes", 2 * D, are_doubles);
+  nb::object assign(nb::handle boxes, bool quarantine) const {
+    const Rows rows = Rows::of_kind(kind, boxes, "boxes");
     std::vector<Box<D, Real>> memory;
     const std::span<const Box<D, Real>> all = rows.array<Box<D, Real>>(memory);
     std::vector<std::int64_t> starts(size() + 1);
@@ -114,24 +76,46 @@ class PartitionOf final : public AnyPartition {
         throw std::invalid_argument(
             "boxes were changed by another thread during the call; expected them to stay as they are");
     });
-    const std::size_t count = touching.size();
-    return nb::make_tuple(array_of(std::move(starts), {size() + 1}), array_of(std::move(touching), {count}));
+    return nb::make_tuple(array_of(std::move(starts)), array_of(std::move(touching)));
   }
 
   nb::object pairs(std::size_t part, nb::handle boxes, nb::handle other, nb::handle algorithm,
-                   nb::handle sort, nb::handle threads) const override {
+                   nb::handle sort, nb::handle threads) const {
     std::optional<Rows> second;
-    if (!other.is_none()) second.emplace(Rows::of(other, "other", 2 * D, are_doubles));
-    const SearchArguments search(Rows::of(boxes, "boxes", 2 * D, are_doubles), std::move(second),
+    if (!other.is_none()) second.emplace(Rows::of_kind(kind, other, "other"));
+    const SearchArguments search(Rows::of_kind(kind, boxes, "boxes"), std::move(second),
                                  text(algorithm, "algorithm"), threads);
     const bool sorts = truth(sort);
-    std::vector<Pair> pairs =
-        without_gil([&](WithoutGil& released) { return pairs_of(part, search, sorts, released); });
-    const std::size_t count = pairs.size();
-    return array_of<std::uint32_t>(std::move(pairs), {count, 2});
+    return array_of<std::uint32_t>(
+        without_gil([&](WithoutGil& released) { return pairs_of(part, search, sorts, released); }));
   }
 
  private:
+  static constexpr broadside_kind kind = bindings::kind_of<D, Real>;
+
+  static Partition of_sample(const Rows& sample, std::size_t parts, std::uint64_t boxes) {
+    std::vector<Box<D, Real>> memory;
+    const std::span<const Box<D, Real>> all = sample.array<Box<D, Real>>(memory);
+    return without_gil([&](WithoutGil&) {
+      check(all, "sample");
+      return Partition(all, parts, boxes);
+    });
+  }
+
+  static std::vector<Cut> cuts_of(const std::vector<std::uint64_t>& links, const Rows& places) {
+    std::vector<std::array<Real, 1>> memory;
+    const auto at = places.array<std::array<Real, 1>>(memory);
+    if (links.size() != 3 * at.size())
+      throw std::invalid_argument("Partition: " + std::to_string(links.size()) + " links of " +
+                                  std::to_string(at.size()) + " cuts; expected three for each");
+    std::vector<Cut> cuts(at.size());
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      const auto link = [&](std::size_t place) { return static_cast<std::uint32_t>(links[3 * i + place]); };
+      cuts[i] = {link(0), link(1), link(2), at[i][0]};
+    }
+    return cuts;
+  }
+
   /// The number of boxes between two checks for signals.
   static constexpr std::size_t boxes_at_once = std::size_t{1} << 16;
 
@@ -186,40 +170,49 @@ class PartitionOf final : public AnyPartition {
     return bits;
   }
 
-  Of partition_;
+  Partition partition_;
 };
+
+using AnyPartition = AnyKind<PyPartition>;
 
 std::unique_ptr<AnyPartition> make_partition(nb::handle sample, std::size_t parts, std::uint64_t boxes) {
   const Rows rows = Rows::of_boxes(sample, "sample");
-  return with_kind(rows.dimension(), rows.are_doubles(),
-                   [&]<int D, typename Real>() -> std::unique_ptr<AnyPartition> {
-                     using Made = PartitionOf<D, Real>;
-                     return std::make_unique<Made>(Made::of_sample(rows, parts, boxes));
-                   });
+  return std::make_unique<AnyPartition>(rows.kind(), rows, parts, boxes);
 }
 
 std::unique_ptr<AnyPartition> partition_of_cuts(int dimension, bool has_doubles, nb::handle links,
                                                 nb::handle places) {
   const std::vector<std::uint64_t> numbers = integers(links, "links", UINT32_MAX);
   const Rows rows = Rows::of(places, "places", 1, has_doubles);
-  return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyPartition> {
-    using Made = PartitionOf<D, Real>;
-    return std::make_unique<Made>(Made::of_cuts(numbers, rows));
-  });
+  return std::make_unique<AnyPartition>(bindings::kind_with(dimension, has_doubles), numbers, rows);
 }
 
 }  // namespace
 
 void add_partition(nb::module_& module) {
-  nb::class_<AnyPartition>(module, "Partition")
-      .def("__len__", &AnyPartition::size)
-      .def("dimension", &AnyPartition::dimension)
-      .def("has_doubles", &AnyPartition::has_doubles)
-      .def("regions", &AnyPartition::regions)
-      .def("cuts", &AnyPartition::cuts)
-      .def("assign", &AnyPartition::assign, nb::arg("boxes").none(), nb::arg("quarantine"))
-      .def("pairs", &AnyPartition::pairs, nb::arg("part"), nb::arg("boxes").none(), nb::arg("other").none(),
-           nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none());
+  using Any = AnyPartition;
+  using nb::handle;
+  nb::class_<Any>(module, "Partition")
+      .def("__len__", [](const Any& any) { return any.visit([](auto& self) { return self.size(); }); })
+      .def("dimension", [](const Any& any) { return bindings::dimension_of(any.kind()); })
+      .def("has_doubles", [](const Any& any) { return bindings::has_doubles(any.kind()); })
+      .def("regions", [](const Any& any) { return any.visit([](auto& self) { return self.regions(); }); })
+      .def("cuts", [](const Any& any) { return any.visit([](auto& self) { return self.cuts(); }); })
+      .def(
+          "assign",
+          [](const Any& any, handle boxes, bool quarantine) {
+            return any.visit([&](auto& self) { return self.assign(boxes, quarantine); });
+          },
+          nb::arg("boxes").none(), nb::arg("quarantine"))
+      .def(
+          "pairs",
+          [](const Any& any, std::size_t part, handle boxes, handle other, handle algorithm, handle sort,
+             handle threads) {
+            return any.visit(
+                [&](auto& self) { return self.pairs(part, boxes, other, algorithm, sort, threads); });
+          },
+          nb::arg("part"), nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("algorithm").none(),
+          nb::arg("sort").none(), nb::arg("threads").none());
   module.def("make_partition", &make_partition, nb::arg("sample").none(), nb::arg("parts"), nb::arg("boxes"));
   module.def("partition_of_cuts", &partition_of_cuts);
 }

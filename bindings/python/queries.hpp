@@ -28,13 +28,11 @@ struct QueryChoice {
   nb::handle exclude;
 };
 
-/// Queries a BoxIndex. `Asked` has D, Real and `Number`, the type by which Python names a box. Its ask(body)
-/// calls body(index, number_of, place_of) with the GIL released and the index up to date.
-template <typename Asked>
+/// Queries a BoxIndex. `Asked` has `Number`, the type by which Python names a box. Its ask(body) calls
+/// body(index, number_of, place_of) with the GIL released and the index up to date.
+template <template <int, typename> class Asked, int D, typename Real>
 class Queries {
-  static constexpr int D = Asked::dimension;
-  using Real = typename Asked::Real;
-  using Number = typename Asked::Number;
+  using Number = typename Asked<D, Real>::Number;
   using Box = broadside::Box<D, Real>;
   using Point = broadside::Point<D, Real>;
   using QueryOptions = broadside::QueryOptions<BoxId>;
@@ -45,7 +43,7 @@ class Queries {
   static constexpr Number none = std::numeric_limits<Number>::max();
 
  public:
-  explicit Queries(Asked& asked) : asked_(asked) {}
+  explicit Queries(Asked<D, Real>& asked) : asked_(asked) {}
 
   nb::object overlapping(nb::handle queries, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", 2 * D, are_doubles);
@@ -75,9 +73,8 @@ class Queries {
                    },
                    options);
              });
-    const std::size_t count = queries.size();
-    return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}),
-                          array_of(std::move(enters), {count}));
+    return nb::make_tuple(array_of(std::move(queries)), array_of(std::move(boxes)),
+                          array_of(std::move(enters)));
   }
 
   nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
@@ -92,8 +89,7 @@ class Queries {
                boxes[i] = number_of(hit->box);
                enters[i] = hit->t_enter;
              });
-    const std::size_t count = rays.size();
-    return nb::make_tuple(array_of(std::move(boxes), {count}), array_of(std::move(enters), {count}));
+    return nb::make_tuple(array_of(std::move(boxes)), array_of(std::move(enters)));
   }
 
   nb::object nearest(nb::handle points, std::size_t k, double max_distance, const QueryChoice& choice) const {
@@ -118,7 +114,8 @@ class Queries {
                }
              });
     const std::size_t count = asked.size();
-    return nb::make_tuple(array_of(std::move(boxes), {count, k}), array_of(std::move(distances), {count, k}));
+    return nb::make_tuple(array_of<Number>(std::move(boxes), {count, k}),
+                          array_of<Real>(std::move(distances), {count, k}));
   }
 
  private:
@@ -206,51 +203,57 @@ class Queries {
                    },
                    options);
              });
-    const std::size_t count = queries.size();
-    return nb::make_tuple(array_of(std::move(queries), {count}), array_of(std::move(boxes), {count}));
+    return nb::make_tuple(array_of(std::move(queries)), array_of(std::move(boxes)));
   }
 
-  Asked& asked_;
+  Asked<D, Real>& asked_;
 };
 
 /// The queries of an index or a world, as Python calls them.
-template <typename Queried>
-void add_queries(nb::class_<Queried>& type) {
-  using Choice = QueryChoice;
+template <typename Any>
+void add_queries(nb::class_<Any>& type) {
   using nb::handle;
-  type.def(
+  const auto add = [&](const char* name, const auto& function, const auto&... arguments) {
+    type.def(name, function, arguments..., nb::arg("filters").none(), nb::arg("exclude").none());
+  };
+  add(
       "overlapping",
-      [](Queried& self, handle queries, handle filters, handle exclude) {
-        return self.overlapping(queries, Choice{filters, exclude});
+      [](Any& self, handle queries, handle filters, handle exclude) {
+        return self.visit([&](auto& asked) {
+          return Queries(asked).overlapping(queries, {filters, exclude});
+        });
       },
-      nb::arg("queries").none(), nb::arg("filters").none(), nb::arg("exclude").none());
-  type.def(
+      nb::arg("queries").none());
+  add(
       "containing",
-      [](Queried& self, handle points, handle filters, handle exclude) {
-        return self.containing(points, Choice{filters, exclude});
+      [](Any& self, handle points, handle filters, handle exclude) {
+        return self.visit([&](auto& asked) { return Queries(asked).containing(points, {filters, exclude}); });
       },
-      nb::arg("points").none(), nb::arg("filters").none(), nb::arg("exclude").none());
-  type.def(
+      nb::arg("points").none());
+  add(
       "hits",
-      [](Queried& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
-        return self.hits(origins, directions, t_max, Choice{filters, exclude});
+      [](Any& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+        return self.visit([&](auto& asked) {
+          return Queries(asked).hits(origins, directions, t_max, {filters, exclude});
+        });
       },
-      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("filters").none(),
-      nb::arg("exclude").none());
-  type.def(
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"));
+  add(
       "first_hit",
-      [](Queried& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
-        return self.first_hit(origins, directions, t_max, Choice{filters, exclude});
+      [](Any& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+        return self.visit([&](auto& asked) {
+          return Queries(asked).first_hit(origins, directions, t_max, {filters, exclude});
+        });
       },
-      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("filters").none(),
-      nb::arg("exclude").none());
-  type.def(
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"));
+  add(
       "nearest",
-      [](Queried& self, handle points, std::size_t k, double max_distance, handle filters, handle exclude) {
-        return self.nearest(points, k, max_distance, Choice{filters, exclude});
+      [](Any& self, handle points, std::size_t k, double max_distance, handle filters, handle exclude) {
+        return self.visit([&](auto& asked) {
+          return Queries(asked).nearest(points, k, max_distance, {filters, exclude});
+        });
       },
-      nb::arg("points").none(), nb::arg("k"), nb::arg("max_distance"), nb::arg("filters").none(),
-      nb::arg("exclude").none());
+      nb::arg("points").none(), nb::arg("k"), nb::arg("max_distance"));
 }
 
 }  // namespace broadside::python

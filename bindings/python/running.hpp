@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,8 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include "broadside/executor.hpp"
+
+#include "bindings/any_kind.hpp"
 
 namespace broadside::python {
 
@@ -114,6 +117,23 @@ auto without_gil(const Body& body) {
   }
 }
 
+/// Returns body(released), run without the GIL and without other threads. The object has a CallMutex `mutex`.
+template <typename Object, typename Body>
+auto in_turn(Object& object, const Body& body) {
+  return without_gil([&](WithoutGil& released) {
+    const std::lock_guard lock(object.mutex);
+    return body(released);
+  });
+}
+
+/// Likewise, body(object, released) for the object of whatever kind.
+template <template <int, typename> class Class, typename Body>
+auto in_turn(bindings::AnyKind<Class>& any, const Body& body) {
+  return any.visit([&](auto& object) {
+    return in_turn(object, [&](WithoutGil& released) { return body(object, released); });
+  });
+}
+
 /// Stands for the number of threads in the spec.
 constexpr std::size_t from_spec = std::numeric_limits<std::size_t>::max();
 
@@ -153,9 +173,19 @@ nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> sh
   static_cast<void>(kept.release());
   return nb::cast(nb::ndarray<nb::numpy, Scalar>(first, shape, owner), nb::rv_policy::reference);
 }
+
+/// Likewise, with an element for each value or, where a value is several Scalars, a row of them.
+template <typename Scalar, typename T>
+nb::object array_of(std::vector<T> values) {
+  const std::size_t count = values.size();
+  if constexpr (std::is_same_v<Scalar, T>)
+    return array_of<Scalar>(std::move(values), {count});
+  else
+    return array_of<Scalar>(std::move(values), {count, sizeof(T) / sizeof(Scalar)});
+}
 template <typename T>
-nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> shape) {
-  return array_of<T, T>(std::move(values), shape);
+nb::object array_of(std::vector<T> values) {
+  return array_of<T, T>(std::move(values));
 }
 
 /// The parts of the module, each in the file of its name.

@@ -84,7 +84,7 @@ struct SearchArguments {
 
   /// Call it without the GIL.
   void run(PairSink& pairs, WithoutGil& released) const {
-    with_kind(boxes.dimension(), boxes.are_doubles(), [&]<int D, typename Real>() {
+    with_kind(boxes.kind(), [&]<int D, typename Real>() {
       Finder<D, Real> finder(algorithm);
       std::optional<ScopedWorkers<Finder<D, Real>>> use;
       if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(finder, threads, released);

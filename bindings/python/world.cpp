@@ -1,6 +1,7 @@
-// World: boxes that come, move and go under handles.
+// World: boxes that move under handles.
 #include "broadside/world.hpp"
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,89 +14,70 @@
 namespace broadside::python {
 namespace {
 
-/// Handles of pairs as Python's numbers, two for each.
-std::vector<std::uint64_t> numbers_of(std::span<const HandlePair> pairs) {
-  std::vector<std::uint64_t> numbers;
-  numbers.reserve(2 * pairs.size());
-  for (const HandlePair& pair : pairs) {
-    numbers.push_back(number_of(pair.first));
-    numbers.push_back(number_of(pair.second));
-  }
-  return numbers;
-}
+/// A pair of handles as Python's numbers.
+using NumberPair = std::array<std::uint64_t, 2>;
 
-nb::object array_of_pairs(std::vector<std::uint64_t> numbers) {
-  const std::size_t pairs = numbers.size() / 2;
-  return array_of(std::move(numbers), {pairs, 2});
+std::vector<NumberPair> numbers_of(std::span<const HandlePair> pairs) {
+  std::vector<NumberPair> numbers;
+  numbers.reserve(pairs.size());
+  for (const HandlePair& pair : pairs) numbers.push_back({number_of(pair.first), number_of(pair.second)});
+  return numbers;
 }
 
 nb::object array_of_handles(std::span<const Handle> handles) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(handles.size());
   for (const Handle& handle : handles) numbers.push_back(number_of(handle));
-  return array_of(std::move(numbers), {handles.size()});
+  return array_of(std::move(numbers));
 }
 
-/// A world of any kind of boxes. Threads take turns.
-class AnyWorld {
- public:
-  virtual ~AnyWorld() = default;
-  virtual nb::object add(nb::handle boxes, nb::handle filters) = 0;
-  virtual void move(nb::handle handles, nb::handle boxes, nb::handle velocities) = 0;
-  virtual void remove(nb::handle handles) = 0;
-  virtual void set_filters(nb::handle handles, nb::handle filters) = 0;
-  virtual void ignore(nb::handle pairs, bool ignores) = 0;
-  virtual nb::object update() = 0;
-  virtual nb::object pairs() = 0;
-  virtual nb::object boxes(nb::handle handles, bool enlarged) = 0;
-  virtual nb::object handles() = 0;
-  virtual nb::object quarantined() = 0;
-  virtual bool contains(std::uint64_t handle) = 0;
-  virtual std::size_t size() = 0;
-  virtual std::size_t bytes() = 0;
-  virtual std::string explanation() = 0;
-  virtual nb::object join(AnyWorld& other) = 0;
-  virtual nb::bytes snapshot() = 0;
-  virtual void restore(nb::bytes snapshot) = 0;
-  virtual nb::object overlapping(nb::handle queries, const QueryChoice& choice) = 0;
-  virtual nb::object containing(nb::handle points, const QueryChoice& choice) = 0;
-  virtual nb::object hits(nb::handle origins, nb::handle directions, double t_max,
-                          const QueryChoice& choice) = 0;
-  virtual nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
-                               const QueryChoice& choice) = 0;
-  virtual nb::object nearest(nb::handle points, std::size_t k, double max_distance,
-                             const QueryChoice& choice) = 0;
-};
-
-template <int Dimension, typename Coordinate>
-class WorldOf final : public AnyWorld {
-  using Box = broadside::Box<Dimension, Coordinate>;
-  using Point = broadside::Point<Dimension, Coordinate>;
-
- public:
-  static constexpr int dimension = Dimension;
-  using Real = Coordinate;
+/// Threads take turns.
+template <int D, typename Real>
+struct PyWorld {
   using Number = std::uint64_t;
 
-  WorldOf(const WorldOptions& options, std::size_t threads) : world_(options), threads_(threads) {}
+  PyWorld(const WorldOptions& options, std::size_t max_threads) : world(options), threads(max_threads) {}
 
-  nb::object add(nb::handle boxes, nb::handle filters) override {
-    const Rows rows = rows_of(boxes, "boxes");
-    std::vector<BoxOptions> options;
-    for (const Filter& filter : python::filters(filters, rows.size(), "filters")) options.push_back({filter});
-    std::vector<Handle> handles(rows.size());
-    with_lock([&](WithoutGil&) { world_.add(rows.template boxes<Dimension, Real>(), handles, options); });
-    return array_of_handles(handles);
+  /// For Queries.
+  template <typename Body>
+  void ask(const Body& body) {
+    const std::lock_guard lock(mutex);
+    // A handle that is not in the world excludes no box.
+    const auto place_of = [&](Number number) {
+      const Handle handle = handle_of(number);
+      return world.contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;
+    };
+    body(
+        world.box_index(), [&](BoxId id) { return number_of(world.handle_of(id)); }, place_of);
   }
 
-  void move(nb::handle handles, nb::handle boxes, nb::handle velocities) override {
-    const std::vector<Handle> movers = python::handles(handles, "handles");
-    const Rows rows = rows_of(boxes, "boxes");
-    std::vector<Point> memory;
-    std::vector<Point> directions;
+  CallMutex mutex;
+  World<D, Real> world;
+  std::size_t threads;
+};
+
+using AnyWorld = AnyKind<PyWorld>;
+
+nb::object add(AnyWorld& any, nb::handle boxes, nb::handle filters) {
+  const Rows rows = Rows::of_kind(any.kind(), boxes, "boxes");
+  std::vector<BoxOptions> options;
+  for (const Filter& filter : python::filters(filters, rows.size(), "filters")) options.push_back({filter});
+  std::vector<Handle> handles(rows.size());
+  in_turn(any, [&]<int D, typename Real>(PyWorld<D, Real>& self, WithoutGil&) {
+    self.world.add(rows.boxes<D, Real>(), handles, options);
+  });
+  return array_of_handles(handles);
+}
+
+void move(AnyWorld& any, nb::handle handles, nb::handle boxes, nb::handle velocities) {
+  const std::vector<Handle> movers = python::handles(handles, "handles");
+  const Rows rows = Rows::of_kind(any.kind(), boxes, "boxes");
+  any.visit([&]<int D, typename Real>(PyWorld<D, Real>& self) {
+    std::vector<Point<D, Real>> memory;
+    std::vector<Point<D, Real>> directions;
     if (!velocities.is_none()) {
-      const Rows given = Rows::of(velocities, "velocities", Dimension, has_doubles);
-      const std::span<const Point> points = given.array(memory);
+      const Rows given = Rows::of(velocities, "velocities", D, rows.are_doubles());
+      const std::span<const Point<D, Real>> points = given.array(memory);
       directions.assign(points.begin(), points.end());
       // World::move() takes an empty array for velocities that are not given.
       if (directions.size() != movers.size())
@@ -103,193 +85,140 @@ class WorldOf final : public AnyWorld {
                                     std::to_string(directions.size()) +
                                     " velocities; expected one for each handle");
     }
-    const BoxView<Dimension, Real> all = rows.template boxes<Dimension, Real>();
-    with_lock([&](WithoutGil&) {
+    const BoxView<D, Real> all = rows.boxes<D, Real>();
+    in_turn(self, [&](WithoutGil&) {
       try {
-        world_.move(movers, all, directions);
+        self.world.move(movers, all, directions);
       } catch (const InvalidInput& error) {
         if (error.index() < all.size() && is_present(all[error.index()]))
           throw InvalidBoxOf("velocities", error);
         throw;
       }
     });
-  }
+  });
+}
 
-  void remove(nb::handle handles) override {
-    const std::vector<Handle> gone = python::handles(handles, "handles");
-    with_lock([&](WithoutGil&) { world_.remove(gone); });
-  }
+void remove(AnyWorld& any, nb::handle handles) {
+  const std::vector<Handle> gone = python::handles(handles, "handles");
+  in_turn(any, [&](auto& self, WithoutGil&) { self.world.remove(gone); });
+}
 
-  void set_filters(nb::handle handles, nb::handle filters) override {
-    const std::vector<Handle> changed = python::handles(handles, "handles");
-    if (filters.is_none()) throw nb::type_error("filters is None; expected what broadside.filters() gives");
-    const std::vector<Filter> given = python::filters(filters, changed.size(), "filters");
-    with_lock([&](WithoutGil&) {
-      for (const Handle& handle : changed) static_cast<void>(world_.enlarged_box(handle));  // all or none
-      for (std::size_t i = 0; i < given.size(); ++i) world_.set_filter(changed[i], given[i]);
-    });
-  }
+void set_filters(AnyWorld& any, nb::handle handles, nb::handle filters) {
+  const std::vector<Handle> changed = python::handles(handles, "handles");
+  if (filters.is_none()) throw nb::type_error("filters is None; expected what broadside.filters() gives");
+  const std::vector<Filter> given = python::filters(filters, changed.size(), "filters");
+  in_turn(any, [&](auto& self, WithoutGil&) {
+    for (const Handle& handle : changed) static_cast<void>(self.world.enlarged_box(handle));  // all or none
+    for (std::size_t i = 0; i < given.size(); ++i) self.world.set_filter(changed[i], given[i]);
+  });
+}
 
-  void ignore(nb::handle pairs, bool ignores) override {
-    const std::vector<std::uint64_t> numbers =
-        pairs_of_integers(pairs, "pairs", std::numeric_limits<std::uint64_t>::max());
-    with_lock([&](WithoutGil&) {
-      for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)  // all or none
-        static_cast<void>(world_.is_ignored(handle_of(numbers[i]), handle_of(numbers[i + 1])));
-      for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
-        const Handle a = handle_of(numbers[i]);
-        const Handle b = handle_of(numbers[i + 1]);
-        ignores ? world_.ignore(a, b) : world_.unignore(a, b);
-      }
-    });
-  }
+void ignore(AnyWorld& any, nb::handle pairs, bool ignores) {
+  const std::vector<std::uint64_t> numbers =
+      pairs_of_integers(pairs, "pairs", std::numeric_limits<std::uint64_t>::max());
+  in_turn(any, [&](auto& self, WithoutGil&) {
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)  // all or none
+      static_cast<void>(self.world.is_ignored(handle_of(numbers[i]), handle_of(numbers[i + 1])));
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
+      const Handle a = handle_of(numbers[i]);
+      const Handle b = handle_of(numbers[i + 1]);
+      ignores ? self.world.ignore(a, b) : self.world.unignore(a, b);
+    }
+  });
+}
 
-  nb::object update() override {
-    std::vector<std::uint64_t> begun;
-    std::vector<std::uint64_t> ended;
-    with_lock([&](WithoutGil& released) {
-      const ScopedWorkers use(world_, threads_, released);
-      const Events events = world_.update();
-      begun = numbers_of(events.begun);
-      ended = numbers_of(events.ended);
-    });
-    return nb::make_tuple(array_of_pairs(std::move(begun)), array_of_pairs(std::move(ended)));
-  }
+nb::object update(AnyWorld& any) {
+  std::vector<NumberPair> begun;
+  std::vector<NumberPair> ended;
+  in_turn(any, [&](auto& self, WithoutGil& released) {
+    const ScopedWorkers use(self.world, self.threads, released);
+    const Events events = self.world.update();
+    begun = numbers_of(events.begun);
+    ended = numbers_of(events.ended);
+  });
+  return nb::make_tuple(array_of<std::uint64_t>(std::move(begun)), array_of<std::uint64_t>(std::move(ended)));
+}
 
-  nb::object pairs() override {
-    return array_of_pairs(with_lock([&](WithoutGil&) { return numbers_of(world_.pairs()); }));
-  }
+nb::object pairs(AnyWorld& any) {
+  return array_of<std::uint64_t>(
+      in_turn(any, [](auto& self, WithoutGil&) { return numbers_of(self.world.pairs()); }));
+}
 
-  nb::object boxes(nb::handle handles, bool enlarged) override {
-    const std::vector<Handle> asked = python::handles(handles, "handles");
-    std::vector<Box> boxes;
+nb::object boxes(AnyWorld& any, nb::handle handles, bool enlarged) {
+  const std::vector<Handle> asked = python::handles(handles, "handles");
+  return any.visit([&]<int D, typename Real>(PyWorld<D, Real>& self) {
+    std::vector<Box<D, Real>> boxes;
     boxes.reserve(asked.size());
-    with_lock([&](WithoutGil&) {
+    in_turn(self, [&](WithoutGil&) {
       for (const Handle& handle : asked)
-        boxes.push_back(enlarged ? world_.enlarged_box(handle) : world_.box(handle));
+        boxes.push_back(enlarged ? self.world.enlarged_box(handle) : self.world.box(handle));
     });
-    return array_of<Real>(std::move(boxes), {asked.size(), 2 * Dimension});
-  }
+    return array_of<Real>(std::move(boxes));
+  });
+}
 
-  nb::object handles() override {
+nb::object all_handles(AnyWorld& any) {
+  return array_of_handles(in_turn(any, [](auto& self, WithoutGil&) {
     std::vector<Handle> handles;
-    with_lock([&](WithoutGil&) {
-      const std::size_t slots = world_.statistics().slots;
-      for (std::size_t slot = 0; slot < slots; ++slot) {
-        const Handle handle = world_.handle_of(static_cast<BoxId>(slot));
-        if (world_.contains(handle)) handles.push_back(handle);
-      }
-    });
-    return array_of_handles(handles);
-  }
+    for (std::size_t slot = 0; slot < self.world.slots(); ++slot) {
+      const Handle handle = self.world.handle_of(static_cast<BoxId>(slot));
+      if (self.world.contains(handle)) handles.push_back(handle);
+    }
+    return handles;
+  }));
+}
 
-  nb::object quarantined() override {
-    return array_of_handles(with_lock([&](WithoutGil&) { return world_.quarantined(); }));
-  }
+nb::object quarantined(AnyWorld& any) {
+  return array_of_handles(in_turn(any, [](auto& self, WithoutGil&) { return self.world.quarantined(); }));
+}
 
-  bool contains(std::uint64_t handle) override {
-    return with_lock([&](WithoutGil&) { return world_.contains(handle_of(handle)); });
-  }
-  std::size_t size() override {
-    return with_lock([&](WithoutGil&) { return world_.size(); });
-  }
-  std::size_t bytes() override {
-    return with_lock([&](WithoutGil&) { return world_.statistics().bytes.total(); });
-  }
-  std::string explanation() override {
-    return with_lock([&](WithoutGil&) { return world_.statistics().explanation; });
-  }
-
-  nb::object join(AnyWorld& other) override {
-    auto* const same = dynamic_cast<WorldOf*>(&other);
-    if (same == nullptr)
-      throw nb::type_error("the other world has boxes of another dimension or dtype; expected the same");
-    std::vector<std::uint64_t> numbers = without_gil([&](WithoutGil& released) {
-      std::unique_lock lock(mutex_, std::defer_lock);
-      std::unique_lock other_lock(same->mutex_, std::defer_lock);
-      if (same == this)
+nb::object join(AnyWorld& any, AnyWorld& second) {
+  return any.visit([&]<int D, typename Real>(PyWorld<D, Real>& self) {
+    PyWorld<D, Real>& other = second.get<D, Real>("other is a world of");
+    return array_of<std::uint64_t>(without_gil([&](WithoutGil& released) {
+      std::unique_lock lock(self.mutex, std::defer_lock);
+      std::unique_lock other_lock(other.mutex, std::defer_lock);
+      if (&other == &self)
         lock.lock();
       else
         std::lock(lock, other_lock);
-      const ScopedWorkers use(world_, threads_, released);
+      const ScopedWorkers use(self.world, self.threads, released);
       std::vector<HandlePair> pairs;
-      world_.join(same->world_, pairs);
+      self.world.join(other.world, pairs);
       return numbers_of(pairs);
-    });
-    return array_of_pairs(std::move(numbers));
-  }
+    }));
+  });
+}
 
-  nb::bytes snapshot() override {
-    const std::vector<std::byte> bytes = with_lock([&](WithoutGil&) { return world_.snapshot(); });
-    return nb::bytes(bytes.data(), bytes.size());
-  }
+nb::bytes snapshot(AnyWorld& any) {
+  const std::vector<std::byte> bytes =
+      in_turn(any, [](auto& self, WithoutGil&) { return self.world.snapshot(); });
+  return nb::bytes(bytes.data(), bytes.size());
+}
 
-  void restore(nb::bytes snapshot) override {
-    const std::span bytes(static_cast<const std::byte*>(snapshot.data()), snapshot.size());
-    with_lock([&](WithoutGil&) { world_.restore(bytes); });
-  }
+void restore(AnyWorld& any, nb::bytes snapshot) {
+  const std::span bytes(static_cast<const std::byte*>(snapshot.data()), snapshot.size());
+  in_turn(any, [&](auto& self, WithoutGil&) { self.world.restore(bytes); });
+}
 
-  nb::object overlapping(nb::handle queries, const QueryChoice& choice) override {
-    return Queries(*this).overlapping(queries, choice);
-  }
-  nb::object containing(nb::handle points, const QueryChoice& choice) override {
-    return Queries(*this).containing(points, choice);
-  }
-  nb::object hits(nb::handle origins, nb::handle directions, double t_max,
-                  const QueryChoice& choice) override {
-    return Queries(*this).hits(origins, directions, t_max, choice);
-  }
-  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
-                       const QueryChoice& choice) override {
-    return Queries(*this).first_hit(origins, directions, t_max, choice);
-  }
-  nb::object nearest(nb::handle points, std::size_t k, double max_distance,
-                     const QueryChoice& choice) override {
-    return Queries(*this).nearest(points, k, max_distance, choice);
-  }
+bool contains(AnyWorld& any, std::uint64_t handle) {
+  return in_turn(any, [&](auto& self, WithoutGil&) { return self.world.contains(handle_of(handle)); });
+}
 
-  /// For Queries.
-  template <typename Body>
-  void ask(const Body& body) {
-    const std::lock_guard lock(mutex_);
-    // A handle that is not in the world excludes no box.
-    const auto place_of = [&](Number number) {
-      const Handle handle = handle_of(number);
-      return world_.contains(handle) ? std::optional(BoxId{handle.slot}) : std::nullopt;
-    };
-    body(
-        world_.box_index(), [&](BoxId id) { return number_of(world_.handle_of(id)); }, place_of);
-  }
+std::size_t size(AnyWorld& any) {
+  return in_turn(any, [](auto& self, WithoutGil&) { return self.world.size(); });
+}
 
- private:
-  static constexpr bool has_doubles = std::is_same_v<Coordinate, double>;
-
-  static Rows rows_of(nb::handle boxes, const char* name) {
-    return Rows::of(boxes, name, 2 * Dimension, has_doubles);
-  }
-
-  /// Runs body(released) without the GIL and without other threads.
-  template <typename Body>
-  auto with_lock(const Body& body) {
-    return without_gil([&](WithoutGil& released) {
-      const std::lock_guard lock(mutex_);
-      return body(released);
-    });
-  }
-
-  CallMutex mutex_;
-  World<Dimension, Coordinate> world_;
-  std::size_t threads_;
-};
+WorldStatistics statistics(AnyWorld& any) {
+  return in_turn(any, [](auto& self, WithoutGil&) { return self.world.statistics(); });
+}
 
 std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std::string& algorithm,
                                      nb::handle threads, const std::string& settings) {
   WorldOptions options = world_options(settings);
   options.algorithm = algorithm;
-  const std::size_t max_threads = threads_of(threads, algorithm);
-  return with_kind(dimension, has_doubles, [&]<int D, typename Real>() -> std::unique_ptr<AnyWorld> {
-    return std::make_unique<WorldOf<D, Real>>(options, max_threads);
-  });
+  return std::make_unique<AnyWorld>(bindings::kind_with(dimension, has_doubles), options,
+                                    threads_of(threads, algorithm));
 }
 
 /// The table of options: name, summary, default value, type, choices, min and max of each.
@@ -311,24 +240,23 @@ nb::list list_of_options() {
 
 void add_world(nb::module_& module) {
   nb::class_<AnyWorld> type(module, "World");
-  type.def("add", &AnyWorld::add, nb::arg("boxes").none(), nb::arg("filters").none())
-      .def("move", &AnyWorld::move, nb::arg("handles").none(), nb::arg("boxes").none(),
-           nb::arg("velocities").none())
-      .def("remove", &AnyWorld::remove, nb::arg("handles").none())
-      .def("set_filters", &AnyWorld::set_filters, nb::arg("handles").none(), nb::arg("filters").none())
-      .def("ignore", &AnyWorld::ignore, nb::arg("pairs").none(), nb::arg("ignores"))
-      .def("update", &AnyWorld::update)
-      .def("pairs", &AnyWorld::pairs)
-      .def("boxes", &AnyWorld::boxes, nb::arg("handles").none(), nb::arg("enlarged"))
-      .def("handles", &AnyWorld::handles)
-      .def("quarantined", &AnyWorld::quarantined)
-      .def("contains", &AnyWorld::contains)
-      .def("__len__", &AnyWorld::size)
-      .def("bytes", &AnyWorld::bytes)
-      .def("explanation", &AnyWorld::explanation)
-      .def("join", &AnyWorld::join)
-      .def("snapshot", &AnyWorld::snapshot)
-      .def("restore", &AnyWorld::restore);
+  type.def("add", &add, nb::arg("boxes").none(), nb::arg("filters").none())
+      .def("move", &move, nb::arg("handles").none(), nb::arg("boxes").none(), nb::arg("velocities").none())
+      .def("remove", &remove, nb::arg("handles").none())
+      .def("set_filters", &set_filters, nb::arg("handles").none(), nb::arg("filters").none())
+      .def("ignore", &ignore, nb::arg("pairs").none(), nb::arg("ignores"))
+      .def("update", &update)
+      .def("pairs", &pairs)
+      .def("boxes", &boxes, nb::arg("handles").none(), nb::arg("enlarged"))
+      .def("handles", &all_handles)
+      .def("quarantined", &quarantined)
+      .def("contains", &contains)
+      .def("__len__", &size)
+      .def("bytes", [](AnyWorld& any) { return statistics(any).bytes.total(); })
+      .def("explanation", [](AnyWorld& any) { return statistics(any).explanation; })
+      .def("join", &join)
+      .def("snapshot", &snapshot)
+      .def("restore", &restore);
   add_queries(type);
   module.def("make_world", &make_world, nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"),
              nb::arg("threads").none(), nb::arg("settings"));

@@ -23,6 +23,7 @@ const std::vector<Rule>& rules() {
   const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
                            R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
+  const std::string bindings = library + R"(|"bindings/c/broadside\.h")";
   // The suggestion of names that a user may have meant is an inline function of the library.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
                           R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
@@ -30,8 +31,10 @@ const std::vector<Rule>& rules() {
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
-      {"bindings/c/", library},
-      {"bindings/python/", library + R"(|"bindings/python/[a-z]+\.hpp"|<nanobind/.*>)" +
+      {"bindings/any_kind", bindings},
+      {"bindings/status_of_exception", bindings},
+      {"bindings/c/", bindings + R"(|"bindings/(any_kind|status_of_exception)\.hpp")"},
+      {"bindings/python/", library + R"(|"bindings/(python/[a-z]+|any_kind)\.hpp"|<nanobind/.*>)" +
                                R"(|"lab/((advise|formats|report|scenes)/[a-z_]+|catalogue)\.hpp")"},
       // An integration includes its engine.
       {"integrations/bullet/", library + engines},

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import math
-from typing import Any, Literal, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -62,6 +63,7 @@ class World:
     """
 
     __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
+    __signature__: ClassVar[inspect.Signature]
 
     def __init__(
         self,
@@ -276,7 +278,7 @@ def _unpickled_world(
 
 
 World.__doc__ = _world_options.filled(World.__doc__, own={"first_generation"})
-setattr(World, "__signature__", _world_options.signature(World))  # noqa: B010, mypy sees no such attribute
+World.__signature__ = _world_options.signature(World)
 
 
 class Tracker:

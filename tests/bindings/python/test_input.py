@@ -84,7 +84,7 @@ def test_takes_integers_that_float64_holds_and_no_others():
         ([[0, 0, 1, 1], [0, 0]], ValueError, "rows of the same length"),
         ("boxes", TypeError, "str; expected an array"),
         (b"0000", TypeError, "bytes"),
-        (None, TypeError, "in row 0 is None"),
+        (None, TypeError, "boxes is None; expected an array"),
         (7, TypeError, "int; expected an array"),
         ({"xmin": [0]}, TypeError, "dict"),
         (array.array("d", [0, 0, 1, 1]), ValueError, r"shape \(4,\)"),

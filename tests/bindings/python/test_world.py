@@ -182,7 +182,7 @@ def test_joins_two_worlds():
     x, y = a.add(left), b.add(right)
     assert as_set(a.join(b)) == {(int(x[i]), int(y[j])) for i, j in brute_force(left, right)}
     assert len(a.join(a)) == len(brute_force(left, left))
-    with pytest.raises(TypeError, match="another dimension"):
+    with pytest.raises(TypeError, match="other is a world of 2D doubles; expected 3D doubles"):
         a.join(broadside.World(2))
     with pytest.raises(TypeError, match="other is an int; expected a World"):
         a.join(3)
