@@ -1,4 +1,4 @@
-// Hard histories: those that are drawn, and those that are made against what trackers keep.
+// Difficult histories: random ones, and ones that attack the state which trackers keep between frames.
 #include "tracker_histories.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hard histories for trackers, by name.
+// Difficult histories for trackers, by name.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace broadside::laws {
 
-/// Frames and what is hard about them.
+/// Frames, and why they are difficult.
 template <int D>
 struct NamedFrames {
   std::string name;
@@ -21,14 +21,14 @@ struct NamedFrames {
 template <int D>
 std::vector<NamedFrames<D>> drawn_histories(const Algorithm& algorithm);
 
-/// Histories made against what trackers keep from frame to frame: bounds, cells, orders, trees; within the
-/// algorithm's declared limits, of at most some hundred boxes. Those that a structure can only survive if it
-/// was made to are for our own and the paper's algorithms alone.
+/// Histories that attack the state which trackers keep between frames: bounds, cells, orders, trees. They are
+/// within the algorithm's declared limits, of at most some hundred boxes. Histories that a structure survives
+/// only by design are included only for our own and the paper's algorithms.
 template <int D>
 std::vector<NamedFrames<D>> scripted_histories(const Algorithm& algorithm);
 
-/// A history of so many boxes, some thousands, in which everything happens: a tenth moves, all of them do,
-/// boxes go and come, all jump at once.
+/// A history of that many boxes (thousands) in which everything happens: a tenth moves, all move, boxes are
+/// added and removed, all jump at once.
 template <int D>
 std::vector<WholeFrame<D>> large_history(std::size_t count);
 
