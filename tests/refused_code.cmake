@@ -1,13 +1,21 @@
-# Fails unless COMPILER refuses code that the headers in INCLUDE do not take, by one error in few lines, with a sentence
-# that says what they take. FOLDER is for the code.
-function(expect_refusal code sentence)
+# Fails unless COMPILER refuses code that the headers in INCLUDE do not take, by one error. What it prints must name
+# `what`, a regular expression, in at most max_lines lines. FOLDER is for the code.
+set(max_lines 15)
+function(expect_refusal code what)
   file(WRITE ${FOLDER}/refused.cpp "#include <broadside/broadside.hpp>
+#include <broadside/recorder.hpp>
 using namespace broadside;
 struct Thing { Box2 box; int name; };
 std::vector<int> ints;
 std::vector<Thing> things;
 std::vector<Box2> boxes;
 std::vector<Box3> solids;
+std::vector<DoubleBox2> doubles;
+World2 game;
+std::vector<Handle> handles;
+std::vector<HandlePair> pairs;
+PairCounter counter;
+BoxIndex<2> boxes_index;
 void refused() { ${code} }
 ")
   execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I ${INCLUDE} ${FOLDER}/refused.cpp
@@ -16,16 +24,20 @@ void refused() { ${code} }
   string(REGEX MATCHALL "\n" lines "${message}")
   list(LENGTH errors error_count)
   list(LENGTH lines line_count)
-  if(status EQUAL 0 OR NOT error_count EQUAL 1 OR NOT errors MATCHES "${sentence}" OR line_count GREATER 15)
+  if(status EQUAL 0 OR NOT error_count EQUAL 1 OR NOT message MATCHES "${what}" OR line_count GREATER max_lines)
     message(SEND_ERROR "'${code}' (status ${status}): ${error_count} errors in ${line_count} lines; expected one in at most "
-                       "15 that says '${sentence}'\n${message}")
+                       "${max_lines} that says '${what}'\n${message}")
   endif()
 endfunction()
 
 set(sentence "Broadside supports boxes of 2 or 3 dimensions with float or double coordinates")
 expect_refusal("World<4> world;" "${sentence}")
 expect_refusal("World<2, int> world;" "${sentence}")
+expect_refusal("Finder<1> finder;" "${sentence}")
+expect_refusal("Tracker<3, long double> tracker;" "${sentence}")
 expect_refusal("const auto bytes = &BoxIndex<4>::bytes;" "${sentence}")
+expect_refusal("Recorder<4> recorder;" "a trace has two or three dimensions")
+expect_refusal("Recorder<2, int> recorder;" "a trace holds float or double")
 
 set(sentence "find_pairs\\(\\) takes boxes .*, as in find_pairs\\(boxes_of\\(things, &Thing::box\\)\\)")
 expect_refusal("const auto pairs = find_pairs(ints);" "${sentence}")
@@ -40,3 +52,21 @@ expect_refusal("const auto pairs = find_pairs(boxes, 5);" "${sentence}")
 expect_refusal("const auto pairs = find_pairs(boxes, [](int) {});" "${sentence}")
 expect_refusal("const auto pairs = find_pairs(boxes, \"grid\");" "options such as {.algorithm = .?\"grid")
 expect_refusal("find_pairs(boxes, boxes, \"grid\");" "options such as {.algorithm = .?\"grid")
+
+# Boxes of another dimension or of other coordinates than what takes them.
+set(max_lines 40)
+expect_refusal("game.add(Box3{});" "no known conversion [^\n]*Box<3[^\n]* to [^\n]*Box<2")
+expect_refusal("game.add(DoubleBox2{});" "no known conversion [^\n]*Box<2, double>[^\n]* to [^\n]*Box<2")
+expect_refusal("game.add(solids, handles);" "no known conversion [^\n]*Box<3[^\n]* to [^\n]*BoxView<2")
+expect_refusal("game.move(Handle{}, DoubleBox2{});" "no known conversion [^\n]*Box<2, double>[^\n]* to [^\n]*Box<2")
+expect_refusal("game.join(DoubleWorld2(), pairs);" "(cannot convert|no known conversion|no viable conversion)[^\n]*World")
+expect_refusal("Finder<2>().find(doubles, counter);" "no known conversion [^\n]*Box<2, double>[^\n]* to [^\n]*BoxView<2")
+expect_refusal("Tracker<3>().update(Frame<2>{}, counter, counter);" "no known conversion [^\n]*Frame<2[^\n]* to [^\n]*Frame<3")
+expect_refusal("Box2 box = DoubleBox2{};" "conver[^\n]*(Box2|Box<)")
+expect_refusal("const bool meet = overlap(Box2{}, Box3{});" "(conflicting|deduced)[^\n]*(2|3)")
+
+# What else is given to them.
+expect_refusal("boxes_index.overlapping(Box2{}, [](Handle) {});" "VisitFunction")
+expect_refusal("Finder<2>().find(boxes, [](int) {});" "PairCallback")
+expect_refusal("Spec spec(nullptr);" "deleted")
+expect_refusal("World2 copy = game;" "deleted")

@@ -14,57 +14,30 @@
 #include "broadside/follower.hpp"
 #include "broadside/sinks.hpp"
 
-#include "tests/support/model.hpp"
+#include "tests/algorithms/moved_frames.hpp"
 
 namespace broadside {
 namespace {
 
 using testing::IsEmpty;
 
-/// Frames in which boxes move a little or far, come and go.
-template <int D>
-class ChangingBoxes {
- public:
-  explicit ChangingBoxes(std::size_t count)
-      : before_(count, absent_box<D>()), now_(random_boxes<D>(rng_, count)), flags_(count, 1) {
-    for (std::size_t i = 0; i < count; ++i) changed_.push_back(BoxId(i));
+/// Calls `body(frame, change)` for each of 20 frames. In two of them followers discard what they kept.
+template <int D, typename Body>
+void in_each_frame(const Body& body) {
+  algorithm::MovedFrames<D> frames(300, {});
+  for (int frame = 0; frame < 20; ++frame) {
+    frames.step(5);
+    const std::vector<Box<D>> now = frames.now();
+    std::vector<BoxId> changed;
+    for (const core::MovedBox<D>& box : frames.moved) changed.insert(changed.begin(), box.id);
+    body(frame, Change<D>{.before = frames.boxes,
+                          .now = now,
+                          .changed = changed,
+                          .flags = frames.moves,
+                          .rebuild = frame == 0 || frame == 12});
+    frames.apply();
   }
-
-  /// The first frame, and then each that next() leads to.
-  Change<D> change(bool rebuild, bool wants_candidates) const {
-    return {.before = before_,
-            .now = now_,
-            .changed = changed_,
-            .flags = flags_,
-            .rebuild = rebuild,
-            .wants_candidates = wants_candidates};
-  }
-
-  void next() {
-    before_ = now_;
-    changed_.clear();
-    std::ranges::fill(flags_, 0);
-    for (std::size_t i = 0; i < now_.size(); ++i) {
-      if (!rng_.one_in(5)) continue;
-      changed_.push_back(BoxId(i));
-      flags_[i] = 1;
-      if (rng_.one_in(6))
-        now_[i] = absent_box<D>();
-      else if (rng_.one_in(3) || !is_present(now_[i]))
-        now_[i] = random_box<D>(rng_);
-      else
-        now_[i].max[0] += 1;
-    }
-    std::ranges::reverse(changed_);
-  }
-
- private:
-  Rng rng_{6};
-  std::vector<Box<D>> before_;
-  std::vector<Box<D>> now_;
-  std::vector<BoxId> changed_;
-  std::vector<std::uint8_t> flags_;
-};
+}
 
 /// What the follower writes, each pair once and in order.
 template <int D>
@@ -112,9 +85,7 @@ void with_each_follower(const Body& body) {
 TEST(Followers, WriteTheEventsOfEachFrame) {
   in_each_dimension([]<int D>() {
     with_each_follower<D>([](Follower<D>& follower) {
-      ChangingBoxes<D> boxes(300);
-      for (int frame = 0; frame < 20; ++frame) {
-        const Change<D> change = boxes.change(frame == 0 || frame == 12, false);
+      in_each_frame<D>([&](int frame, const Change<D>& change) {
         const auto [begun, ended] = followed(follower, change);
         EXPECT_EQ(begun,
                   pairs_of_changed(
@@ -124,8 +95,7 @@ TEST(Followers, WriteTheEventsOfEachFrame) {
                   pairs_of_changed(
                       change, [&](BoxId a, BoxId b) { return change.held(a, b) && !change.holds(a, b); }))
             << frame;
-        boxes.next();
-      }
+      });
     });
   });
 }
@@ -133,9 +103,8 @@ TEST(Followers, WriteTheEventsOfEachFrame) {
 TEST(Followers, WriteEveryPairOfAChangedBoxWhereCandidatesAreWanted) {
   in_each_dimension([]<int D>() {
     with_each_follower<D>([](Follower<D>& follower) {
-      ChangingBoxes<D> boxes(300);
-      for (int frame = 0; frame < 20; ++frame) {
-        const Change<D> change = boxes.change(frame == 0 || frame == 12, frame % 4 != 3);
+      in_each_frame<D>([&](int frame, Change<D> change) {
+        change.wants_candidates = frame % 4 != 3;
         const auto [begun, ended] = followed(follower, change);
         if (change.wants_candidates) {
           EXPECT_THAT(ended, IsEmpty()) << frame;
@@ -145,8 +114,7 @@ TEST(Followers, WriteEveryPairOfAChangedBoxWhereCandidatesAreWanted) {
           const auto all = pairs_of_changed(change, [](BoxId, BoxId) { return true; });
           EXPECT_TRUE(std::ranges::includes(all, begun)) << frame;
         }
-        boxes.next();
-      }
+      });
     });
   });
 }

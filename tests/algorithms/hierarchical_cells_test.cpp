@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/algorithms/drawn_frames.hpp"
+#include "tests/algorithms/moved_frames.hpp"
 #include "tests/support/model.hpp"
 
 namespace broadside::algorithm {
@@ -17,7 +17,7 @@ TEST(HierarchicalCells, TellWhatMovedBoxesChange) {
   on_each_instruction_set([]<int D>() {
     for (const BoxKind& kind : {BoxKind{}, BoxKind{.places = 400, .max_extent = 20, .infinite_one_in = 400},
                                 BoxKind{.places = 300, .max_extent = 90, .infinite_one_in = 0}}) {
-      DrawnFrames<D> frames(300, kind);
+      MovedFrames<D> frames(300, kind);
       HierarchicalCells<D> cells(std::nullopt);
       cells.build(frames.boxes, frames.boxes);
       for (int round = 0; round < 12; ++round) {

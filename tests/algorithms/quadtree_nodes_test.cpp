@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/algorithms/drawn_frames.hpp"
+#include "tests/algorithms/moved_frames.hpp"
 #include "tests/support/model.hpp"
 
 namespace broadside::algorithm {
@@ -27,7 +27,7 @@ void nodes_of(const QuadtreeNodes<D>& tree, const Box<D>& box, std::uint32_t at,
 
 TEST(QuadtreeNodes, HoldEachBoxWhereItBelongsWhileNodesSplitAndMerge) {
   in_each_dimension([]<int D>() {
-    DrawnFrames<D> frames(3000, {.places = 1000, .max_extent = 12, .infinite_one_in = 100});
+    MovedFrames<D> frames(3000, {.places = 1000, .max_extent = 12, .infinite_one_in = 100});
     QuadtreeNodes<D> tree(16);
     tree.build(frames.boxes);
     std::size_t max_nodes = 0;

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/algorithms/drawn_frames.hpp"
+#include "tests/algorithms/moved_frames.hpp"
 #include "tests/support/model.hpp"
 
 namespace broadside::algorithm {
@@ -14,7 +14,7 @@ namespace {
 
 TEST(SweepOrder, StaysSortedAndTellsWhatMovedBoxesChange) {
   on_each_instruction_set([]<int D>() {
-    DrawnFrames<D> frames(400, {.places = 100});
+    MovedFrames<D> frames(400, {.places = 100});
     SweepOrder<D> order;
     const auto assign = [&] {
       std::vector<SweepEntry> entries;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/error.hpp"
@@ -54,10 +55,8 @@ TEST(InputCheck, RefusesABoxThatIsAbsentOnOneAxisOnly) {
 TEST(InputCheck, NamesIndexAndValuesAndWhatIsExpected) {
   const std::vector<Box2> boxes = {
       absent_box<2>(), {{0, 0}, {1, 1}}, {{0.5f, 2}, {nan, -infinity}}, {{1, 1}, {0, 0}}};
-  EXPECT_EQ(
-      message_of<InvalidInput>([&] { core::check_boxes(std::span<const Box2>(boxes)); }),
-      "box 2 has min (0.5, 2) and max (nan, -inf); expected numbers with min <= max on every axis, or the "
-      "absent box (min = +inf, max = -inf)");
+  EXPECT_THAT(message_of<InvalidInput>([&] { core::check_boxes(std::span<const Box2>(boxes)); }),
+              names("box 2", "(0.5, 2)", "(nan, -inf)", "min <= max"));
   try {
     core::check_boxes(std::span<const Box2>(boxes), 3);
     FAIL() << "nothing was thrown";
@@ -83,8 +82,8 @@ TEST(InputCheck, WritesNumbersTheSameWayInAnyLocale) {
 TEST(InputCheck, RefusesMoreBoxesThanIds) {
   constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
   EXPECT_NO_THROW(core::check_count(most));
-  EXPECT_EQ(message_of<InvalidFrame>([] { core::check_count(most + 1); }),
-            "4294967296 boxes; expected at most 4294967295");
+  EXPECT_THAT(message_of<InvalidFrame>([] { core::check_count(most + 1); }),
+              names("4294967296", "4294967295"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadside/algorithm.hpp"
@@ -61,14 +62,12 @@ TEST(Spec, RefusesWhatIsNoSpec) {
   const auto refusal = [](std::string_view text) {
     return message_of<InvalidSpec>([&] { static_cast<void>(Spec{text}); });
   };
-  EXPECT_EQ(refusal(""), "spec '': no name; expected name:tunable=value:...");
-  EXPECT_EQ(refusal(":cell=1"), "spec ':cell=1': no name; expected name:tunable=value:...");
-  EXPECT_EQ(refusal("grid:cell"), "spec 'grid:cell': 'cell' has no '='; expected name:tunable=value:...");
-  EXPECT_EQ(refusal("grid:"), "spec 'grid:': '' has no '='; expected name:tunable=value:...");
-  EXPECT_EQ(refusal("grid:=1"),
-            "spec 'grid:=1': '=1' has no name before '='; expected name:tunable=value:...");
-  EXPECT_EQ(refusal("grid:cell=1:cell=1"),
-            "spec 'grid:cell=1:cell=1': 'cell' is given twice; expected name:tunable=value:...");
+  EXPECT_THAT(refusal(""), names("''", "no name"));
+  EXPECT_THAT(refusal(":cell=1"), names("':cell=1'", "no name"));
+  EXPECT_THAT(refusal("grid:cell"), names("'grid:cell'", "'cell'", "'='"));
+  EXPECT_THAT(refusal("grid:"), names("'grid:'", "''", "'='"));
+  EXPECT_THAT(refusal("grid:=1"), names("'grid:=1'", "'=1'", "'='"));
+  EXPECT_THAT(refusal("grid:cell=1:cell=1"), names("'grid:cell=1:cell=1'", "'cell'", "twice"));
 }
 
 TEST(Spec, HasOneCanonicalText) {
@@ -110,16 +109,13 @@ TEST(Settings, TakeBothEndsOfARange) {
 
 TEST(Settings, TakeAutoOnlyWhereItIsTheDefault) {
   EXPECT_TRUE(Settings(Spec("grid:cell=auto"), tunables).is_auto("cell"));
-  EXPECT_EQ(refusal_of("grid:capacity=auto"),
-            "grid: capacity is 'auto'; expected a whole number from 1 to 9007199254740992");
+  EXPECT_THAT(refusal_of("grid:capacity=auto"),
+              names("grid", "capacity", "'auto'", "from 1 to 9007199254740992"));
 }
 
 TEST(Settings, RefuseAnUnknownTunableAndNameTheKnownOnes) {
-  EXPECT_EQ(
-      refusal_of("grid:cells=2"),
-      "grid: unknown tunable 'cells' (did you mean 'cell'?); expected one of: cell, capacity, axis, margin");
-  EXPECT_EQ(message_of<InvalidSpec>([] { Settings(Spec("a:b=1"), {}); }),
-            "a: unknown tunable 'b'; expected none");
+  EXPECT_THAT(refusal_of("grid:cells=2"), names("grid", "'cells'", "'cell'", "capacity"));
+  EXPECT_THAT(message_of<InvalidSpec>([] { Settings(Spec("a:b=1"), {}); }), names("'b'", "none"));
 }
 
 TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
@@ -128,7 +124,7 @@ TEST(Settings, RefuseANumberOutOfItsRangeAndNameTheRangeExactly) {
     EXPECT_EQ(
         refusal_of(std::string("grid:cell=") + value),
         std::string("grid: cell is '") + value + "'; expected a number from 0.5 to 2147483648, or auto");
-  EXPECT_EQ(refusal_of("grid:margin=-1"), "grid: margin is '-1'; expected a number of at least 0");
+  EXPECT_THAT(refusal_of("grid:margin=-1"), names("margin is '-1'", "at least 0"));
 }
 
 TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
@@ -140,7 +136,7 @@ TEST(Settings, NameTheLeastFloatToWhoGaveLess) {
   const auto refusal = [&](const std::string& value) {
     return message_of<InvalidSpec>([&] { Settings(Spec("grid:cell=" + value), std::span(&above_0, 1)); });
   };
-  EXPECT_EQ(refusal("0"), "grid: cell is '0'; expected a number above 0, or auto");
+  EXPECT_THAT(refusal("0"), names("cell is '0'", "above 0", "auto"));
   for (const std::string value : {"1e-38", "1e39"})
     EXPECT_EQ(refusal(value),
               "grid: cell is '" + value +
@@ -157,7 +153,7 @@ TEST(Settings, RefuseAnIntegerThatIsNotWholeOrThatADoubleCannotHold) {
 }
 
 TEST(Settings, RefuseAChoiceThatIsNotOffered) {
-  EXPECT_EQ(refusal_of("grid:axis=z"), "grid: axis is 'z'; expected one of: x, y, or auto");
+  EXPECT_THAT(refusal_of("grid:axis=z"), names("axis is 'z'", "x, y", "auto"));
 }
 
 TEST(CurrentSpec, LosesWhatIsGoneFromOursAndNothingFromOthers) {

@@ -19,8 +19,8 @@
 
 #include "environment.hpp"
 #include "tests/laws/hard_inputs.hpp"
-#include "tests/laws/harder_histories.hpp"
 #include "tests/laws/law_case.hpp"
+#include "tests/laws/tracker_histories.hpp"
 #include "tests/support/found.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/searchers.hpp"
@@ -148,7 +148,7 @@ TEST_P(EnvironmentLaw, TracksTheSamePairs) {
       if (boxes.size() <= (is_own ? 300 : 60)) expect_same(name, frames_of(boxes));
     });
     if (!is_own) return;
-    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+    for (const NamedFrames<D>& named : scripted_histories<D>(algorithm())) {
       std::vector<std::vector<Box<D>>> frames;
       for (const WholeFrame<D>& frame : named.frames) frames.push_back(frame.boxes);
       expect_same(named.name, frames);

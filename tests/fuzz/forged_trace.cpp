@@ -74,7 +74,7 @@ struct Forgery {
       if (what == 0)
         frame.removed.push_back(slot);
       else
-        frame.set.push_back({slot, any_box<D, Real>(bytes)});
+        frame.set.push_back({slot, lattice_box<D, Real>(bytes)});
     }
     return frame;
   }
@@ -144,7 +144,7 @@ struct Forgery {
     const auto slot = static_cast<std::uint32_t>(bytes.below(11));
     if (what == 0) frame.slots = bytes.next() < 200 ? slot : std::numeric_limits<std::uint32_t>::max() - slot;
     if (what == 1) frame.removed.push_back(slot);
-    if (what == 2) frame.set.push_back({slot, any_box<D, Real>(bytes)});
+    if (what == 2) frame.set.push_back({slot, lattice_box<D, Real>(bytes)});
     if (what == 3) frame.removed.insert(frame.removed.begin(), slot);
     if (what == 4) std::ranges::reverse(frame.removed);
     if (what == 5) std::ranges::reverse(frame.set);
@@ -354,7 +354,7 @@ void check(Bytes& bytes, bool has_pairs) {
 }  // namespace broadside::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  broadside::fuzz::Bytes bytes(data, size);
+  broadside::fuzz::Bytes bytes({data, size});
   const std::uint8_t what = bytes.next();
   const bool has_pairs = what / 2 % 2 == 1;
   if (what % 2 == 0)

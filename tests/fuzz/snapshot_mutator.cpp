@@ -220,8 +220,9 @@ void SnapshotMutator<D, Real>::change_generation() {
 
 template <int D, typename Real>
 void SnapshotMutator<D, Real>::change_filter() {
-  if (!fields_.filters.empty()) *any(fields_.filters) = bytes_.filter();
-  if (!fields_.last_filters.empty() && bytes_.next() % 2 == 0) *any(fields_.last_filters) = bytes_.filter();
+  if (!fields_.filters.empty()) *any(fields_.filters) = any_filter(bytes_);
+  if (!fields_.last_filters.empty() && bytes_.next() % 2 == 0)
+    *any(fields_.last_filters) = any_filter(bytes_);
 }
 
 template <int D, typename Real>

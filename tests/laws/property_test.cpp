@@ -9,56 +9,19 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "filtered_frames.hpp"
+#include "broadside/debug/history.hpp"
+
+#include "drawn_frames.hpp"
 #include "generators.hpp"
 #include "hard_inputs.hpp"
 #include "lab/verify/verify.hpp"
 #include "law_case.hpp"
+#include "smallest_failure.hpp"
 #include "strained_specs.hpp"
+#include "tests/support/drawn_boxes.hpp"
 
 namespace broadside::laws {
-
-/// One frame of a generated history: how long the array is, and what changes in it.
-template <int D>
-struct GeneratedFrame {
-  int size;
-  std::vector<std::pair<int, Box<D>>> changes;  ///< places counted beyond the array's end start over
-};
-
-template <int D>
-void showValue(const GeneratedFrame<D>& frame, std::ostream& out) {
-  out << "\n  " << frame.size << " boxes; changed: ";
-  rc::show(frame.changes, out);
-}
-
 namespace {
-
-template <int D>
-rc::Gen<GeneratedFrame<D>> frame(const rc::Gen<Box<D>>& box) {
-  return rc::gen::construct<GeneratedFrame<D>>(
-      rc::gen::inRange(0, 20), rc::gen::resize(20, rc::gen::container<std::vector<std::pair<int, Box<D>>>>(
-                                                       rc::gen::pair(rc::gen::inRange(0, 20), box))));
-}
-
-/// The history that starts without a box and goes through `frames`.
-template <int D>
-lab::History<D> history_of(const std::vector<GeneratedFrame<D>>& frames) {
-  lab::History<D> history;
-  std::size_t known = 0;
-  for (const GeneratedFrame<D>& frame : frames) {
-    const auto size = static_cast<std::size_t>(frame.size);
-    lab::Step<D> step{.size = size, .changed = {}, .boxes = {}};
-    const std::size_t places = std::max(size, known);
-    for (const auto& [place, box] : frame.changes) {
-      if (places == 0) break;
-      step.changed.push_back(BoxId(std::size_t(place) % places));
-      step.boxes.push_back(box);
-    }
-    known = size;
-    history.steps.push_back(std::move(step));
-  }
-  return history;
-}
 
 class Property : public Law {
  protected:
@@ -76,54 +39,62 @@ class Property : public Law {
   }
 
   template <int D>
-  bool finders_hold(const rc::Gen<Box<D>>& box) const {
+  bool finders_hold(bool on_lattice) const {
     return rc::check(name(GetParam()) + " finds each overlapping pair once", [&] {
-      auto boxes = *rc::gen::scale(2, rc::gen::container<std::vector<Box<D>>>(box)).as("boxes");
+      const std::vector<std::uint8_t> bytes = *rc::gen::scale(8, drawn_bytes()).as("choices");
+      ByteChoices choices(bytes);
+      std::vector<Box<D>> boxes;
+      while (!choices.is_spent()) {
+        boxes.push_back(on_lattice ? random_box<D>(choices, {8, 3, 0}) : box_of_any_floats<D>(choices));
+        if (choices.one_in(10)) boxes.back() = absent_box<D>();
+      }
       keep_to_limits(boxes);
       const Spec strained = *rc::gen::elementOf(specs());
       for (const Spec& tried : {spec(), strained}) {
         Finder<D> finder(algorithm(), tried);
         if (const auto divergence = lab::check_finder<D>(finder, boxes, tried.text()))
-          RC_FAIL(divergence->text);
+          RC_FAIL(divergence->text + "\n" + text_of(History<D>{boxes, {}}));
       }
     });
   }
 
   template <int D>
-  bool trackers_hold(const rc::Gen<Box<D>>& box) const {
+  bool trackers_hold(const std::vector<Coordinates>& kinds) const {
     return rc::check(name(GetParam()) + " gives each event once", [&] {
-      const auto frames = *rc::gen::container<std::vector<GeneratedFrame<D>>>(frame(box)).as("frames");
-      const auto seed = *rc::gen::arbitrary<std::uint8_t>().as("the filters' seed");
+      const std::vector<std::uint8_t> bytes = *rc::gen::scale(4, drawn_bytes()).as("choices");
+      ByteChoices choices(bytes);
+      FrameCourse course{.boxes = choices.below(20), .changes = 20, .resize_one_in = 4, .sweep_one_in = 6};
+      course.coordinates = choices.one_of<Coordinates>(kinds);
+      course.has_filters = choices.one_in(2);
+      std::vector<WholeFrame<D>> frames = draw_frames<D>(choices, course);
+      for (WholeFrame<D>& frame : frames)
+        std::ranges::replace_if(
+            frame.boxes, [&](const Box<D>& box) { return is_beyond(algorithm(), box); }, absent_box<D>());
       const Spec strained = *rc::gen::elementOf(specs());
       for (const Spec& tried : {spec(), strained}) {
-        Tracker<D> tracker(algorithm(), tried);
-        const auto divergence = lab::check_tracker<D>(tracker, history_of(frames), tried.text());
-        if (divergence) RC_FAIL(divergence->text);
-        const auto filtered = with_filters(whole_frames(history_of(frames)), seed);
-        Tracker<D> filtered_tracker(algorithm(), tried);
-        const std::string text = laws::divergence<D, float>(filtered_tracker, filtered);
-        if (!text.empty()) RC_FAIL(tried.text() + ", with filters: " + text);
+        const testing::AssertionResult result = tracks_the_frames<D>(algorithm(), tried, frames);
+        if (!result) RC_FAIL(result.message());
       }
     });
   }
 };
 
 TEST_P(Property, FindsThePairsOfBoxesOnALattice) {
-  in_dimension([&]<int D>() { EXPECT_TRUE(finders_hold<D>(lattice_box<D>())); });
+  in_dimension([&]<int D>() { EXPECT_TRUE(finders_hold<D>(true)); });
 }
 
 TEST_P(Property, FindsThePairsOfAnyBoxes) {
-  in_dimension([&]<int D>() { EXPECT_TRUE(finders_hold<D>(any_box<D>())); });
+  in_dimension([&]<int D>() { EXPECT_TRUE(finders_hold<D>(false)); });
 }
 
 TEST_P(Property, TracksBoxesOnALattice) {
-  in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>(lattice_box<D>())); });
+  in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>({Coordinates::whole, Coordinates::halves})); });
 }
 
 class AnyBoxProperty : public Property {};
 
 TEST_P(AnyBoxProperty, TracksAnyBoxes) {
-  in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>(any_box<D>())); });
+  in_dimension([&]<int D>() { EXPECT_TRUE(trackers_hold<D>({Coordinates::any})); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, Property, testing::ValuesIn(law_cases()), case_name);

@@ -14,10 +14,10 @@
 #include "broadside/index.hpp"
 
 #include "hard_inputs.hpp"
-#include "histories.hpp"
 #include "lab/scenes/scene.hpp"
 #include "law_case.hpp"
 #include "tests/support/rng.hpp"
+#include "tracker_histories.hpp"
 
 namespace broadside {
 
@@ -293,8 +293,8 @@ TYPED_TEST(QueryLaw, HoldsForScenes) {
 
 TYPED_TEST(QueryLaw, HoldsAfterHistories) {
   constexpr int dimension = TestFixture::D;
-  for (const auto& [name, history] : hard_histories<dimension>(Algorithm{})) {
-    typename TestFixture::Boxes boxes = this->real(history.boxes);
+  for (const auto& [name, frames] : drawn_histories<dimension>(Algorithm{})) {
+    typename TestFixture::Boxes boxes = this->real(frames[0].boxes);
     std::vector<Filter> filters(boxes.size());
     const bool has_filters = this->rng_.one_in(2);
     BoxIndex<dimension, typename TestFixture::Real> index;
@@ -305,15 +305,20 @@ TYPED_TEST(QueryLaw, HoldsAfterHistories) {
       this->expect_answers(index, boxes, has_filters ? filters : std::vector<Filter>{}, 2);
     };
     update({});
-    for (const lab::Step<dimension>& step : history.steps) {
-      boxes.resize(step.size, absent_box<dimension, typename TestFixture::Real>());
-      filters.resize(step.size);
-      for (std::size_t i = 0; i < step.changed.size(); ++i) {
-        if (broadside::index(step.changed[i]) >= step.size) continue;
-        boxes[broadside::index(step.changed[i])] = this->real(step.boxes[i]);
-        filters[broadside::index(step.changed[i])].category = this->rng_.one_in(2) ? 1 : 2;
+    for (std::size_t frame = 1; frame < frames.size(); ++frame) {
+      const WholeFrame<dimension>& now = frames[frame];
+      const std::vector<BoxId> changed = changed_places(frames[frame - 1], now);
+      for (std::size_t place = boxes.size(); place < now.boxes.size(); ++place)
+        boxes.push_back(this->real(now.boxes[place]));
+      boxes.resize(now.boxes.size());
+      filters.resize(now.boxes.size());
+      for (const BoxId id : changed) {
+        const std::size_t place = broadside::index(id);
+        if (place >= boxes.size()) continue;
+        boxes[place] = this->real(now.boxes[place]);
+        filters[place].category = this->rng_.one_in(2) ? 1 : 2;
       }
-      update(step.changed);
+      update(changed);
       ASSERT_FALSE(this->HasFailure()) << name;
     }
   }

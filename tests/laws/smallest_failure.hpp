@@ -10,6 +10,7 @@
 #include "broadside/algorithm.hpp"
 
 #include "lab/scenes/scene.hpp"
+#include "whole_frames.hpp"
 
 namespace broadside::laws {
 
@@ -24,5 +25,10 @@ testing::AssertionResult finds_the_pairs(const Algorithm& algorithm, const Spec&
 template <int D>
 testing::AssertionResult tracks_the_pairs(const Algorithm& algorithm, const Spec& spec,
                                           lab::History<D> history);
+
+/// Likewise of frames, with all that a tracker can be given: for few frames and boxes.
+template <int D>
+testing::AssertionResult tracks_the_frames(const Algorithm& algorithm, const Spec& spec,
+                                           std::vector<WholeFrame<D>> frames);
 
 }  // namespace broadside::laws

@@ -7,12 +7,11 @@
 
 #include "broadside/sinks.hpp"
 
-#include "filtered_frames.hpp"
-#include "harder_histories.hpp"
-#include "histories.hpp"
+#include "drawn_frames.hpp"
 #include "law_case.hpp"
 #include "smallest_failure.hpp"
 #include "strained_specs.hpp"
+#include "tracker_histories.hpp"
 
 namespace broadside::laws {
 namespace {
@@ -24,26 +23,24 @@ class OwnTrackerLaw : public Law {};
 
 TEST_P(TrackerLaw, GivesEachEventOnce) {
   in_dimension([&]<int D>() {
-    for (const NamedHistory<D>& named : hard_histories<D>(algorithm()))
-      EXPECT_TRUE(tracks_the_pairs<D>(algorithm(), spec(), named.history)) << named.name;
+    for (const NamedFrames<D>& named : drawn_histories<D>(algorithm()))
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), named.frames)) << named.name;
   });
 }
 
 TEST_P(TrackerLaw, GivesEachEventOnceWithFiltersAndIgnoredPairs) {
   in_dimension([&]<int D>() {
     std::uint64_t seed = 0;
-    for (const NamedHistory<D>& named : hard_histories<D>(algorithm())) {
-      EXPECT_TRUE(
-          tracks_the_frames<D>(algorithm(), spec(), with_filters(whole_frames(named.history), ++seed)))
+    for (const NamedFrames<D>& named : drawn_histories<D>(algorithm()))
+      EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(named.frames, ++seed)))
           << named.name;
-    }
   });
 }
 
-TEST_P(TrackerLaw, GivesEachEventOnceInHarderHistories) {
+TEST_P(TrackerLaw, GivesEachEventOnceInScriptedHistories) {
   in_dimension([&]<int D>() {
     std::uint64_t seed = 100;
-    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+    for (const NamedFrames<D>& named : scripted_histories<D>(algorithm())) {
       EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), named.frames)) << named.name;
       if (!is_own(GetParam())) continue;  // on others the interface puts filters
       EXPECT_TRUE(tracks_the_frames<D>(algorithm(), spec(), with_filters(named.frames, ++seed)))
@@ -54,7 +51,7 @@ TEST_P(TrackerLaw, GivesEachEventOnceInHarderHistories) {
 
 TEST_P(OwnTrackerLaw, GivesEachEventOnceWithEveryTunableStrained) {
   in_dimension([&]<int D>() {
-    const std::vector<NamedFrames<D>> histories = harder_histories<D>(algorithm());
+    const std::vector<NamedFrames<D>> histories = scripted_histories<D>(algorithm());
     std::uint64_t seed = 200;
     for (const Spec& strained : strained_specs(GetParam())) {
       for (const NamedFrames<D>& named : histories) {
@@ -78,7 +75,7 @@ TEST_P(OwnTrackerLaw, GivesEachEventOnceOfThousandsOfBoxes) {
 
 TEST_P(OwnTrackerLaw, DoesNotGrowWhileHistoriesRepeatThemselves) {
   in_dimension([&]<int D>() {
-    for (const NamedFrames<D>& named : harder_histories<D>(algorithm())) {
+    for (const NamedFrames<D>& named : scripted_histories<D>(algorithm())) {
       Tracker<D> tracker(algorithm(), spec());
       std::vector<BoxId> all(named.frames.front().boxes.size());
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = BoxId(i);

@@ -13,21 +13,6 @@
 namespace broadside::laws {
 namespace {
 
-/// The places that changed from one frame to the next, as a caller would list them: those of boxes that are
-/// new need not be, and no filters where the frame before had none or this one has none.
-template <int D, typename Real>
-std::vector<BoxId> changed_places(const WholeFrame<D, Real>& from, const WholeFrame<D, Real>& to) {
-  std::vector<BoxId> changed = to.listed;
-  const auto differ = [&](std::size_t i) {
-    return from.boxes[i] != to.boxes[i] ||
-           (!from.filters.empty() && !to.filters.empty() && from.filters[i] != to.filters[i]);
-  };
-  for (std::size_t i = 0; i < std::min(from.boxes.size(), to.boxes.size()); ++i) {
-    if (differ(i)) changed.push_back(BoxId(i));
-  }
-  return changed;
-}
-
 std::vector<Pair> symmetric_difference(const std::vector<Pair>& a, const std::vector<Pair>& b) {
   std::vector<Pair> pairs;
   std::ranges::set_symmetric_difference(a, b, std::back_inserter(pairs));
@@ -57,6 +42,21 @@ std::vector<Pair> listed_somehow(std::vector<Pair> pairs) {
 }
 
 }  // namespace
+
+template <int D, typename Real>
+std::vector<BoxId> changed_places(const WholeFrame<D, Real>& from, const WholeFrame<D, Real>& to) {
+  std::vector<BoxId> changed = to.listed;
+  std::erase_if(changed, [&](BoxId id) { return index(id) >= std::max(from.boxes.size(), to.boxes.size()); });
+  const auto differ = [&](std::size_t i) {
+    return from.boxes[i] != to.boxes[i] ||
+           (!from.filters.empty() && !to.filters.empty() && from.filters[i] != to.filters[i]);
+  };
+  for (std::size_t i = 0; i < std::min(from.boxes.size(), to.boxes.size()); ++i) {
+    if (differ(i)) changed.push_back(BoxId(i));
+  }
+  Rng(changed.size()).shuffle(changed);
+  return changed;
+}
 
 template <int D, typename Real>
 std::vector<Pair> pairs_of(const WholeFrame<D, Real>& frame) {
@@ -126,6 +126,8 @@ std::string divergence(Tracker<D, Real>& tracker, std::span<const WholeFrame<D, 
   return "";
 }
 
+template std::vector<BoxId> changed_places(const WholeFrame<2>&, const WholeFrame<2>&);
+template std::vector<BoxId> changed_places(const WholeFrame<3>&, const WholeFrame<3>&);
 template std::vector<Pair> pairs_of(const WholeFrame<2>&);
 template std::vector<Pair> pairs_of(const WholeFrame<3>&);
 template std::vector<Pair> pairs_of(const WholeFrame<2, double>&);

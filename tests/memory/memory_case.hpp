@@ -40,23 +40,26 @@ std::vector<Spec> specs_of(const MemoryCase& memory_case);
 /// in every frame.
 std::vector<Spec> threaded_specs_of(const MemoryCase& memory_case);
 
-/// Boxes on a lattice, many of which overlap, touch or coincide; a few absent, a few large.
+/// A box on a lattice on which, of `count` boxes, many overlap, touch or coincide; a few are large.
 template <int D, typename Real>
-std::vector<Box<D, Real>> lattice_boxes(std::size_t count, Rng& rng) {
+Box<D, Real> lattice_box(std::size_t count, Choices& choices) {
   int side = 4;
   for (std::size_t room = 1; room < count; room *= D == 2 ? 4 : 8) side *= 2;
-  std::vector<Box<D, Real>> boxes(count);
-  for (Box<D, Real>& box : boxes) {
-    if (rng.one_in(12)) {
-      box = absent_box<D, Real>();
-      continue;
-    }
-    const int most = rng.one_in(20) ? side / 2 : 3;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(rng.whole(0, side)) / 2;
-      box.max[axis] = box.min[axis] + static_cast<Real>(rng.whole(0, most)) / 2;
-    }
+  const int most = choices.one_in(20) ? side / 2 : 3;
+  Box<D, Real> box;
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = static_cast<Real>(choices.whole(0, side)) / 2;
+    box.max[axis] = box.min[axis] + static_cast<Real>(choices.whole(0, most)) / 2;
   }
+  return box;
+}
+
+/// Such boxes, a few absent.
+template <int D, typename Real>
+std::vector<Box<D, Real>> lattice_boxes(std::size_t count, Choices& choices) {
+  std::vector<Box<D, Real>> boxes(count);
+  for (Box<D, Real>& box : boxes)
+    box = choices.one_in(12) ? absent_box<D, Real>() : lattice_box<D, Real>(count, choices);
   return boxes;
 }
 

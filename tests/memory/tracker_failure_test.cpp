@@ -12,75 +12,26 @@
 
 #include <gtest/gtest.h>
 
+#include "drawn_frames.hpp"
 #include "injection.hpp"
 #include "memory_case.hpp"
 #include "tests/support/executors.hpp"
-#include "whole_frames.hpp"
 
 namespace broadside::laws {
 namespace {
 
-/// Few filters, so that many accept each other and many do not.
-Filter any_filter(Rng& rng) {
-  if (rng.one_in(3)) return {};
-  return {.category = rng.one_in(2) ? 1U : 2U,
-          .mask = rng.one_in(2) ? 1U : 3U,
-          .group = rng.one_in(4) ? rng.whole(-1, 1) : 0,
-          .is_static = rng.one_in(6)};
-}
-
-/// Frames in which boxes come, move and go, filters and ignored pairs change. Some come twice: as one that is
-/// handed in again because it has failed.
+/// Frames of up to `max_boxes` boxes. Where many boxes move by little, trackers enlarge them.
 template <int D, typename Real>
 std::vector<WholeFrame<D, Real>> random_frames(std::size_t count, std::size_t max_boxes, Rng& rng) {
-  std::vector<WholeFrame<D, Real>> frames;
-  WholeFrame<D, Real> frame;
-  // Where many boxes move by little, trackers enlarge them.
   const bool trembles = max_boxes > 600 && rng.one_in(2);
-  frame.boxes = lattice_boxes<D, Real>(trembles ? max_boxes : rng.below(max_boxes + 1), rng);
-  std::vector<Filter> filters(max_boxes);
-  std::vector<Pair> ignored;
-  bool has_filters = rng.one_in(3);
-  bool has_ignored = rng.one_in(2);
-  while (frames.size() < count) {
-    if (rng.one_in(trembles ? 20 : 4)) frame.boxes.resize(rng.below(max_boxes + 1), absent_box<D, Real>());
-    std::vector<Box<D, Real>> others = lattice_boxes<D, Real>(frame.boxes.size(), rng);
-    const std::size_t part = trembles ? 20 : rng.one_in(3) ? 1 : rng.one_in(2) ? 4 : 20;
-    if (trembles) {
-      const Real by = frames.size() % 2 == 0 ? 0x1p-7F : -0x1p-7F;
-      for (Box<D, Real>& box : frame.boxes) {
-        if (!is_present(box) || rng.one_in(8)) continue;
-        box.min[0] += by;
-        box.max[0] += by;
-      }
-    }
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      if (rng.one_in(part)) frame.boxes[i] = others[i];
-    }
-    if (rng.one_in(8)) has_filters = !has_filters;
-    if (rng.one_in(8)) has_ignored = !has_ignored;
-    for (std::size_t i = rng.below(4); i > 0; --i) filters[rng.below(max_boxes)] = any_filter(rng);
-    for (std::size_t i = rng.below(6); i > 0; --i) {
-      const std::size_t near = std::min<std::size_t>(max_boxes, 12);
-      const auto a = BoxId(rng.below(near));
-      const auto b = BoxId(rng.below(near));
-      const Pair pair{std::min(a, b), std::max(a, b)};
-      if (a == b) continue;
-      const auto at = std::ranges::lower_bound(ignored, pair);
-      if (at != ignored.end() && *at == pair)
-        ignored.erase(at);
-      else
-        ignored.insert(at, pair);
-    }
-    frame.filters.clear();
-    if (has_filters)
-      frame.filters.assign(filters.begin(), filters.begin() + std::ptrdiff_t(frame.boxes.size()));
-    frame.ignored.reset();
-    if (has_ignored) frame.ignored = ignored;
-    frames.push_back(frame);
-    if (rng.one_in(3)) frames.push_back(frame);
-  }
-  return frames;
+  return draw_frames<D, Real>(rng, {.frames = count,
+                                    .boxes = trembles ? max_boxes : (max_boxes + 1) / 2,
+                                    .changes = trembles ? max_boxes / 20 : max_boxes,
+                                    .resize_one_in = std::size_t{trembles ? 20U : 4U},
+                                    .sweep_one_in = std::size_t{trembles ? 0U : 3U},
+                                    .coordinates = Coordinates::halves,
+                                    .trembles = trembles,
+                                    .has_filters = true});
 }
 
 /// What the tracker tells wrongly of the frames; empty if nothing.

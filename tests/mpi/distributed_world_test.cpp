@@ -2,9 +2,9 @@
 // as they are, whichever ranks own them and wherever the cuts are.
 #include "broadside/distributed_world.hpp"
 
+#include <iterator>
 #include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -12,10 +12,10 @@
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
-#include "broadside/find_pairs.hpp"
 
 #include "tests/mpi/ranks.hpp"
 #include "tests/support/model.hpp"
+#include "tests/support/world_model.hpp"
 
 namespace broadside {
 namespace {
@@ -36,24 +36,24 @@ class History {
 
   Rng& rng() { return rng_; }
   DistributedWorld<D, Real>& world() { return world_; }
-  std::size_t size() const { return boxes_.size(); }
+  std::size_t size() const { return model_.members.size(); }
 
   void add(const Box<D, Real>& box) {
     // Large ids, in no order.
     const std::uint64_t id = rng_.bits();
     const int owner = any_rank();
-    boxes_[id] = box;
+    model_.add(id, box);
     owners_[id] = owner;
     if (owner == rank()) world_.add(id, box);
   }
 
   void move(std::uint64_t id, const Box<D, Real>& box) {
-    boxes_[id] = box;
+    model_.move(id, box);
     if (owners_[id] == rank()) world_.move(id, box);
   }
 
   void remove(std::uint64_t id) {
-    boxes_.erase(id);
+    model_.remove(id);
     if (owners_[id] == rank()) world_.remove(id);
   }
 
@@ -65,31 +65,28 @@ class History {
   }
 
   std::uint64_t any() {
-    auto found = boxes_.begin();
-    std::advance(found, static_cast<std::ptrdiff_t>(rng_.below(boxes_.size())));
-    return found->first;
+    return std::next(model_.members.begin(), static_cast<std::ptrdiff_t>(rng_.below(size())))->first;
   }
 
   std::vector<std::uint64_t> ids() const {
     std::vector<std::uint64_t> ids;
-    for (const auto& [id, box] : boxes_) ids.push_back(id);
+    for (const auto& [id, its] : model_.members) ids.push_back(id);
     return ids;
   }
 
   void expect_events() {
-    const std::set<LargePair> now = pairs_now();
+    model_.update();
     for (const auto& [id, owner] : next_owners_) owners_[id] = owner;
     next_owners_.clear();
     const DistributedEvents events = world_.update();
-    EXPECT_THAT(events.begun, ElementsAreArray(own_of_one_only(now, pairs_)));
-    EXPECT_THAT(events.ended, ElementsAreArray(own_of_one_only(pairs_, now)));
-    pairs_ = now;
+    EXPECT_THAT(events.begun, ElementsAreArray(own(model_.begun)));
+    EXPECT_THAT(events.ended, ElementsAreArray(own(model_.ended)));
     std::size_t owned = 0;
-    for (const auto& [id, box] : boxes_) {
+    for (const auto& [id, its] : model_.members) {
       owned += std::size_t{owners_[id] == rank()};
       ASSERT_EQ(world_.contains(id), owners_[id] == rank());
       if (owners_[id] == rank()) {
-        ASSERT_EQ(world_.box(id), box);
+        ASSERT_EQ(world_.box(id), its.box);
       }
     }
     EXPECT_EQ(world_.size(), owned);
@@ -98,29 +95,16 @@ class History {
  private:
   int any_rank() { return static_cast<int>(rng_.below(static_cast<std::size_t>(ranks()))); }
 
-  std::set<LargePair> pairs_now() const {
-    std::vector<Box<D, Real>> boxes;
-    for (const auto& [id, box] : boxes_) boxes.push_back(box);
-    const std::vector<std::uint64_t> numbers = ids();
-    std::set<LargePair> pairs;
-    for (const Pair pair : find_pairs(boxes))
-      pairs.insert({numbers[index(pair.first)], numbers[index(pair.second)]});
+  std::vector<LargePair> own(std::vector<LargePair> pairs) {
+    std::erase_if(pairs, [this](const LargePair& pair) { return owners_[pair.first] != rank(); });
     return pairs;
-  }
-
-  std::vector<LargePair> own_of_one_only(const std::set<LargePair>& one, const std::set<LargePair>& other) {
-    std::vector<LargePair> own;
-    for (const LargePair pair : one)
-      if (!other.contains(pair) && owners_[pair.first] == rank()) own.push_back(pair);
-    return own;
   }
 
   Rng rng_;
   DistributedWorld<D, Real> world_;
-  std::map<std::uint64_t, Box<D, Real>> boxes_;
+  WorldModel<D, Real, LargePair> model_;
   std::map<std::uint64_t, int> owners_;
   std::map<std::uint64_t, int> next_owners_;
-  std::set<LargePair> pairs_;
 };
 
 template <int D, typename Real>

@@ -18,6 +18,7 @@
 #include "lab/formats/format.hpp"
 #include "lab/scenes/motion.hpp"
 #include "tests/support/files.hpp"
+#include "tests/support/message.hpp"
 #include "tests/support/tape.hpp"
 
 namespace broadside {
@@ -299,14 +300,14 @@ TEST(Recorder, RefusesWrongPairsAndGoesOn) {
     EXPECT_EQ(tape.end_frame(), empty_pairs_frame) << "a refused call changes nothing";
     return tape.recorder.error();
   };
-  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(2, 2); }),
-            "recorder: pair (2, 2) of a slot and itself; expected two different slots");
-  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.add_pair(7, 0); }),
-            "recorder: pair (7, 0) names slot 7, which is empty; expected a box");
-  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.ignore_pair(0, 7); }),
-            "recorder: pair (0, 7) names slot 7, which is empty; expected a box");
-  EXPECT_EQ(refused([](Recorder2& recorder) { return recorder.set_filter(7, 1, 1); }),
-            "recorder: filter of slot 7, which is empty; expected a box");
+  EXPECT_THAT(refused([](Recorder2& recorder) { return recorder.add_pair(2, 2); }),
+              names("pair (2, 2)", "different"));
+  EXPECT_THAT(refused([](Recorder2& recorder) { return recorder.add_pair(7, 0); }),
+              names("pair (7, 0)", "slot 7", "empty"));
+  EXPECT_THAT(refused([](Recorder2& recorder) { return recorder.ignore_pair(0, 7); }),
+              names("pair (0, 7)", "slot 7", "empty"));
+  EXPECT_THAT(refused([](Recorder2& recorder) { return recorder.set_filter(7, 1, 1); }),
+              names("filter", "slot 7", "empty"));
 }
 
 TEST(Recorder, LeavesOutAPairWhoseSlotIsEmptiedBeforeTheFrameEnds) {
@@ -316,8 +317,7 @@ TEST(Recorder, LeavesOutAPairWhoseSlotIsEmptiedBeforeTheFrameEnds) {
   const std::size_t before = tape.bytes.size();
   EXPECT_FALSE(tape.recorder.end_frame());
   EXPECT_EQ(tape.bytes.size() - before, empty_pairs_frame + removal + trace::pair_bytes);
-  EXPECT_EQ(tape.recorder.error(),
-            "recorder: pair (0, 1) names slot 1, which was emptied before the frame ended; expected a box");
+  EXPECT_THAT(tape.recorder.error(), names("pair (0, 1)", "slot 1"));
   EXPECT_EQ(tape.end_frame(), empty_pairs_frame);
 }
 

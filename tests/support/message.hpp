@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace broadside {
@@ -17,6 +18,12 @@ std::string message_of(Action action) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return "";
+}
+
+/// Matches a message that names each of these: the thing, the value found, what was expected.
+template <typename... Parts>
+auto names(const Parts&... parts) {
+  return testing::AllOf(testing::HasSubstr(parts)...);
 }
 
 }  // namespace broadside

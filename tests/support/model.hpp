@@ -1,4 +1,4 @@
-// The scalar model that kernels and structures are compared with: random boxes, and their overlaps by
+// The scalar model that kernels and structures are held to: boxes drawn at random, and what they overlap by
 // definition.
 #pragma once
 
@@ -20,8 +20,8 @@
 
 #include "core/moved_box.hpp"
 #include "tests/support/boxes.hpp"
+#include "tests/support/drawn_boxes.hpp"
 #include "tests/support/instruction_sets.hpp"
-#include "tests/support/rng.hpp"
 
 namespace broadside {
 
@@ -32,7 +32,7 @@ void in_each_dimension(Body body) {
   body.template operator()<3>();
 }
 
-/// The same on every instruction set that the processor supports.
+/// The same on every instruction set that the processor has.
 template <typename Body>
 void on_each_instruction_set(Body body) {
   for (const std::string& name : instruction_sets()) {
@@ -42,48 +42,6 @@ void on_each_instruction_set(Body body) {
     in_each_dimension(body);
     if (testing::Test::HasFailure()) return;
   }
-}
-
-/// How random boxes are generated: on a lattice, so that they touch and coincide.
-struct BoxKind {
-  int places = 60;  ///< minima are whole numbers below this one
-  int max_extent = 10;
-  std::size_t infinite_one_in = 40;  ///< fraction of infinite sides, one in this many; 0: none
-};
-
-template <int D>
-Box<D> random_box(Rng& rng, const BoxKind& kind = {}) {
-  const auto is_infinite = [&] { return kind.infinite_one_in != 0 && rng.one_in(kind.infinite_one_in); };
-  Box<D> box;
-  for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = static_cast<float>(rng.whole(0, kind.places - 1));
-    box.max[axis] = box.min[axis] + static_cast<float>(rng.whole(0, kind.max_extent));
-    if (is_infinite()) box.min[axis] = -infinity;
-    if (is_infinite()) box.max[axis] = infinity;
-  }
-  return box;
-}
-
-template <int D>
-std::vector<Box<D>> random_boxes(Rng& rng, std::size_t count, const BoxKind& kind = {}) {
-  std::vector<Box<D>> boxes(count);
-  for (Box<D>& box : boxes) box = random_box<D>(rng, kind);
-  return boxes;
-}
-
-/// Doubles that round to the box's floats, so that touching boxes may be apart in double precision.
-template <int D>
-Box<D, double> near_double(Rng& rng, const Box<D>& box) {
-  // Offsets by at most half the distance to the next float, and by more than a double's precision.
-  const auto near = [&rng](float value) {
-    return std::isinf(value) ? value : value + rng.whole(-1, 1) * 0x1p-40 * std::max(1.0F, std::abs(value));
-  };
-  Box<D, double> doubles;
-  for (int axis = 0; axis < D; ++axis) {
-    doubles.min[axis] = near(box.min[axis]);
-    doubles.max[axis] = std::max(doubles.min[axis], near(box.max[axis]));
-  }
-  return doubles;
 }
 
 inline Pair ordered(std::size_t a, std::size_t b) { return {BoxId(std::min(a, b)), BoxId(std::max(a, b))}; }
@@ -100,7 +58,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box<D, Real>>& boxes, std:
   return pairs;
 }
 
-/// The output of `search(sink)`, in its order.
+/// What `search(sink)` writes, as it comes.
 template <typename Search>
 std::vector<Pair> written_pairs(Search search) {
   std::vector<Pair> pairs;
@@ -110,7 +68,7 @@ std::vector<Pair> written_pairs(Search search) {
   return pairs;
 }
 
-/// The same, sorted.
+/// The same in order.
 template <typename Search>
 std::vector<Pair> sorted_pairs(Search search) {
   std::vector<Pair> pairs = written_pairs(search);
@@ -118,7 +76,7 @@ std::vector<Pair> sorted_pairs(Search search) {
   return pairs;
 }
 
-/// A changed box, in the form that the interface uses. A box that was or is absent is nan_box().
+/// A box that changes, as the interface makes it. A box that was or is absent is nan_box().
 template <int D>
 core::MovedBox<D> moved_box(std::size_t id, const Box<D>& before, const Box<D>& now,
                             bool filter_changed = false) {
@@ -136,7 +94,7 @@ core::MovedBox<D> moved_box(std::size_t id, const Box<D>& before, const Box<D>& 
   return moved;
 }
 
-/// Events of moved boxes.
+/// What moved boxes change.
 struct Changes {
   std::set<Pair> begun;
   std::set<Pair> ended;
@@ -144,7 +102,7 @@ struct Changes {
 
   friend bool operator==(const Changes&, const Changes&) = default;
 
-  /// Adds the events of one moved box with `others`, by id; `moves` marks the boxes that move.
+  /// Adds what one moved box changes with `others`, by id, where boxes that move are marked in `moves`.
   template <int D>
   void add(const core::MovedBox<D>& moved, std::span<const Box<D>> others,
            const std::vector<std::uint8_t>& moves) {
@@ -161,7 +119,7 @@ struct Changes {
   }
 };
 
-/// The output of `find(sinks)`.
+/// What `find(sinks)` writes.
 template <typename Find>
 Changes written_changes(const std::vector<std::uint8_t>& moves, Find find) {
   std::vector<Pair> begun;

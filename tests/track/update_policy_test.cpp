@@ -73,16 +73,16 @@ TEST(FollowPolicy, KeepsToTheStructureWhereOnlyItsTestsAreMany) {
   EXPECT_EQ(policy.current(), 0U);
 }
 
-TEST(FollowPolicy, ComparesFewBoxesAndKeepsToItForAQuarterMore) {
+TEST(FollowPolicy, ComparesFewBoxesAndKeepsToItForSomeMore) {
   FollowPolicy policy = started({{cheap}, comparing});
-  policy.follows(301, 10, false);
-  EXPECT_FALSE(policy.are_few());
-  policy.follows(300, 10, false);
-  EXPECT_TRUE(policy.are_few());
-  policy.follows(375, 10, false);
-  EXPECT_TRUE(policy.are_few());
-  policy.follows(376, 10, false);
-  EXPECT_FALSE(policy.are_few());
+  const auto are_few = [&policy](std::size_t count) {
+    policy.follows(count, 10, false);
+    return policy.are_few();
+  };
+  EXPECT_FALSE(are_few(comparing.max_boxes + 1));
+  EXPECT_TRUE(are_few(comparing.max_boxes));
+  EXPECT_TRUE(are_few(comparing.max_boxes + 1));
+  EXPECT_FALSE(are_few(2 * comparing.max_boxes));
   EXPECT_FALSE(policy.is_following());
 }
 

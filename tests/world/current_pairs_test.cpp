@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <random>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/world/random_pair.hpp"
+#include "tests/support/drawn_boxes.hpp"
 
 namespace broadside::world {
 namespace {
@@ -39,14 +38,14 @@ class CurrentPairsTest : public testing::Test {
 };
 
 TEST_F(CurrentPairsTest, AgreesWithAPlainSet) {
-  std::mt19937 random(3);
+  Rng random(3);
   for (int i = 0; i < 500; ++i) {
     std::set<Pair> toggled;
-    const std::uint32_t boxes = 2 + below(random, 98);
-    for (std::uint32_t count = below(random, i % 50 == 0 ? 3000 : 30); count > 0; --count)
+    const std::size_t boxes = 2 + random.below(98);
+    for (std::size_t count = random.below(i % 50 == 0 ? 3000 : 30); count > 0; --count)
       toggled.insert(random_pair(random, boxes));
     add(toggled);
-    if (below(random, 4) == 0) check();
+    if (random.below(4) == 0) check();
   }
   check();
 }
@@ -62,7 +61,7 @@ TEST_F(CurrentPairsTest, GivesAPairThatCameBackTheHandlesOfNow) {
 }
 
 TEST_F(CurrentPairsTest, TakesInALogThatHasGrownLong) {
-  std::mt19937 random(4);
+  Rng random(4);
   for (int i = 0; i < 300; ++i) {
     std::set<Pair> toggled;
     for (int j = 0; j < 50; ++j) toggled.insert(random_pair(random, 100));

@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "tests/world/random_pair.hpp"
+#include "tests/support/drawn_boxes.hpp"
 
 namespace broadside::world {
 namespace {
 
 TEST(PairGraph, AgreesWithAPlainSet) {
   constexpr std::uint32_t boxes = 40;
-  std::mt19937 random(2);
+  Rng random(2);
   PairGraph graph;
   std::set<Pair> expected;
   for (int i = 0; i < 20'000; ++i) {
@@ -34,7 +33,7 @@ TEST(PairGraph, AgreesWithAPlainSet) {
       expected.insert(pair);
     }
     if (i % 5000 == 4999) graph.shrink_to_fit();
-    const BoxId box{below(random, boxes)};
+    const auto box = BoxId(random.below(boxes));
     std::set<Pair> of_box;
     graph.for_each_of(box, [&](PairGraph::EdgeId its) { of_box.insert(graph.pairs()[its]); });
     std::set<Pair> expected_of_box;

@@ -2,12 +2,11 @@
 #include "world/slot_set.hpp"
 
 #include <cstdint>
-#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "tests/world/random_pair.hpp"
+#include "tests/support/drawn_boxes.hpp"
 
 namespace broadside::world {
 namespace {
@@ -31,12 +30,12 @@ TEST(SlotSet, KnowsItsLowest) {
 }
 
 TEST(SlotSet, AgreesWithAPlainSet) {
-  std::mt19937 random(1);
+  Rng random(1);
   SlotSet set;
   std::set<std::uint32_t> expected;
   set.reserve(5000);
   for (int i = 0; i < 20'000; ++i) {
-    const std::uint32_t slot = below(random, 5000);
+    const auto slot = static_cast<std::uint32_t>(random.below(5000));
     if (expected.contains(slot)) {
       set.erase(slot);
       expected.erase(slot);

@@ -16,84 +16,17 @@
 #include "broadside/world.hpp"
 
 #include "lab/measure/memory.hpp"
-#include "lab/scenes/random.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/trackers.hpp"
+#include "tests/support/world_history.hpp"
+#include "tests/world/handle_pairs.hpp"
 
 namespace broadside {
 namespace {
 
-using lab::Random;
 using testing::HasSubstr;
 using Bytes = std::vector<std::byte>;
-
-/// All that an update tells, and what holds after it.
-struct Told {
-  std::vector<HandlePair> begun;
-  std::vector<HandlePair> ended;
-  std::vector<HandlePair> pairs;
-  std::vector<HandlePair> persisting;
-
-  friend bool operator==(const Told&, const Told&) = default;
-};
-
-template <int D, typename Real>
-Told update(World<D, Real>& world) {
-  const Events events = world.update();
-  Told told{{events.begun.begin(), events.begun.end()}, {events.ended.begin(), events.ended.end()}, {}, {}};
-  told.pairs.assign(world.pairs().begin(), world.pairs().end());
-  told.persisting.assign(world.persisting().begin(), world.persisting().end());
-  return told;
-}
-
-/// A game of which the next move depends on the rng alone, and on the handles that it was given.
-template <int D, typename Real = float>
-struct Game {
-  Random rng{1};
-  std::vector<Handle> handles{};
-
-  Box<D, Real> any_box() {
-    Box<D, Real> box;
-    for (int axis = 0; axis < D; ++axis) {
-      box.min[axis] = static_cast<Real>(rng.below(20));
-      box.max[axis] = box.min[axis] + static_cast<Real>(rng.below(5));
-    }
-    return box;
-  }
-
-  Filter any_filter() {
-    Filter filter;
-    filter.category = static_cast<std::uint32_t>(1 + rng.below(3));
-    filter.mask = static_cast<std::uint32_t>(rng.below(8));
-    filter.group = static_cast<std::int32_t>(rng.below(5)) - 2;
-    filter.is_static = rng.chance(0.2);
-    return filter;
-  }
-
-  void step(World<D, Real>& world, bool with_filters) {
-    const std::size_t place = handles.empty() ? 0 : static_cast<std::size_t>(rng.below(handles.size()));
-    const double what = rng.fraction();
-    if (what < 0.3 || handles.size() < 2) {
-      handles.push_back(world.add(any_box(), {with_filters ? any_filter() : Filter{}, rng.below(3)}));
-    } else if (what < 0.7) {
-      world.move(handles[place], any_box());
-    } else if (what < 0.85) {
-      world.remove(handles[place]);
-      handles.erase(handles.begin() + static_cast<std::ptrdiff_t>(place));
-    } else if (with_filters && what < 0.9) {
-      world.set_filter(handles[place], any_filter());
-    } else if (with_filters && what < 0.97) {
-      const Handle other = handles[(place + 1) % handles.size()];
-      if (rng.chance(0.7))
-        world.ignore(handles[place], other);
-      else
-        world.unignore(handles[place], other);
-    } else if (with_filters) {
-      world.shift_origin({});
-    }
-  }
-};
 
 struct Way {
   std::string name;
@@ -131,43 +64,33 @@ std::vector<Way> ways() {
 }
 
 template <int D, typename Real = float>
-World<D, Real> world_of(const Way& way) {
-  World<D, Real> world(way.options);
-  if (way.with_predicate)
-    world.set_predicate([](Handle a, Handle b) { return (a.slot + b.slot + a.generation) % 3 != 0; });
-  return world;
+WorldCourse<D, Real> course_of(const Way& way) {
+  WorldCourse<D, Real> course;
+  course.options = way.options;
+  course.box = [](Choices& choices) { return random_box<D, Real>(choices, {20, 4, 0}); };
+  course.has_filters = way.with_filters;
+  course.has_predicate = way.with_predicate;
+  return course;
 }
 
 template <int D, typename Real = float>
 void check_the_future(const Way& way, std::uint64_t seed) {
-  World<D, Real> world = world_of<D, Real>(way);
-  Game<D, Real> game{Random(seed), {}};
+  SCOPED_TRACE(way.name);
+  Rng rng(seed);
+  WorldHistory<D, Real> history(rng, course_of<D, Real>(way));
   for (int frame = 0; frame < 12; ++frame) {
-    for (std::uint64_t i = game.rng.below(12); i > 0; --i) game.step(world, way.with_filters);
-    const Bytes bytes = world.snapshot();  // between changes and the update
-    World<D, Real> other = world_of<D, Real>(way);
-    other.restore(bytes);
-    ASSERT_EQ(other.snapshot(), bytes) << way.name << ", frame " << frame;
-    Game<D, Real> same = game;
+    for (std::size_t i = rng.below(12); i > 0; --i) history.change();
+    Rng same_rng = rng;
+    WorldHistory<D, Real> same = history.twin(same_rng);  // between changes and the update
     for (int then = 0; then < 3; ++then) {
-      ASSERT_EQ(update(other), update(world)) << way.name << ", frame " << frame;
-      for (int i = 0; i < 5; ++i) {
-        game.step(world, way.with_filters);
-        same.step(other, way.with_filters);
+      for (WorldHistory<D, Real>* const one : {&history, &same}) {
+        one->update();
+        for (int i = 0; i < 5; ++i) one->change();
+        one->check();
       }
-      ASSERT_EQ(same.handles, game.handles) << way.name << ", frame " << frame;
     }
-    ASSERT_EQ(other.snapshot(), world.snapshot()) << way.name << ", frame " << frame;
-    if (frame % 3 == 2) {  // the same world goes back
-      world.restore(bytes);
-      ASSERT_EQ(world.snapshot(), bytes) << way.name << ", frame " << frame;
-      world.update();
-      other.restore(bytes);
-      other.update();
-      ASSERT_EQ(other.snapshot(), world.snapshot());
-      world.restore(bytes);
-      game = same = Game<D, Real>{Random(seed + 100), {}};
-    }
+    ASSERT_EQ(same.world().snapshot(), history.world().snapshot()) << "frame " << frame;
+    history.go_back();
   }
 }
 
@@ -317,7 +240,10 @@ TEST(Snapshot, CanBeTakenAfterAnUpdateThatFailed) {
   other.set_predicate(predicate);
   other.restore(world.snapshot());
   fails = false;
-  EXPECT_EQ(update(other), update(world));
+  const Events events = world.update();
+  const Events same = other.update();
+  EXPECT_EQ(listed(same.begun), listed(events.begun));
+  EXPECT_EQ(listed(same.ended), listed(events.ended));
   EXPECT_EQ(world.pairs().size(), 1u);
 }
 
@@ -346,17 +272,16 @@ TEST(Snapshot, CanBeTakenAfterSeveralUpdatesThatFailed) {
 
 /// A world with a bit of everything, in the middle of a frame.
 World2 full_world() {
-  WorldOptions options;
-  options.algorithm = "brute_force";
-  options.margin = 1;
-  World2 world(options);
-  Game<2> game{Random(7), {}};
-  for (int i = 0; i < 40; ++i) game.step(world, true);
-  world.update();
-  for (int i = 0; i < 20; ++i) game.step(world, true);
-  world.update();
-  for (int i = 0; i < 10; ++i) game.step(world, true);
-  return world;
+  Way way{"", {}, true, false};
+  way.options.algorithm = "brute_force";
+  way.options.margin = 1;
+  Rng rng(7);
+  WorldHistory<2> history(rng, course_of<2>(way));
+  for (const int changes : {40, 20, 10}) {
+    history.update();
+    for (int i = 0; i < changes; ++i) history.change();
+  }
+  return std::move(history.world());
 }
 
 TEST(Snapshot, IsRefusedWithAnyBitWrong) {
@@ -459,9 +384,9 @@ TEST(Snapshot, LeavesTheWorldAsItWasWhenItsPairsAreNotThoseOfItsBoxes) {
   EXPECT_THAT(message_of<InvalidSnapshot>([&] { world.restore(bytes); }), HasSubstr("contradicts itself"));
   EXPECT_EQ(world.snapshot(), before);
   world.move(handle, at(8));
-  EXPECT_TRUE(update(world).ended.empty());
+  EXPECT_TRUE(world.update().ended.empty());
   world.move(handle, at(80));
-  EXPECT_EQ(update(world).ended.size(), 1u);
+  EXPECT_EQ(world.update().ended.size(), 1u);
 }
 
 TEST(Snapshot, HasTheBytesThatTheDocumentationSays) {

@@ -165,14 +165,9 @@ TEST_F(WorldTest, KeepsARemovedBoxReadableUntilTheUpdateAfterItsReport) {
 TEST_F(WorldTest, RefusesToMoveOrRemoveABoxThatWasRemoved) {
   const Handle a = world_.add(at(3));
   world_.remove(a);
-  EXPECT_EQ(
-      message_of<InvalidHandle>([&] { world_.move(a, at(1)); }),
-      "cannot move a box: handle (slot 0, generation 0) names a box that was removed; expected a box in the "
-      "world");
-  EXPECT_EQ(
-      message_of<InvalidHandle>([&] { world_.remove(a); }),
-      "cannot remove a box: handle (slot 0, generation 0) names a box that was removed; expected a box in "
-      "the world");
+  EXPECT_THAT(message_of<InvalidHandle>([&] { world_.move(a, at(1)); }),
+              names("slot 0, generation 0", "removed"));
+  EXPECT_THAT(message_of<InvalidHandle>([&] { world_.remove(a); }), names("slot 0, generation 0", "removed"));
   EXPECT_EQ(world_.box(a), at(3)) << "what was refused has changed nothing";
 }
 
@@ -234,8 +229,7 @@ TEST_F(WorldTest, SaysWhyABoxIsRefusedAndForWhichSlot) {
   EXPECT_TRUE(message_of<InvalidInput>([&] {
                 world_.move(b, {{0, 2}, {1, 1}});
               }).starts_with("the box for slot 1 has min (0, 2) and max (1, 1); expected numbers"));
-  EXPECT_EQ(message_of<InvalidInput>([&] { world_.move(a, absent_box<2>()); }),
-            "the box for slot 0 is absent; expected a box");
+  EXPECT_THAT(message_of<InvalidInput>([&] { world_.move(a, absent_box<2>()); }), names("slot 0", "absent"));
 }
 
 TEST_F(WorldTest, NamesABoxAloneByIndex0AndOneOfAnArrayByItsPlace) {

@@ -9,6 +9,7 @@
 #include "lab/report/aligned_columns.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/table.hpp"
+#include "tests/support/message.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -80,7 +81,7 @@ TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
   const auto lines = lines_of(table_of(still_case(
       {skipped("slow"), timed("second", {8, 9, 10}), failed("wrong"), timed("first", {4, 4.5, 5})})));
   ASSERT_EQ(lines.size(), 6u);
-  EXPECT_EQ(lines[0], "uniform, 2D, 10,000 boxes, 1,234 pairs, verified by definition");
+  EXPECT_THAT(lines[0], names("uniform", "2D", "10,000 boxes", "1,234 pairs", "definition"));
   EXPECT_THAT(lines[2], StartsWith("  first "));
   EXPECT_THAT(lines[3], StartsWith("  second "));
   EXPECT_THAT(lines[4], StartsWith("  wrong "));
@@ -116,7 +117,7 @@ TEST(Table, EndsWithOurLeadOverTheFastestPeer) {
   result.measurements[2].kind = AlgorithmKind::peer;
   result.measurements[3].kind = AlgorithmKind::peer;
   add_ratios(result);
-  EXPECT_EQ(lines_of(table_of(result)).back(), "  ours is 4.0 times as fast as the fastest peer, another");
+  EXPECT_THAT(lines_of(table_of(result)).back(), names("ours", "4.0 times", "another"));
 }
 
 TEST(CaseLine, NamesOurBestAutoTheFastestPeerTheLeadAndTheCheck) {
@@ -141,17 +142,14 @@ TEST(Summary, MeansOurLeadsOverTheFastestPeers) {
     if (result.measurements.size() > 1) result.measurements[1].kind = AlgorithmKind::peer;
     add_ratios(result);
   }
-  EXPECT_THAT(
-      summary_of(comparison),
-      HasSubstr("the best of ours is 2 (2 to 2) times as fast as the fastest peer, geometric mean of 2 "
-                "cases; at least 1 times (uniform, 2D, 10,000 boxes)\n"));
+  EXPECT_THAT(summary_of(comparison), names("2 (2 to 2) times", "fastest peer", "2 cases",
+                                            "at least 1 times (uniform, 2D, 10,000 boxes)"));
 }
 
 TEST(Table, LabelsAnEstimateAndKeepsTheColumnsAligned) {
   const auto lines = lines_of(table_of(still_case({timed("first", {4.5}), skipped("slow")})));
   EXPECT_THAT(lines[3], HasSubstr(" ~41,000 est.  ~9,100 "));
-  EXPECT_THAT(lines[3],
-              HasSubstr("  skipped: estimated 41.0 s from 20,000 boxes, scaled by n^2.00; budget 10 s"));
+  EXPECT_THAT(lines[3], names("skipped", "41.0 s", "20,000 boxes", "n^2.00", "budget 10 s"));
   EXPECT_EQ(lines[2].find("4.50") + 4, lines[3].find("41,000") + 6);
   EXPECT_EQ(lines[2].find("1.0 ") + 3, lines[3].find("9,100") + 5);
   EXPECT_EQ(lines[2].find("verified"), lines[3].find("skipped"));
@@ -183,8 +181,7 @@ TEST(Table, TellsOfMotionWhatAMoverCostsAndWhatAPeerTakes) {
 TEST(Table, SaysOnceHowMuchAgreesWhereACaseIsCrossChecked) {
   CaseResult result = still_case({timed("grid", {1}), timed("quadtree", {2}), failed("wrong")});
   for (Measurement& measurement : result.measurements) measurement.evidence = Evidence{false, 5, 1};
-  EXPECT_THAT(lines_of(table_of(result))[0],
-              HasSubstr("verified cross-checked by 5 structures of 1 library"));
+  EXPECT_THAT(lines_of(table_of(result))[0], names("cross-checked", "5 structures of 1 library"));
   result.measurements[2].evidence = Evidence{true};
   EXPECT_THAT(verdict_of(result), "1 FAILED");
   result.measurements.pop_back();
@@ -209,12 +206,8 @@ TEST(Summary, NamesEveryFailureAndWhatWasSkipped) {
   rain.scene = "box2d_rain";
   comparison.not_compared.push_back({rain, "unknown scene"});
   const std::string summary = summary_of(comparison);
-  EXPECT_THAT(summary, HasSubstr("not compared: box2d_rain: unknown scene\n"));
-  EXPECT_THAT(summary, HasSubstr("2 measurements, 1 FAILED\nleft out: 1 measurement (1 over the budget)\n"));
-  EXPECT_THAT(
-      summary,
-      HasSubstr(
-          "FAILED: uniform, 2D, 10,000 boxes: mine: frame 0, search of seed 1: pair (3, 7) is missing"));
+  EXPECT_THAT(summary, names("not compared: box2d_rain", "2 measurements, 1 FAILED", "1 over the budget",
+                             "FAILED: uniform, 2D, 10,000 boxes", "seed 1", "pair (3, 7) is missing"));
 }
 
 using Json = nlohmann::ordered_json;
@@ -229,9 +222,8 @@ TEST(Summary, SaysHowFarAutoIsFromTheBestOfOurOthers) {
   Comparison comparison;
   comparison.cases = {still_case({timed("auto", {2}), timed("grid", {2}), timed("bvh", {4})}),
                       still_case({timed("auto", {3}), timed("grid", {2})})};
-  EXPECT_THAT(summary_of(comparison), HasSubstr("auto takes 1.22 (1.22 to 1.22) times as long as the best of "
-                                                "our others, geometric mean of 2 cases; "
-                                                "at most 1.5 times"));
+  EXPECT_THAT(summary_of(comparison),
+              names("auto", "1.22 (1.22 to 1.22) times", "2 cases", "at most 1.5 times"));
 }
 
 TEST(Summary, SaysThatTheMachineWasBusy) {
@@ -239,7 +231,7 @@ TEST(Summary, SaysThatTheMachineWasBusy) {
   comparison.cases = {still_case({timed("grid", {2})})};
   EXPECT_THAT(summary_of(comparison), Not(HasSubstr("busy")));
   comparison.processor_share = 0.5;
-  EXPECT_THAT(summary_of(comparison), HasSubstr("busy: others had the processor for 50 % of the time"));
+  EXPECT_THAT(summary_of(comparison), names("busy", "50 %"));
 }
 
 TEST(JsonResults, HaveEveryFieldOfTheSchemaInItsOrder) {

@@ -1,5 +1,7 @@
-// The kernels on every instruction set there is: the pairs of their definition, in its order, and its count
-// of tests.
+// The kernels of the sweep on every instruction set there is: the pairs of their definition, in its order,
+// and its count of tests.
+#include "kernels/sweep.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -16,7 +18,6 @@
 #include "broadside/executor.hpp"
 #include "broadside/sinks.hpp"
 
-#include "kernels/sweep.hpp"
 #include "tests/support/message.hpp"
 #include "tests/support/model.hpp"
 

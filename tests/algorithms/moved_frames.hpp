@@ -1,4 +1,4 @@
-// Frames of boxes that come, move and go, for tests of what followers keep.
+// What moves from one frame to the next, for tests of followers and of what they keep.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@ namespace broadside::algorithm {
 /// Boxes by id, those that are not there being absent, and frames in which some of them change. What comes
 /// later may be twice as long as what was there first.
 template <int D>
-class DrawnFrames {
+class MovedFrames {
  public:
-  DrawnFrames(std::size_t count, const BoxKind& kind) : kind_(kind), boxes(count, absent_box<D>()) {
+  MovedFrames(std::size_t count, const BoxKind& kind) : kind_(kind), boxes(count, absent_box<D>()) {
     const BoxKind shorter{kind.places, kind.max_extent / 2, kind.infinite_one_in};
     for (Box<D>& box : boxes) {
       if (!rng.one_in(4)) box = random_box<D>(rng, shorter);
@@ -41,11 +41,16 @@ class DrawnFrames {
     }
   }
 
-  /// Brings the list up to the frame.
-  void apply() {
+  /// The boxes after the frame.
+  std::vector<Box<D>> now() const {
+    std::vector<Box<D>> now = boxes;
     for (const core::MovedBox<D>& box : moved)
-      boxes[index(box.id)] = box.is_present ? box.now : absent_box<D>();
+      now[index(box.id)] = box.is_present ? box.now : absent_box<D>();
+    return now;
   }
+
+  /// Brings the list up to the frame.
+  void apply() { boxes = now(); }
 
   /// The boxes with nan_box() for those that are absent, or that move and are left out.
   std::vector<Box<D>> others(bool with_moved) const {

@@ -1,12 +1,14 @@
-// Histories made against what trackers keep from frame to frame.
-#include "harder_histories.hpp"
+// Difficult histories: random ones, and ones that attack the state which trackers keep between frames.
+#include "tracker_histories.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 
+#include "drawn_frames.hpp"
 #include "hard_inputs.hpp"
 #include "law_case.hpp"
 #include "tests/support/rng.hpp"
@@ -49,13 +51,41 @@ class Histories {
 
   /// Each frame's boxes are made by `next(frame, boxes)` from those of the frame before.
   template <typename Next>
-  void add(const char* name, Boxes<D> boxes, int frames, Next next) {
+  void add(const std::string& name, Boxes<D> boxes, int frames, Next next) {
     std::vector<WholeFrame<D>> all = {frame_of<D>(boxes)};
     for (int frame = 1; frame <= frames; ++frame) {
       next(frame, boxes);
       all.push_back(frame_of<D>(boxes));
     }
     named_.push_back({name, std::move(all)});
+  }
+
+  void add_drawn(const std::string& kind, Coordinates coordinates, std::uint64_t seeds) {
+    const std::size_t frames = reduced(60, 1);
+    const auto add_course = [&](const std::string& name, FrameCourse course) {
+      course.coordinates = coordinates;
+      for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        Rng rng(seed);
+        named_.push_back(
+            {kind + ", " + name + ", seed " + std::to_string(seed), draw_frames<D>(rng, course)});
+      }
+    };
+    add_course("few changes", {.frames = frames, .changes = 8, .rest_one_in = 5});
+    add_course("many changes", {.frames = frames, .changes = 150, .rest_one_in = 20});
+    add_course("growing and shrinking",
+               {.frames = 2 * frames, .boxes = 40, .changes = 20, .resize_one_in = 3, .rest_one_in = 10});
+    add_course("few boxes",
+               {.frames = 4 * frames, .boxes = 3, .changes = 3, .resize_one_in = 4, .rest_one_in = 10});
+    add_course("many in one way", {.frames = frames, .changes = 8, .sweep_one_in = 2});
+    Rng rng(11);
+    const Boxes<D> boxes =
+        draw_frames<D>(rng, {.frames = 1, .boxes = 100, .coordinates = coordinates})[0].boxes;
+    add(kind + ", all going and coming", boxes, 6, [&](int frame, Boxes<D>& now) {
+      now = frame % 2 == 0 ? boxes : Boxes<D>(boxes.size(), absent_box<D>());
+    });
+    add(kind + ", one more in each frame", {}, 42, [&](int frame, Boxes<D>& now) {
+      now.assign(boxes.begin(), boxes.begin() + (frame == 41 ? 0 : frame == 42 ? 1 : frame));
+    });
   }
 
   void add_moderate() {
@@ -103,6 +133,13 @@ class Histories {
     });
     add("all swap places", uniform_, 20,
         [&](int, Boxes<D>& boxes) { std::rotate(boxes.begin(), boxes.begin() + 1, boxes.end()); });
+    // Which brought down `auto` while it kept pairs of an older frame.
+    add("few after a first frame that failed", {uniform_.begin(), uniform_.begin() + 48}, 5,
+        [&](int frame, Boxes<D>& boxes) {
+          for (std::size_t i = 0; i < boxes.size() && frame < 3; i += frame == 1 ? 1 : 6) boxes[i] = any(rng);
+          if (frame >= 4) boxes = {uniform_.begin(), uniform_.begin() + (frame == 4 ? 10 : 16)};
+        });
+    named_.back().frames[0].begun_room = 0;
     add("half of them go, and come back", uniform_, 12, [&](int frame, Boxes<D>& boxes) {
       for (std::size_t i = 0; i < count_; i += 2) boxes[i] = frame % 2 == 0 ? uniform_[i] : absent_box<D>();
     });
@@ -198,14 +235,9 @@ class Histories {
   std::vector<NamedFrames<D>> named_;
 };
 
-}  // namespace
-
+/// The histories, without the boxes that are beyond the algorithm's limits.
 template <int D>
-std::vector<NamedFrames<D>> harder_histories(const Algorithm& algorithm) {
-  Histories<D> histories(reduced(240, 1) + 60);
-  histories.add_moderate();
-  if (algorithm.kind != AlgorithmKind::peer) histories.add_extreme();
-  std::vector<NamedFrames<D>> named = histories.take();
+std::vector<NamedFrames<D>> within_limits(std::vector<NamedFrames<D>> named, const Algorithm& algorithm) {
   for (NamedFrames<D>& history : named) {
     for (WholeFrame<D>& frame : history.frames) {
       for (Box<D>& box : frame.boxes) {
@@ -214,6 +246,26 @@ std::vector<NamedFrames<D>> harder_histories(const Algorithm& algorithm) {
     }
   }
   return named;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<NamedFrames<D>> drawn_histories(const Algorithm& algorithm) {
+  const std::uint64_t seeds = algorithm.kind == AlgorithmKind::peer ? 1 : 3;
+  Histories<D> histories(60);
+  histories.add_drawn("whole numbers", Coordinates::whole, seeds);
+  histories.add_drawn("real numbers", Coordinates::real, seeds);
+  if (takes_any_floats(algorithm)) histories.add_drawn("any floats", Coordinates::any, seeds);
+  return within_limits(histories.take(), algorithm);
+}
+
+template <int D>
+std::vector<NamedFrames<D>> scripted_histories(const Algorithm& algorithm) {
+  Histories<D> histories(reduced(240, 1) + 60);
+  histories.add_moderate();
+  if (algorithm.kind != AlgorithmKind::peer) histories.add_extreme();
+  return within_limits(histories.take(), algorithm);
 }
 
 template <int D>
@@ -256,8 +308,10 @@ std::vector<WholeFrame<D>> large_history(std::size_t count) {
   return frames;
 }
 
-template std::vector<NamedFrames<2>> harder_histories(const Algorithm&);
-template std::vector<NamedFrames<3>> harder_histories(const Algorithm&);
+template std::vector<NamedFrames<2>> drawn_histories(const Algorithm&);
+template std::vector<NamedFrames<3>> drawn_histories(const Algorithm&);
+template std::vector<NamedFrames<2>> scripted_histories(const Algorithm&);
+template std::vector<NamedFrames<3>> scripted_histories(const Algorithm&);
 template std::vector<WholeFrame<2>> large_history(std::size_t);
 template std::vector<WholeFrame<3>> large_history(std::size_t);
 
