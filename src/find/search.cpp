@@ -209,10 +209,10 @@ std::optional<Statistics> Search<D, Real>::search_present(std::span<const Box<D,
 template <int D, typename Real>
 std::optional<Statistics> Search<D, Real>::search_in_groups(const SearchInput<D>& input,
                                                             const BoxFilters& filters, PairSink& pairs) {
-  is_filtered_ = !filters.empty();
-  if (!is_filtered_) return searcher_->search(input, pairs);
-  if (!groups_) groups_ = std::make_unique<GroupedSearch<D>>();
-  return groups_->search(*searcher_, input, filters, pairs);
+  const bool is_filtered = !filters.empty();
+  if (is_filtered && !groups_) groups_ = std::make_unique<GroupedSearch<D>>();
+  is_filtered_ = is_filtered;  // only now: explanation() relies on groups_
+  return is_filtered ? groups_->search(*searcher_, input, filters, pairs) : searcher_->search(input, pairs);
 }
 
 /// Appends the present boxes to present_ and their places to ids_.
