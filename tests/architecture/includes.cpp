@@ -24,9 +24,9 @@ const std::vector<Rule>& rules() {
   const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
                            R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
-  // A name that a user may have meant is an inline function of the library's.
+  // Two of the library's inline functions, which need nothing else of it.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
-                          R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
+                          R"(|"src/core/(bit_cast|suggestion)\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {
@@ -51,7 +51,8 @@ const std::vector<Rule>& rules() {
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
-      {"tools/paper/listings/", library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
+      {"tools/paper/listings/",
+       library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
       {"tools/paper/plain/", library + R"(|"paper/plain/plain\.hpp")"},
       {"integrations/fcl/", library + "|<fcl/.*>"},
       {"distributed/out_of_core/",
@@ -98,7 +99,8 @@ const std::vector<Rule>& rules() {
   return list;
 }
 
-/// Whether `include` names a header in the file's own folder, by its path from `src/`, `tools/` or the project's root.
+/// Whether `include` names a header in the file's own folder, by its path from `src/`, `tools/` or the
+/// project's root.
 bool is_in_own_folder(const std::filesystem::path& path, std::string_view include) {
   const std::filesystem::path header(include.substr(1, include.size() - 2));
   const std::string folder = path.parent_path();

@@ -20,7 +20,8 @@ double max_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22
 double max_auto_references(double boxes) { return 16 * boxes; }
 
 double count_present(std::span<const Box2> boxes) {
-  return static_cast<double>(std::ranges::count_if(boxes, [](const Box2& box) { return is_present(box); }));
+  return static_cast<double>(
+      std::count_if(boxes.begin(), boxes.end(), [](const Box2& box) { return is_present(box); }));
 }
 
 /// Twice the mean finite extent; where the boxes have none, what gives each a cell of its own.
@@ -120,8 +121,7 @@ bool GridListing::may_hold(double references, std::size_t boxes) const {
 bool GridListing::is_too_large(std::span<const Box2> boxes) const {
   if (!is_limited_) return false;
   const double count = count_present(boxes);
-  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? max_auto_cells(count) : max_cells(count)))
-    return true;
+  if (x_grids_ * y_grids_ > std::max(1.0, cell_ == 0 ? max_auto_cells(count) : max_cells(count))) return true;
   double sum = 0;
   for (const Box2& e : boxes) {
     if (is_present(e)) sum += static_cast<double>(references(cells_of(e)));
