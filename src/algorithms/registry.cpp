@@ -33,7 +33,7 @@ std::string_view name(AlgorithmKind kind) noexcept {
 }
 
 bool has_threads(const Algorithm& algorithm) {
-  return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
+  return std::any_of(algorithm.tunables.begin(), algorithm.tunables.end(), [](const Tunable& tunable) {
     return tunable.name == "threads" && tunable.type == Tunable::Type::integer;
   });
 }
@@ -41,9 +41,10 @@ bool has_threads(const Algorithm& algorithm) {
 std::span<const Algorithm> algorithms() { return lists().back(); }
 
 void register_algorithm(Algorithm algorithm) {
-  const bool is_name = !algorithm.name.empty() && std::ranges::all_of(algorithm.name, [](unsigned char c) {
-    return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
-  });
+  const bool is_name = !algorithm.name.empty() &&
+                       std::all_of(algorithm.name.begin(), algorithm.name.end(), [](unsigned char c) {
+                         return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '_';
+                       });
   if (!is_name)
     throw InvalidSpec("algorithm name '" + algorithm.name +
                       "'; expected lower-case letters, digits and underscores");
@@ -55,9 +56,12 @@ void register_algorithm(Algorithm algorithm) {
 }
 
 const Algorithm* find_algorithm(std::string_view name, std::span<const Algorithm> among) {
-  auto found = std::ranges::find(among, name, &Algorithm::name);
-  if (found == among.end()) found = std::ranges::find(among, core::current_algorithm(name), &Algorithm::name);
-  return found == among.end() ? nullptr : &*found;
+  for (const std::string_view known : {name, core::current_algorithm(name)}) {
+    for (const Algorithm& algorithm : among) {
+      if (algorithm.name == known) return &algorithm;
+    }
+  }
+  return nullptr;
 }
 
 namespace algorithm {

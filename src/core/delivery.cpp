@@ -18,7 +18,7 @@ PairBlock* PairBlocks::take() {
   const std::lock_guard lock(mutex_);
   if (used_ == max_blocks) return nullptr;
   if (free_ == nullptr) {
-    all_.push_back(std::make_unique_for_overwrite<PairBlock>());
+    all_.push_back(std::unique_ptr<PairBlock>(new PairBlock));
     free_ = all_.back().get();
     free_->next = nullptr;
   }

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 13> former_ways = {
 bool is_ours(std::string_view algorithm) {
   constexpr std::array<std::string_view, 6> ours = {"auto",     "brute_force", "grid", "sweep_and_prune",
                                                     "quadtree", "bvh"};
-  return std::ranges::find(ours, algorithm) != ours.end();
+  return std::find(ours.begin(), ours.end(), algorithm) != ours.end();
 }
 
 }  // namespace
@@ -43,7 +43,6 @@ Spec current_spec(Spec current) {
   current.name = current_algorithm(current.name);
   for (auto& [tunable, value] : current.values)
     value = std::string(current_value(current.name, tunable, value.text()));
-  // Not std::ranges::remove_if(): clang 14 does not compile the subrange it returns.
   const auto is_gone = [&current](const auto& given) {
     return !former_tunable(current.name, given.first).empty() ||
            !former_value(current.name, given.first, given.second.text()).empty();
@@ -58,8 +57,8 @@ Spec canonical_spec(const Spec& spec) {
   Spec canonical{given.name, {}};
   const Algorithm* const algorithm = find_algorithm(given.name);
   for (const Tunable& tunable : algorithm->tunables) {
-    const auto found =
-        std::ranges::find(given.values, tunable.name, &decltype(given.values)::value_type::first);
+    const auto found = std::find_if(given.values.begin(), given.values.end(),
+                                    [&](const auto& value) { return value.first == tunable.name; });
     if (found == given.values.end() || found->second.text() == tunable.default_value) continue;
     if (tunable.type == Tunable::Type::choice) {
       canonical.values.push_back(*found);
@@ -73,7 +72,7 @@ Spec canonical_spec(const Spec& spec) {
 
 std::string_view former_value(std::string_view algorithm, std::string_view tunable, std::string_view value) {
   if (!is_ours(algorithm) || tunable != "update" ||
-      std::ranges::find(former_ways, value) == former_ways.end())
+      std::find(former_ways.begin(), former_ways.end(), value) == former_ways.end())
     return {};
   return "; each tracker uses only its fastest method, and the paper's ways are those of "
          "the paper_... algorithms";

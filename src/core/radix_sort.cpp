@@ -31,7 +31,9 @@ std::span<KeyedPlace> RadixSort::places(std::size_t count) {
 
 std::span<const KeyedPlace> RadixSort::sort() {
   if (places_.size() < min_radix_sorted) {
-    std::ranges::sort(places_, {}, [](const KeyedPlace& place) { return std::pair(place.key, place.place); });
+    std::sort(places_.begin(), places_.end(), [](const KeyedPlace& a, const KeyedPlace& b) {
+      return std::pair(a.key, a.place) < std::pair(b.key, b.place);
+    });
     return places_;
   }
   // All histograms in one pass; a digit that all keys share needs no pass of its own.
@@ -60,7 +62,8 @@ void RadixSort::sort_by_ranges(Parallel& parallel, int at) {
   parallel.for_numbered_ranges(places_.size(), [&](std::size_t number, Range range, std::size_t) {
     std::array<std::uint32_t, digit_values> counts{};  // shares no cache line with another worker
     for (std::size_t i = range.begin; i < range.end; ++i) ++counts[digit(places_[i].key, at)];
-    std::ranges::copy(counts, counts_.begin() + static_cast<std::ptrdiff_t>(number * digit_values));
+    std::copy(counts.begin(), counts.end(),
+              counts_.begin() + static_cast<std::ptrdiff_t>(number * digit_values));
   });
   std::uint32_t total = 0;
   for (std::size_t bucket = 0; bucket < digit_values; ++bucket) {

@@ -1,12 +1,12 @@
 // RadixSort: sorts the places of boxes by a float in O(n), whatever the values.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/bit_cast.hpp"
 #include "core/grow.hpp"
 #include "core/large_array.hpp"
 #include "core/parallel.hpp"
@@ -15,7 +15,7 @@ namespace broadside::core {
 
 /// An integer key in the order of floats, for any value but NaN; -0.0 and 0.0 have the same key.
 inline std::uint32_t sort_key(float value) noexcept {
-  const auto bits = std::bit_cast<std::uint32_t>(value + 0.0F);
+  const auto bits = core::bit_cast<std::uint32_t>(value + 0.0F);
   return bits ^ (bits >> 31 != 0 ? 0xffffffffU : 0x80000000U);
 }
 

@@ -1,10 +1,10 @@
 // Order-preserving rounding of doubles to floats.
 #include "core/rounding.hpp"
 
-#include <bit>
 #include <cmath>
 #include <utility>
 
+#include "core/bit_cast.hpp"
 #include "core/sample.hpp"
 
 namespace broadside::core {
@@ -34,7 +34,7 @@ LinearRounding fit_axis(std::vector<double>& minima) {
   const double origin = median(minima);
   for (double& min : minima) min = std::min(std::abs(min - origin), largest_double);
   double distance = median(minima);
-  if (distance == 0 && !minima.empty()) distance = *std::ranges::max_element(minima);
+  if (distance == 0 && !minima.empty()) distance = *std::max_element(minima.begin(), minima.end());
   return {origin, distance};
 }
 
@@ -92,7 +92,7 @@ LinearRounding::LinearRounding(double origin, double distance) : origin_(origin)
 }
 
 QuantileRounding::QuantileRounding(std::vector<double> knots) : knots_(std::move(knots)) {
-  std::ranges::sort(knots_);
+  std::sort(knots_.begin(), knots_.end());
   knots_.erase(std::unique(knots_.begin(), knots_.end()), knots_.end());
   if (knots_.empty()) knots_.push_back(0);
   const auto count = static_cast<double>(knots_.size());
@@ -144,7 +144,7 @@ std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_p
   std::uint64_t hash = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     // -0.0 and 0.0 are the same.
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(boxes[i].max[0] + 0.0);
+    const std::uint64_t bits = core::bit_cast<std::uint64_t>(boxes[i].max[0] + 0.0);
     const std::uint64_t mixed = (bits ^ (bits >> 32) ^ (first_place + i)) * golden;
     hash += mixed ^ (mixed >> 32);
   }

@@ -77,8 +77,8 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
       maxima_.push_back(max);
       extents_.push_back(max > min ? std::min(max - min, largest) : 0);  // inf - inf is not a number
     }
-    std::ranges::sort(sample.minima);
-    std::ranges::sort(maxima_);
+    std::sort(sample.minima.begin(), sample.minima.end());
+    std::sort(maxima_.begin(), maxima_.end());
     sample.overlap = overlapping_part(sample.minima, maxima_);
     set_bounds(sample, maxima_);
     const double range = static_cast<double>(sample.high) - sample.low;
@@ -97,7 +97,8 @@ std::array<int, D> Sample<D>::axes_by_overlap() const {
   std::array<int, D> axes;
   std::iota(axes.begin(), axes.end(), 0);
   // Not a stable sort, which takes memory.
-  std::ranges::sort(axes, {}, [this](int axis) { return std::pair(axes_[axis].overlap, axis); });
+  const auto key = [this](int axis) { return std::pair(axes_[axis].overlap, axis); };
+  std::sort(axes.begin(), axes.end(), [&](int a, int b) { return key(a) < key(b); });
   return axes;
 }
 

@@ -92,7 +92,7 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
     std::array<std::uint64_t, 15> sampled;
     for (std::size_t i = 0; i < sampled.size(); ++i)
       sampled[i] = key(pairs[(2 * i + 1) * pairs.size() / (2 * sampled.size())]);
-    std::ranges::sort(sampled);
+    std::sort(sampled.begin(), sampled.end());
     const auto middle = std::partition(pairs.begin(), pairs.end(), [&](const Pair& pair) {
       checkpoint.count(1);
       return key(pair) < sampled[sampled.size() / 2];
@@ -100,13 +100,13 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
     auto lower = static_cast<std::size_t>(middle - pairs.begin());
     if (std::min(lower, pairs.size() - lower) < pairs.size() / 16) {  // the sample was a poor guide
       lower = pairs.size() / 2;
-      std::ranges::nth_element(pairs, pairs.begin() + static_cast<std::ptrdiff_t>(lower));
+      std::nth_element(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(lower), pairs.end());
       checkpoint.count(4 * pairs.size());
     }
     sort_part(pairs.first(lower), checkpoint);
     pairs = pairs.subspan(lower);
   }
-  std::ranges::sort(pairs, {}, key);
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return key(a) < key(b); });
   checkpoint.count(comparisons_per_pair * pairs.size());
 }
 
@@ -125,7 +125,7 @@ bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
   // Counts of 2^32 or more would not fit, and never occur.
   if (pairs.size() > max_compared_pairs && pairs.size() <= 0xffffffffU)
     return core::radix_sort(pairs, scratch);
-  std::ranges::sort(pairs);
+  std::sort(pairs.begin(), pairs.end());
   return false;
 }
 

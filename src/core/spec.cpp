@@ -45,7 +45,7 @@ SpecValue checked(const std::string& owner, const Tunable& tunable, const SpecVa
                                core::former_value(owner, tunable.name, value)}));
   };
   if (tunable.type == Tunable::Type::choice) {
-    if (std::ranges::find(tunable.choices, value) == tunable.choices.end())
+    if (std::find(tunable.choices.begin(), tunable.choices.end(), value) == tunable.choices.end())
       refuse(message({"one of: ", listed(tunable.choices)}));
     return value;
   }
@@ -90,7 +90,8 @@ Spec::Spec(std::string_view text) {
       if (equals == std::string_view::npos || equals == 0)
         refuse(message({"'", part, "' has no ", equals == 0 ? "name before " : "", "'='"}));
       const std::string tunable(part.substr(0, equals));
-      if (std::ranges::any_of(values, [&](const auto& value) { return value.first == tunable; }))
+      if (std::any_of(values.begin(), values.end(),
+                      [&](const auto& value) { return value.first == tunable; }))
         refuse(message({"'", tunable, "' is given twice"}));
       values.emplace_back(tunable, std::string(part.substr(equals + 1)));
     }
@@ -133,7 +134,8 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
   for (const Tunable& tunable : tunables) values_.emplace_back(tunable.name, tunable.default_value);
   std::vector<bool> is_given(tunables.size());
   for (const auto& [name, given] : spec.values) {
-    const auto tunable = std::ranges::find(tunables, name, &Tunable::name);
+    const auto tunable = std::find_if(tunables.begin(), tunables.end(),
+                                      [&name = name](const Tunable& known) { return known.name == name; });
     if (tunable == tunables.end()) {
       std::vector<std::string> names;
       for (const Tunable& known : tunables) names.push_back(known.name);
@@ -150,7 +152,8 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
 }
 
 const SpecValue& Settings::value(std::string_view tunable) const {
-  const auto found = std::ranges::find(values_, tunable, &decltype(values_)::value_type::first);
+  const auto found =
+      std::find_if(values_.begin(), values_.end(), [&](const auto& value) { return value.first == tunable; });
   if (found == values_.end()) throw InvalidSpec(message({"there is no tunable '", tunable, "'"}));
   return found->second;
 }

@@ -14,9 +14,9 @@ Tunable threads_tunable();
 Tunable update_tunable();
 Update update_of(const Settings& settings);
 
-/// Returns make(), or no strategies in a build without D dimensions, so that their code is not linked.
-template <int D>
-Strategies<D> in_dimension(Strategies<D> (*make)()) {
+/// Returns make(), or no strategies in a build without D dimensions, whose code is not linked then.
+template <int D, Strategies<D> (*make)()>
+Strategies<D> in_dimension() {
   if constexpr (has_dimension<D>)
     return make();
   else

@@ -32,7 +32,8 @@ bool is_valid(const History<D, Real>& history) {
   std::size_t known = history.boxes.size();
   for (const Step<D, Real>& step : history.steps) {
     const std::size_t size = std::max(known, step.size);
-    if (std::ranges::any_of(step.changed, [size](BoxId id) { return index(id) >= size; })) return false;
+    if (std::any_of(step.changed.begin(), step.changed.end(), [size](BoxId id) { return index(id) >= size; }))
+      return false;
     known = step.size;
   }
   return true;
@@ -82,9 +83,11 @@ void drop_changes(Step<D, Real>& step, const std::function<bool()>& still_fails,
 template <int D, typename Real>
 History<D, Real> only(std::span<const std::size_t> kept, const History<D, Real>& history) {
   const auto below = [kept](std::size_t place) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(kept, place) - kept.begin());
+    return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), place) - kept.begin());
   };
-  const auto has = [&](BoxId id) { return std::ranges::binary_search(kept, std::size_t{index(id)}); };
+  const auto has = [&](BoxId id) {
+    return std::binary_search(kept.begin(), kept.end(), std::size_t{index(id)});
+  };
   const auto place_of = [&](BoxId id) { return BoxId(below(index(id))); };
   const auto only_pairs = [&](std::span<const Pair> pairs) {
     detail::Vector<Pair> left;
@@ -118,7 +121,7 @@ std::size_t detail::minimise(std::span<Box<D, Real>> boxes, const BoxesFail<D, R
   std::vector<Box<D, Real>> kept(boxes.begin(), boxes.end());
   drop_what_can_go(
       kept, [&] { return fails(kept); }, stop);
-  std::ranges::copy(kept, boxes.begin());
+  std::copy(kept.begin(), kept.end(), boxes.begin());
   return kept.size();
 }
 

@@ -51,7 +51,8 @@ Outline<D, double> lay_out_rounded(const MakeOutline<D>& make, std::span<const B
                                    const Workers& workers, const Settings& settings) {
   const std::array<core::LinearRounding, D> fit = core::fit_linear<D>(boxes);
   std::vector<Box<D>> floats(boxes.size());
-  std::ranges::transform(boxes, floats.begin(), [&](const auto& box) { return core::rounded(box, fit); });
+  std::transform(boxes.begin(), boxes.end(), floats.begin(),
+                 [&](const auto& box) { return core::rounded(box, fit); });
   const Outline<D> laid_out = make(floats, workers, settings);
   Outline<D, double> outline{laid_out.kind, laid_out.caption, laid_out.swept_axis, {}};
   for (const auto& level : laid_out.levels) {

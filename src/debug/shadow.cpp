@@ -53,7 +53,7 @@ Pairs difference(const IgnoredPairs* before, const IgnoredPairs* now) {
   };
   add_missing(before, now);
   add_missing(now, before);
-  std::ranges::sort(pairs);
+  std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
@@ -186,9 +186,10 @@ struct BROADSIDE_HIDDEN ShadowTracker<D, Real>::State {
       text += "; box " + std::to_string(index(id)) +
               (is_there ? " has " + core::text_of(frame.boxes[index(id)]) : " is absent");
     }
-    const bool holds = std::ranges::binary_search(faulty_, pair);
+    const bool holds = std::binary_search(faulty_.begin(), faulty_.end(), pair);
     text += std::string("; expected, by the definition: the pair ") + (holds ? "holds" : "does not hold") +
-            ", and before this frame it " + (std::ranges::binary_search(pairs_, pair) ? "held" : "did not");
+            ", and before this frame it " +
+            (std::binary_search(pairs_.begin(), pairs_.end(), pair) ? "held" : "did not");
 
     std::optional<History<D, Real>> small;
     if (make_) small = debug::smallest_fault<D, Real>(kept, make_, options_.tests);

@@ -74,7 +74,7 @@ inline std::string text_of(const WrongEvent& fault) {
 
 inline Pairs without(const Pairs& pairs, const Pairs& some) {
   Pairs rest;
-  std::ranges::set_difference(pairs, some, std::back_inserter(rest));
+  std::set_difference(pairs.begin(), pairs.end(), some.begin(), some.end(), std::back_inserter(rest));
   return rest;
 }
 
@@ -86,7 +86,8 @@ inline EventPairs events_between(const Pairs& before, const Pairs& now) {
 /// The first event that was reported wrongly or twice, or was not reported.
 inline std::optional<WrongEvent> first_fault(const Pairs& reported, const Pairs& happened,
                                              bool began) noexcept {
-  const auto [found, expected] = std::ranges::mismatch(reported, happened);
+  const auto [found, expected] =
+      std::mismatch(reported.begin(), reported.end(), happened.begin(), happened.end());
   if (found == reported.end() && expected == happened.end()) return std::nullopt;
   const bool is_reported = expected == happened.end() || (found != reported.end() && *found < *expected);
   return WrongEvent{is_reported ? *found : *expected, began, is_reported};
@@ -111,7 +112,8 @@ std::optional<WrongEvent> fault_at_the_end(Tracker<D, Real>& tracker, const Hist
     for (const Step<D, Real>& step : history.steps) {
       const Pairs still = without(held, events.ended);
       held.clear();
-      std::ranges::set_union(still, events.begun, std::back_inserter(held));
+      std::set_union(still.begin(), still.end(), events.begun.begin(), events.begun.end(),
+                     std::back_inserter(held));
       take_events(tracker, replay.next(step), events);
     }
     return fault_of(events, events_between(held, pairs_by_definition(replay.frame())));

@@ -95,12 +95,16 @@ void FilterPlan::plan_positive_groups(std::span<const FilterGroup> groups,
   for (std::uint32_t i = 0; i < groups.size(); ++i) {
     if (number(i) > 0) positive_.push_back(i);
   }
-  std::ranges::sort(positive_, {}, [&](std::uint32_t group) { return std::pair(number(group), group); });
-  rejected_in_positive_.clear();
-  std::ranges::copy_if(rejected, std::back_inserter(rejected_in_positive_), [&](const GroupPair& pair) {
-    return number(pair.first) > 0 && number(pair.first) == number(pair.second);
+  std::sort(positive_.begin(), positive_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(number(a), a) < std::pair(number(b), b);
   });
-  std::ranges::sort(rejected_in_positive_, {}, [&](const GroupPair& pair) { return number(pair.first); });
+  rejected_in_positive_.clear();
+  std::copy_if(rejected.begin(), rejected.end(), std::back_inserter(rejected_in_positive_),
+               [&](const GroupPair& pair) {
+                 return number(pair.first) > 0 && number(pair.first) == number(pair.second);
+               });
+  std::sort(rejected_in_positive_.begin(), rejected_in_positive_.end(),
+            [&](const GroupPair& a, const GroupPair& b) { return number(a.first) < number(b.first); });
   auto next = rejected_in_positive_.begin();
   for (std::size_t begin = 0; begin < positive_.size();) {
     const std::int32_t of_these = number(positive_[begin]);
@@ -211,7 +215,8 @@ void FilterPlan::plan_nodes(FilterTest test) {
     if ((nodes_[best].meets & bit(best)) != 0) add(bit(best), 0, test);
     remaining &= ~bit(best);
     const Nodes others = nodes_[best].meets & remaining;
-    const auto same = std::ranges::find(stars_, others, &Star::others);
+    const auto same = std::find_if(stars_.begin(), stars_.end(),
+                                   [others](const Star& star) { return star.others == others; });
     if (same != stars_.end())
       same->nodes |= bit(best);
     else if (others != 0)

@@ -13,7 +13,7 @@ inline std::string instruction_set_name(std::string_view target) {
   constexpr std::string_view highways = "AVX3";
   if (!target.starts_with(highways)) return std::string(target);
   std::string name = "AVX-512" + std::string(target.substr(highways.size()));
-  std::ranges::replace(name, '_', '-');
+  std::replace(name.begin(), name.end(), '_', '-');
   return name;
 }
 

@@ -119,7 +119,7 @@ std::uint64_t CandidateList<D, Real>::start(const Change<D, Real>& change,
   collector.flush();
   core::sort_unique(candidates_, spare_);
   test_candidates(change.now, change.workers);
-  holding_ = static_cast<std::size_t>(std::ranges::count(holds_, std::uint8_t{1}));
+  holding_ = static_cast<std::size_t>(std::count(holds_.begin(), holds_.end(), std::uint8_t{1}));
   changes_pairs = true;
   pairs.start_at(now_, candidates_.size(), found, change.workers);
   before_ = now_;

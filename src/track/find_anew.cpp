@@ -20,9 +20,10 @@ constexpr std::size_t pairs_at_once = 4096;
 /// Whether a filter has changed. A pair may then begin or end while its boxes overlap in both frames.
 template <int D, typename Real>
 bool has_changed_filter(const Change<D, Real>& change) {
-  return !change.filters_now.empty() && std::ranges::any_of(change.changed, [&](BoxId id) {
-    return change.filters_before[index(id)] != change.filters_now[index(id)];
-  });
+  return !change.filters_now.empty() &&
+         std::any_of(change.changed.begin(), change.changed.end(), [&](BoxId id) {
+           return change.filters_before[index(id)] != change.filters_now[index(id)];
+         });
 }
 
 /// Calls `report` for each pair with a changed box; if `by_boxes`, leaves out those that overlap in `boxes`.

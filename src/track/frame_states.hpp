@@ -92,7 +92,7 @@ class FrameStates {
     if (!quarantined_.empty() || !invalid_.empty()) {
       std::erase_if(quarantined_, [this](BoxId id) { return flags_[index(id)] != 0; });
       quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
-      std::ranges::sort(quarantined_);
+      std::sort(quarantined_.begin(), quarantined_.end());
     }
     const auto keep_changed = [this](core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {

@@ -43,7 +43,7 @@ class IgnoredChange {
   void apply(const Change<D, Real>& change, std::vector<Pair>& begun, std::vector<Pair>& ended) const {
     if (toggled_.empty() && pairs_.empty()) return;
     const auto is_dropped = [this](Pair pair) {
-      return pairs_.contains(pair) || std::ranges::binary_search(toggled_, pair);
+      return pairs_.contains(pair) || std::binary_search(toggled_.begin(), toggled_.end(), pair);
     };
     std::erase_if(begun, is_dropped);
     std::erase_if(ended, is_dropped);

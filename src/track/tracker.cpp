@@ -28,8 +28,9 @@ constexpr std::size_t changes_per_box = 8;
 
 /// Whether it has the library's tunable `update`; other algorithms may have their own of that name.
 bool chooses_update(const Algorithm& algorithm) {
-  return std::ranges::any_of(algorithm.tunables, [](const Tunable& tunable) {
-    return tunable.name == "update" && std::ranges::find(tunable.choices, "follow") != tunable.choices.end();
+  return std::any_of(algorithm.tunables.begin(), algorithm.tunables.end(), [](const Tunable& tunable) {
+    return tunable.name == "update" &&
+           std::find(tunable.choices.begin(), tunable.choices.end(), "follow") != tunable.choices.end();
   });
 }
 

@@ -27,7 +27,7 @@ class Updater {
  public:
   explicit Updater(TrackerPlan<D> plan)
       : may_enlarge_(may_enlarge(plan)),
-        policy_(std::ranges::any_of(plan.structures, compares_all)),
+        policy_(std::any_of(plan.structures.begin(), plan.structures.end(), compares_all)),
         pairs_(std::move(plan)) {}
 
   /// Writes the events of a change, in any order. One may be written more than once. After an exception the
@@ -66,7 +66,8 @@ class Updater {
 
   /// Enlarging needs a tracker that may choose and a structure that does not compare all boxes.
   static bool may_enlarge(const TrackerPlan<D>& plan) {
-    return plan.update == Update::automatic && !std::ranges::all_of(plan.structures, compares_all);
+    return plan.update == Update::automatic &&
+           !std::all_of(plan.structures.begin(), plan.structures.end(), compares_all);
   }
 
   /// Returns false if there would be too many candidates. It has then reported no event of this frame, and

@@ -1,7 +1,6 @@
 // ByteWriter, ByteReader: little-endian bytes with a checksum at the end. See docs/snapshot-format.md.
 #pragma once
 
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,8 @@
 #include "broadside/error.hpp"
 #include "broadside/export.hpp"
 #include "broadside/recorder.hpp"
+
+#include "core/bit_cast.hpp"
 
 namespace broadside::world {
 
@@ -39,7 +40,7 @@ class ByteWriter {
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void put_at(std::size_t at, T value) {
-    const auto bits = std::bit_cast<Bits<T>>(value);
+    const auto bits = core::bit_cast<Bits<T>>(value);
     for (std::size_t i = 0; i < sizeof(T); ++i) bytes_[at + i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
   }
 
@@ -83,7 +84,7 @@ class ByteReader {
       bits =
           static_cast<Bits<T>>(bits | static_cast<Bits<T>>(static_cast<Bits<T>>(bytes_[at_ + i]) << 8 * i));
     at_ += sizeof(T);
-    return std::bit_cast<T>(bits);
+    return core::bit_cast<T>(bits);
   }
 
   /// Reads a count of items of at least `bytes_each` bytes each. Throws if fewer bytes are left, so that a

@@ -126,7 +126,8 @@ std::span<const HandlePair> CurrentPairs::persisting(Generations generations) co
     if (!has_persisting_.load(std::memory_order_relaxed)) {
       persisting_.clear();
       persisting_.reserve(current.size());
-      std::ranges::set_difference(current, events_.begun, std::back_inserter(persisting_));
+      std::set_difference(current.begin(), current.end(), events_.begun.begin(), events_.begun.end(),
+                          std::back_inserter(persisting_));
       has_persisting_.store(true, std::memory_order_release);
     }
   }
@@ -139,7 +140,7 @@ void CurrentPairs::merge(Generations generations) const {
   const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
   const std::size_t needed = is_long ? pairs_.size() + log_.size() : size_;
   if (pairs_.capacity() < needed) pairs_.reserve(std::max(needed, pairs_.capacity() + pairs_.capacity() / 2));
-  if (!std::ranges::is_sorted(log_)) sort_pairs(log_, scratch_);
+  if (!std::is_sorted(log_.begin(), log_.end())) sort_pairs(log_, scratch_);
   const std::size_t toggled = keep_toggled(generations);
   if (is_long)
     toggle(toggled, generations);

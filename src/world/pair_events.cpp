@@ -14,8 +14,10 @@ PairEvents PairEvents::netted() const {
   sort_pairs(sorted.begun, scratch);
   sort_pairs(sorted.ended, scratch);
   PairEvents net;
-  std::ranges::set_difference(sorted.begun, sorted.ended, std::back_inserter(net.begun));
-  std::ranges::set_difference(sorted.ended, sorted.begun, std::back_inserter(net.ended));
+  std::set_difference(sorted.begun.begin(), sorted.begun.end(), sorted.ended.begin(), sorted.ended.end(),
+                      std::back_inserter(net.begun));
+  std::set_difference(sorted.ended.begin(), sorted.ended.end(), sorted.begun.begin(), sorted.begun.end(),
+                      std::back_inserter(net.ended));
   return net;
 }
 
@@ -25,7 +27,7 @@ std::vector<Pair> PairEvents::undone(const std::vector<Pair>& pairs) const {
 
 std::vector<Pair> symmetric_difference(const std::vector<Pair>& a, const std::vector<Pair>& b) {
   std::vector<Pair> pairs;
-  std::ranges::set_symmetric_difference(a, b, std::back_inserter(pairs));
+  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(pairs));
   return pairs;
 }
 

@@ -90,8 +90,8 @@ void PairRefiner::take_candidates(std::size_t slots) {
   }
   // Events left by a failed update precede newer ones, but a snapshot lists both by id.
   if (is_retry) {
-    std::ranges::sort(refined.ended);
-    std::ranges::sort(fresh);
+    std::sort(refined.ended.begin(), refined.ended.end());
+    std::sort(fresh.begin(), fresh.end());
   }
   candidates.clear();
 }
@@ -151,7 +151,8 @@ void PairRefiner::review(PairGraph::EdgeId edge, bool overlaps) {
 
 /// Asks the predicate, in the order of the slots.
 void PairRefiner::answer(Generations generations) {
-  std::ranges::sort(questions_, {}, &Question::pair);
+  std::sort(questions_.begin(), questions_.end(),
+            [](const Question& a, const Question& b) { return a.pair < b.pair; });
   const core::CallersEnvironment callers;
   for (const Question& question : questions_) {
     const auto [first, second] = handles_of(question.pair, generations);
@@ -203,7 +204,7 @@ std::vector<Pair> PairRefiner::tracked(std::vector<Pair> current) const {
 
 std::vector<Pair> PairRefiner::edges() const {
   std::vector<Pair> edges(state_.graph.pairs().begin(), state_.graph.pairs().end());
-  std::ranges::sort(edges);
+  std::sort(edges.begin(), edges.end());
   return edges;
 }
 

@@ -48,8 +48,8 @@ void SlotTable<D, Real>::refuse(Handle handle, const char* action, const char* t
   // Generations restored from another world's snapshot may be older than this world's first one.
   const std::uint32_t begin = table_generation_;
   const bool is_before =
-      handle.generation < begin &&
-      !std::ranges::any_of(generations_, [begin](std::uint32_t one) { return one < begin; });
+      handle.generation < begin && !std::any_of(generations_.begin(), generations_.end(),
+                                                [begin](std::uint32_t one) { return one < begin; });
   const char* const why = is_up_to_now && !is_before
                               ? " names a box that was removed"
                               : " was never issued by this world: it belongs to another world or is invalid";
@@ -159,7 +159,7 @@ void SlotTable<D, Real>::restore(std::uint32_t first_generation, std::vector<std
   removed_ = std::move(removed);
   reported_ = std::move(reported);
   max_slots_ = size();
-  live_ = static_cast<std::size_t>(std::ranges::count(states_, SlotState::live));
+  live_ = static_cast<std::size_t>(std::count(states_.begin(), states_.end(), SlotState::live));
   free_ = {};
   free_.reserve(size());
   for (std::uint32_t slot = 0; slot < size(); ++slot) {

@@ -15,10 +15,10 @@ using Pairs = std::vector<Pair>;
 /// Throws InvalidSnapshot unless what began is among the sorted `pairs`, and what ended is not.
 void expect_led_to(const Pairs& pairs, const PairEvents& events, const char* if_begun, const char* if_ended) {
   for (const Pair pair : events.begun) {
-    if (!std::ranges::binary_search(pairs, pair)) refuse(pair, if_begun);
+    if (!std::binary_search(pairs.begin(), pairs.end(), pair)) refuse(pair, if_begun);
   }
   for (const Pair pair : events.ended) {
-    if (std::ranges::binary_search(pairs, pair)) refuse(pair, if_ended);
+    if (std::binary_search(pairs.begin(), pairs.end(), pair)) refuse(pair, if_ended);
   }
 }
 
@@ -33,10 +33,10 @@ void DecodedSnapshot<D, Real>::check_last_frame() const {
            "the last frame has a box in a slot that has none now, although none was removed there");
   }
   Pairs listed(parts->ignored.changed().begin(), parts->ignored.changed().end());
-  std::ranges::sort(listed);
+  std::sort(listed.begin(), listed.end());
   const auto expect_listed = [&listed](const IgnoredPairs& some, const IgnoredPairs& others) {
     some.for_each([&](Pair pair) {
-      if (others.contains(pair) || std::ranges::binary_search(listed, pair)) return;
+      if (others.contains(pair) || std::binary_search(listed.begin(), listed.end(), pair)) return;
       refuse(pair, "is ignored now or was in the last frame; expected both, or a list that it is in");
     });
   };
@@ -51,9 +51,9 @@ template <int D, typename Real>
 void DecodedSnapshot<D, Real>::check_differences() const {
   const Frame<D, Real> now = parts->frame();
   std::vector<BoxId> listed(now.changed.begin(), now.changed.end());
-  std::ranges::sort(listed);
+  std::sort(listed.begin(), listed.end());
   const auto is_listed = [&listed](std::uint32_t slot) {
-    return std::ranges::binary_search(listed, BoxId{slot});
+    return std::binary_search(listed.begin(), listed.end(), BoxId{slot});
   };
   for (std::uint32_t i = 0; i < now.boxes.size(); ++i) {
     if (i < last_frame.boxes.size() && last_frame.boxes[i] == now.boxes[i]) continue;
@@ -94,7 +94,7 @@ void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
   const std::span<const Box<D, Real>> boxes = parts->boxes.boxes();
   const bool by_boxes = parts->boxes.refines();
   Pairs new_edges = parts->refiner.state().fresh;
-  std::ranges::sort(new_edges);
+  std::sort(new_edges.begin(), new_edges.end());
   for (PairGraph::EdgeId edge = 0; edge < graph.size(); ++edge) {
     const Pair pair = graph.pairs()[edge];
     const std::uint8_t mark = graph.marks()[edge];
@@ -103,7 +103,7 @@ void DecodedSnapshot<D, Real>::check_marks(bool asks_predicate) const {
     const std::uint32_t b = index(pair.second);
     const bool is_looked_at = parts->refiner.asks_about(a) || parts->refiner.asks_about(b) ||
                               (by_boxes && (parts->boxes.is_changed(a) || parts->boxes.is_changed(b))) ||
-                              std::ranges::binary_search(new_edges, pair);
+                              std::binary_search(new_edges.begin(), new_edges.end(), pair);
     if (is_looked_at) continue;
     const bool overlaps = !by_boxes || overlap(boxes[a], boxes[b]);
     if ((mark != 0) != overlaps) {

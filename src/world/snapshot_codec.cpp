@@ -27,7 +27,7 @@ std::vector<Pair> sorted(const IgnoredPairs& ignored) {
   std::vector<Pair> pairs;
   pairs.reserve(ignored.size());
   ignored.for_each([&pairs](Pair pair) { pairs.push_back(pair); });
-  std::ranges::sort(pairs);
+  std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 

@@ -2,6 +2,7 @@
 #include "world/snapshot_reader.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -35,7 +36,7 @@ Pairs get_pairs(ByteReader& in, std::uint64_t count, const char* things) {
 /// Sorted pairs of places below `count`, each once.
 Pairs get_sorted_pairs(ByteReader& in, std::uint64_t count, const char* things) {
   Pairs pairs = get_pairs(in, count, things);
-  expect(std::ranges::adjacent_find(pairs, std::ranges::greater_equal{}) == pairs.end(),
+  expect(std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal<>{}) == pairs.end(),
          "pairs that must be sorted are not");
   return pairs;
 }
@@ -43,7 +44,7 @@ Pairs get_sorted_pairs(ByteReader& in, std::uint64_t count, const char* things) 
 /// Places below `count`, ascending, each once.
 std::vector<BoxId> get_places(ByteReader& in, std::uint64_t count, const char* things) {
   std::vector<BoxId> places = get_list<BoxId>(in, things);
-  expect(std::ranges::adjacent_find(places, std::ranges::greater_equal{}) == places.end(),
+  expect(std::adjacent_find(places.begin(), places.end(), std::greater_equal<>{}) == places.end(),
          "places that must ascend do not");
   if (!places.empty()) expect_place(index(places.back()), count, "place");
   return places;
@@ -159,7 +160,7 @@ std::vector<RemovedBox<D, Real>> SnapshotReader<D, Real>::read_removed(const std
     is_listed[slot] = true;
   }
   expect(!is_twice, "the box of a slot was removed twice");
-  expect(static_cast<std::size_t>(std::ranges::count(states, state)) == count,
+  expect(static_cast<std::size_t>(std::count(states.begin(), states.end(), state)) == count,
          "a slot whose box was removed is not listed");
   return list;
 }

@@ -287,7 +287,7 @@ void World<D, Real>::list_quarantined(detail::Output<Handle>& output) const {
     if (parts.slots.state(slot) == world::SlotState::live && is_absent(parts.boxes.boxes()[slot]))
       handles.push_back(handle_of(BoxId{slot}));
   }
-  std::ranges::copy(handles, output.resize(handles.size()).begin());
+  std::copy(handles.begin(), handles.end(), output.resize(handles.size()).begin());
 }
 
 template <int D, typename Real>

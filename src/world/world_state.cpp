@@ -140,15 +140,16 @@ void WorldState<D, Real>::join(const WorldState& other, detail::Output<HandlePai
   const auto collect = [&](std::span<const Pair> found) {
     const std::size_t size = handles.size();
     handles = pairs.resize(size + found.size());
-    std::ranges::transform(found, handles.begin() + static_cast<std::ptrdiff_t>(size), [&](Pair pair) {
-      return HandlePair{parts.slots.handle(pair.first), other.parts.slots.handle(pair.second)};
-    });
+    std::transform(found.begin(), found.end(), handles.begin() + static_cast<std::ptrdiff_t>(size),
+                   [&](Pair pair) {
+                     return HandlePair{parts.slots.handle(pair.first), other.parts.slots.handle(pair.second)};
+                   });
   };
   const BoxTable<D, Real>& left = parts.boxes;
   const BoxTable<D, Real>& right = other.parts.boxes;
   finder->find_between(left.boxes(), right.boxes(), collect,
                        {left.filters().values(), right.filters().values()});
-  std::ranges::sort(handles);
+  std::sort(handles.begin(), handles.end());
 }
 
 template <int D, typename Real>

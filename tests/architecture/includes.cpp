@@ -24,9 +24,9 @@ const std::vector<Rule>& rules() {
                            R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
   const std::string bindings = library + R"(|"bindings/c/broadside\.h")";
-  // The suggestion of names that a user may have meant is an inline function of the library.
+  // Two of the library's inline functions, which need nothing else of it.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
-                          R"(|"src/core/suggestion\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
+                          R"(|"src/core/(bit_cast|suggestion)\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
   const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
   static const std::vector<Rule> list = {

@@ -70,7 +70,7 @@ std::string mesh_import_missing() { return missing("libassimp-dev"); }
 bool is_mesh_extension(std::string_view extension) {
   constexpr std::array<std::string_view, 8> extensions = {".ply",  ".obj", ".stl", ".off",
                                                           ".gltf", ".glb", ".dae", ".3ds"};
-  return std::ranges::find(extensions, extension) != extensions.end();
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 #endif
 

@@ -198,7 +198,7 @@ class AutoSearcher final : public Searcher<D> {
       return size <= Limits::few_boxes_in_one_place ? AutoReason::few_in_one_place : AutoReason::one_place;
     if (size < Limits::boxes_of_a_line) return AutoReason::tree;
     std::array<double, D> overlap = estimate_.overlap();
-    std::ranges::sort(overlap);
+    std::sort(overlap.begin(), overlap.end());
     tests_ = half * overlap[0];
     if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return AutoReason::one_axis;
     double expected = half;  // overlaps per box if axes were independent; stacks of plates have far fewer
@@ -273,8 +273,8 @@ Algorithm automatic() {
           "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
       .source = "Broadside's measurements",
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .in_2d = core::in_dimension(automatic_strategies<2>),
-      .in_3d = core::in_dimension(automatic_strategies<3>),
+      .in_2d = core::in_dimension<2, automatic_strategies<2>>(),
+      .in_3d = core::in_dimension<3, automatic_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -175,7 +175,7 @@ auto SegmentJoin<D>::choose(const SegmentNode& node) -> SegmentCut {
     for (const Reference& reference : sampled) {
       if ((reference.dedup_mask >> axis & 1U) == 0) minima[count++] = box(reference).min[axis];
     }
-    std::ranges::sort(std::span(minima).first(count));
+    std::sort(minima.data(), minima.data() + count);
     const float at = count == 0 ? 0 : minima[count / 2];
     const float high = count == 0 ? 0 : minima[count - 1];
     std::size_t parted = 1;

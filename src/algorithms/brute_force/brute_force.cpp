@@ -73,8 +73,8 @@ Algorithm brute_force() {
       .summary = "every box against every other, over a structure of arrays",
       .source = "paper.md, sections II and VI-A",
       .tunables = {core::update_tunable(), core::threads_tunable()},
-      .in_2d = core::in_dimension(brute_force_strategies<2>),
-      .in_3d = core::in_dimension(brute_force_strategies<3>),
+      .in_2d = core::in_dimension<2, brute_force_strategies<2>>(),
+      .in_3d = core::in_dimension<3, brute_force_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -31,7 +31,7 @@ template <typename Real>
 template <int D, typename Real>
 void check(const BoxCast<D, Real>& cast) {
   const auto are_finite = [](const Point<D, Real>& values) {
-    return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
+    return std::all_of(values.begin(), values.end(), [](Real value) { return std::isfinite(value); });
   };
   if (!is_present(cast.box))
     throw InvalidQuery(core::fault_of(cast.box, "a ray's origin or a cast box", false));

@@ -68,7 +68,8 @@ void halve(std::span<NumberedBox<D>> leaves) {
   while (subtree * kernels::fan_out < leaves.size()) subtree *= kernels::fan_out;
   const std::size_t half = (leaves.size() / subtree + 1) / 2 * subtree;
   const auto middle_at = static_cast<std::ptrdiff_t>(half);
-  std::ranges::nth_element(leaves, leaves.begin() + middle_at, BeforeAlong<D>{widest_axis<D>(leaves)});
+  std::nth_element(leaves.begin(), leaves.begin() + middle_at, leaves.end(),
+                   BeforeAlong<D>{widest_axis<D>(leaves)});
   halve(leaves.first(half));
   halve(leaves.subspan(half));
 }

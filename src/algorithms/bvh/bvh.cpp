@@ -170,8 +170,8 @@ Algorithm bvh() {
       .summary = "a tree of bounds, sixteen to a node, packed by slabs and joined with itself",
       .source = "S. Leutenegger et al., STR: a simple and efficient algorithm for R-tree packing",
       .tunables = {core::threads_tunable(), core::update_tunable()},
-      .in_2d = core::in_dimension(bvh_strategies<2>),
-      .in_3d = core::in_dimension(bvh_strategies<3>),
+      .in_2d = core::in_dimension<2, bvh_strategies<2>>(),
+      .in_3d = core::in_dimension<3, bvh_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -228,10 +228,9 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
         found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
     }
     // The nearest comes last, since the last one is taken next.
-    std::ranges::sort(std::span(waiting).subspan(begin, waits - begin),
-                      [](const PendingNode& a, const PendingNode& b) {
-                        return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
-                      });
+    std::sort(waiting.data() + begin, waiting.data() + waits, [](const PendingNode& a, const PendingNode& b) {
+      return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
+    });
   }
   const std::span<const Neighbour<Real>> nearest = found.sorted();
   return nearest.empty() || visitor.visit(nearest);

@@ -108,7 +108,8 @@ void BvhPacker<D>::choose_axes(std::size_t boxes) {
   std::iota(axes_.begin(), axes_.end(), 0);
   const std::array<double, D> parts = parts_of(whole_leaves(boxes) / fan_out, 1);
   // Not a stable sort, which would allocate.
-  std::ranges::sort(axes_, {}, [&parts](int axis) { return std::pair(parts[axis], axis); });
+  std::sort(axes_.begin(), axes_.end(),
+            [&parts](int a, int b) { return std::pair(parts[a], a) < std::pair(parts[b], b); });
 }
 
 /// Sorts the boxes within heavy buckets: where a few buckets hold most boxes, the buckets alone leave them
@@ -126,7 +127,7 @@ void BvhPacker<D>::sort_heavy_buckets(std::span<const std::uint32_t> ends, core:
     for (std::size_t bucket = range.begin; bucket < range.end; ++bucket) {
       const std::uint32_t begin = bucket == 0 ? 0 : ends[bucket - 1];
       if (ends[bucket] - begin > max_unsorted)
-        std::ranges::sort(std::span(entries_).subspan(begin, ends[bucket] - begin), is_before);
+        std::sort(entries_.data() + begin, entries_.data() + ends[bucket], is_before);
     }
   });
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "broadside/box.hpp"
 
+#include "core/bit_cast.hpp"
 #include "core/rounding.hpp"
 
 namespace broadside::algorithm {
@@ -23,8 +23,8 @@ inline float rounded_down(double value) noexcept {
   if (value < -max_value) return -std::numeric_limits<float>::infinity();
   const auto nearest = static_cast<float>(value);
   if (nearest == 0) return -std::numeric_limits<float>::min();
-  const auto bits = std::bit_cast<std::uint32_t>(nearest);
-  return std::bit_cast<float>(nearest > 0 ? bits - 1 : bits + 1);
+  const auto bits = core::bit_cast<std::uint32_t>(nearest);
+  return core::bit_cast<float>(nearest > 0 ? bits - 1 : bits + 1);
 }
 
 /// The same for a float above `value`.

@@ -139,7 +139,7 @@ void DynamicBvh<D>::split(std::uint32_t node, const Child& added) {
   const auto first = static_cast<std::uint32_t>(node * fan_out);
   for (std::uint32_t i = 0; i < fan_out; ++i) children[i] = {box_at(first + i), nodes_[node].id[i]};
   children.back() = added;
-  std::ranges::sort(children, BeforeAlong<D>{widest_axis<D>(children)});
+  std::sort(children.begin(), children.end(), BeforeAlong<D>{widest_axis<D>(children)});
 
   const std::uint32_t other = new_node(info_[node].is_leaf);
   constexpr std::size_t half = fan_out / 2;

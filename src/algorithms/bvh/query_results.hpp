@@ -90,17 +90,20 @@ class NearestBoxes {
     if (!(one.distance_squared <= max_distance_squared_)) return;
     if (size_ == count_) {
       if (!is_before(one, heap_.front())) return;
-      std::ranges::pop_heap(heap_.first(size_--), is_before);
+      const std::span<Neighbour<Real>> heap = heap_.first(size_--);
+      std::pop_heap(heap.begin(), heap.end(), is_before);
     }
     if (size_ == heap_.size()) grow();
     heap_[size_++] = one;
-    std::ranges::push_heap(heap_.first(size_), is_before);
+    const std::span<Neighbour<Real>> heap = heap_.first(size_);
+    std::push_heap(heap.begin(), heap.end(), is_before);
   }
 
   /// All of them, the nearest first. This destroys the heap.
   std::span<const Neighbour<Real>> sorted() {
-    std::ranges::sort_heap(heap_.first(size_), is_before);
-    return heap_.first(size_);
+    const std::span<Neighbour<Real>> heap = heap_.first(size_);
+    std::sort_heap(heap.begin(), heap.end(), is_before);
+    return heap;
   }
 
  private:

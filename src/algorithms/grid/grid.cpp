@@ -256,8 +256,8 @@ Algorithm grid() {
                     .min = std::numeric_limits<float>::min()},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .in_2d = core::in_dimension(grid_strategies<2>),
-      .in_3d = core::in_dimension(grid_strategies<3>),
+      .in_2d = core::in_dimension<2, grid_strategies<2>>(),
+      .in_3d = core::in_dimension<3, grid_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

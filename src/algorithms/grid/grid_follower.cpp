@@ -178,7 +178,8 @@ class GridFollower final : public Follower<D> {
 
   void build(const Change<D>& change) {
     cells_.build(change.before, change.now);
-    built_for_ = static_cast<std::size_t>(std::ranges::count_if(change.now, is_present<D, float>));
+    built_for_ =
+        static_cast<std::size_t>(std::count_if(change.now.begin(), change.now.end(), is_present<D, float>));
     moved_.clear();
     usual_blocks_ = 0;
     first_queries_ = 0;

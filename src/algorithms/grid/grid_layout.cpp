@@ -2,10 +2,10 @@
 #include "algorithms/grid/grid_layout.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "core/bit_cast.hpp"
 #include "core/radix_sort.hpp"
 
 namespace broadside::algorithm {
@@ -46,7 +46,7 @@ double range_of(const core::AxisSample& sample) { return static_cast<double>(sam
 
 /// The float whose sort_key() is `key`.
 float float_of(std::uint32_t key) {
-  return std::bit_cast<float>(key ^ (key >> 31 != 0 ? 0x80000000U : 0xffffffffU));
+  return core::bit_cast<float>(key ^ (key >> 31 != 0 ? 0x80000000U : 0xffffffffU));
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
     for (;;) {
       double product = 1;
       for (const double cells_on_axis : cells) product *= cells_on_axis;
-      double& longest = *std::ranges::max_element(cells);
+      double& longest = *std::max_element(cells.begin(), cells.end());
       if (product <= max_for_boxes || longest <= 1) break;
       longest = std::max(1.0, std::floor(longest / 2));
     }
@@ -118,7 +118,8 @@ void GridLayout<D>::choose(const core::Sample<D>& sample, std::size_t count, std
   for (double extents = 1; extents < 1e6; extents *= 1.4) {
     const auto cells = cells_of_size(
         [&](const core::AxisSample& on_axis) { return extents * std::max(on_axis.mean_extent, 1e-30); });
-    if (std::ranges::all_of(cells, [](double cells_on_axis) { return cells_on_axis <= 1; })) break;
+    if (std::all_of(cells.begin(), cells.end(), [](double cells_on_axis) { return cells_on_axis <= 1; }))
+      break;
     if (const double found = cost(cells); found < min_cost) {
       min_cost = found;
       best = cells;

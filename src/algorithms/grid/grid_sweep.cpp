@@ -134,8 +134,9 @@ std::size_t GridSweep<D>::max_reaching(const Lists& lists, std::size_t count, in
   if (count <= many_boxes) return count;
   std::size_t reaching = 0;
   for (const auto& list : lists)
-    reaching += static_cast<std::size_t>(std::ranges::count_if(
-        list, [axis, border](const CellEntry<D>& entry) { return entry.box.max[axis] >= border; }));
+    reaching += static_cast<std::size_t>(
+        std::count_if(list.begin(), list.end(),
+                      [axis, border](const CellEntry<D>& entry) { return entry.box.max[axis] >= border; }));
   return reaching;
 }
 

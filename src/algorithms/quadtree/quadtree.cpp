@@ -288,8 +288,8 @@ Algorithm quadtree() {
                     .max = 1 << 30},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .in_2d = core::in_dimension(quadtree_strategies<2>),
-      .in_3d = core::in_dimension(quadtree_strategies<3>),
+      .in_2d = core::in_dimension<2, quadtree_strategies<2>>(),
+      .in_3d = core::in_dimension<3, quadtree_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -143,7 +143,7 @@ bool QuadtreeNodes<D>::choose_split(QuadtreeNode<D>& node, std::span<const std::
     };
     // A split must lie in the node's region, or the children's regions would not.
     for (std::size_t i = 0; i < samples; ++i) minima[i] = std::max(sample(i).min[axis], node.low[axis]);
-    std::ranges::sort(minima);
+    std::sort(minima.begin(), minima.end());
     const float at = minima[samples / 2];
     std::size_t crossing = 0;
     for (std::size_t i = 0; i < samples; ++i)
@@ -264,7 +264,7 @@ bool QuadtreeNodes<D>::merge(std::uint32_t node, std::span<const Box<D>> boxes) 
   ids_.clear();
   for (std::uint32_t child = children; child < children + child_count; ++child) drain(child);
   drain(node);
-  std::ranges::sort(ids_);
+  std::sort(ids_.begin(), ids_.end());
   ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
   free_.push_back(children);
   nodes_[node].children = no_node;

@@ -137,7 +137,7 @@ class QuadtreeNodes {
   void split(std::uint32_t node, std::span<const Box<D>> boxes) {
     ids_.clear();
     drain(node);
-    std::ranges::sort(ids_);  // so that the result does not depend on the node's history
+    std::sort(ids_.begin(), ids_.end());  // so that the result does not depend on the node's history
     fill(node, 0, boxes);
   }
 

@@ -98,7 +98,7 @@ class QuadtreeStack {
         return boxes[references[begin + (2 * i + 1) * count / (2 * samples)].place].box;
       };
       for (std::size_t i = 0; i < samples; ++i) minima[i] = core::without_nan(sample(i).min[axis]);
-      std::ranges::sort(minima);
+      std::sort(minima.begin(), minima.end());
       const float at = minima[samples / 2];
       std::size_t crossing = 0;
       for (std::size_t i = 0; i < samples; ++i)

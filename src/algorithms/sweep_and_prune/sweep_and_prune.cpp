@@ -136,7 +136,8 @@ class SweepAndPruneSearcher final : public Searcher<D> {
   Statistics sweep_stripes(const SearchInput<D>& input, std::span<const core::SortedBox<D>> sorted,
                            PairSink& pairs) {
     const auto stripe_of = [this](float coordinate) {
-      return static_cast<std::uint16_t>(std::ranges::upper_bound(borders_, coordinate) - borders_.begin());
+      return static_cast<std::uint16_t>(std::upper_bound(borders_.begin(), borders_.end(), coordinate) -
+                                        borders_.begin());
     };
     places_.resize(sorted.size());
     const std::size_t stripes = borders_.size() + 1;
@@ -225,8 +226,8 @@ Algorithm sweep_and_prune() {
                     .choices = {"1", "2"}},
                    core::update_tunable(),
                    core::threads_tunable()},
-      .in_2d = core::in_dimension(sweep_and_prune_strategies<2>),
-      .in_3d = core::in_dimension(sweep_and_prune_strategies<3>),
+      .in_2d = core::in_dimension<2, sweep_and_prune_strategies<2>>(),
+      .in_3d = core::in_dimension<3, sweep_and_prune_strategies<3>>(),
       .tests_doubles = true,
       .gives_candidates = true,
   };

@@ -1,11 +1,12 @@
 // Numbers in binary files, of any size and byte order.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+
+#include "src/core/bit_cast.hpp"
 
 namespace broadside::lab {
 
@@ -46,8 +47,8 @@ inline double half_of(std::uint64_t bits) noexcept {
 inline double value_of(std::uint64_t bits, const NumberType& type) noexcept {
   if (type.kind == 'u') return static_cast<double>(bits);
   if (type.kind == 'i') return static_cast<double>(integer_of(bits, type));
-  if (type.bytes == 8) return std::bit_cast<double>(bits);
-  return type.bytes == 4 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)))
+  if (type.bytes == 8) return core::bit_cast<double>(bits);
+  return type.bytes == 4 ? static_cast<double>(core::bit_cast<float>(static_cast<std::uint32_t>(bits)))
                          : half_of(bits);
 }
 

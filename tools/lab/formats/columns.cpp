@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view axis_letters = "xyz";
 
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
-  return std::ranges::find(list, plain(name)) != list.end();
+  return std::find(list.begin(), list.end(), plain(name)) != list.end();
 }
 
 bool is_frame(std::string_view name) { return plain(name) == "frame"; }
@@ -64,7 +64,7 @@ std::string points_of(const Found& found, std::span<const std::string_view> name
 /// Whether an axis has only the begin and end of an interval. Beside other columns, they may be times.
 bool is_interval(const Found& found) {
   return of(found, Role::begin) != none && of(found, Role::end) != none &&
-         std::ranges::count(found, none) == std::ptrdiff_t{roles} - 2;
+         std::count(found.begin(), found.end(), none) == std::ptrdiff_t{roles} - 2;
 }
 
 std::optional<BoundsColumns> choose(const Found& found, int radius, bool are_chosen) {
@@ -106,13 +106,14 @@ int point_of(Found found) {
   for (const Role time : {Role::begin, Role::end}) found[static_cast<std::size_t>(time)] = none;
   const int column =
       of(found, Role::position) != none ? of(found, Role::position) : of(found, Role::geographic);
-  return std::ranges::count(found, none) == std::ptrdiff_t{roles} - 1 ? column : none;
+  return std::count(found.begin(), found.end(), none) == std::ptrdiff_t{roles} - 1 ? column : none;
 }
 
 /// The column with the first of these names that occurs.
 int first_of(std::span<const std::string_view> names, std::span<const std::string_view> wanted) {
   for (const std::string_view want : wanted) {
-    const auto name = std::ranges::find(names, want, [](std::string_view text) { return plain(text); });
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [want](std::string_view text) { return plain(text) == want; });
     if (name != names.end()) return static_cast<int>(name - names.begin());
   }
   return none;
@@ -135,7 +136,7 @@ std::string problem_of(const Found& found, std::size_t axis, std::span<const std
     return fmt::format("column {} may be a minimum or a centre",
                        shown(names[static_cast<std::size_t>(position)]));
   // Maps have depths, and points a z, that are not bounds. Half of a pair of bounds is probably a mistake.
-  const auto known = std::ranges::find_if(found, [&](int column) {
+  const auto known = std::find_if(found.begin(), found.end(), [&](int column) {
     return column != none && column != position && column != of(found, Role::geographic) &&
            column != of(found, Role::third) && column != of(found, Role::begin) &&
            column != of(found, Role::end) && (column != size || axis < 2);
@@ -233,7 +234,7 @@ std::string resolve(std::span<const std::string_view> names, BoxColumns& columns
   columns = {};
   columns.names.assign(names.begin(), names.end());
   columns.places.assign(names.size(), BoxColumns::ignored);
-  columns.has_frames = std::ranges::any_of(names, is_frame);
+  columns.has_frames = std::any_of(names.begin(), names.end(), is_frame);
 
   std::array<Found, 3> found;
   for (Found& of_axis : found) of_axis.fill(none);
@@ -273,8 +274,8 @@ void settle_top(BoxColumns& columns, bool top_is_min) {
   if (columns.forms[y] != BoundsForm::bottom_top) return;
   columns.forms[y] = BoundsForm::min_max;
   if (!top_is_min) return;
-  std::swap(*std::ranges::find(columns.places, BoxColumns::first + y),
-            *std::ranges::find(columns.places, BoxColumns::second + y));
+  std::swap(*std::find(columns.places.begin(), columns.places.end(), BoxColumns::first + y),
+            *std::find(columns.places.begin(), columns.places.end(), BoxColumns::second + y));
 }
 
 std::string positional(std::size_t count, BoxColumns& columns) {
@@ -313,7 +314,9 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
   };
   std::vector<std::string> lists;
   // A maximum before its minimum, such as top before bottom if y grows upwards, is not a size.
-  const auto column_at = [&](int place) { return std::ranges::find(columns.places, place); };
+  const auto column_at = [&](int place) {
+    return std::find(columns.places.begin(), columns.places.end(), place);
+  };
   bool has_order = true;
   for (int axis = 0; axis < columns.dimension; ++axis)
     has_order &= column_at(BoxColumns::first + axis) < column_at(BoxColumns::second + axis);
@@ -331,7 +334,7 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
 
 std::vector<std::string> corner_or_centre(std::span<const std::string_view> names) {
   const auto has_size = [names](int axis) {
-    return std::ranges::any_of(names, [axis](std::string_view name) {
+    return std::any_of(names.begin(), names.end(), [axis](std::string_view name) {
       const std::optional<Meaning> meaning = meaning_of(name);
       return meaning && meaning->role == Role::size && meaning->axis == axis;
     });

@@ -82,7 +82,7 @@ class ConvertedFrames final : public FrameReader<D, Real> {
       rounding_.count(std::span<const Box<OldD, OldReal>>(boxes));
     std::vector<Box<D, Real>> result;
     result.reserve(boxes.size());
-    std::ranges::transform(boxes, std::back_inserter(result), converted<D, Real, OldD, OldReal>);
+    std::transform(boxes.begin(), boxes.end(), std::back_inserter(result), converted<D, Real, OldD, OldReal>);
     return result;
   }
 

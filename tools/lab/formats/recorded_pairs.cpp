@@ -11,9 +11,9 @@ namespace {
 void change(std::vector<Pair>& pairs, const std::vector<Pair>& ended, const std::vector<Pair>& begun) {
   if (ended.empty() && begun.empty()) return;
   std::vector<Pair> left;
-  std::ranges::set_difference(pairs, ended, std::back_inserter(left));
+  std::set_difference(pairs.begin(), pairs.end(), ended.begin(), ended.end(), std::back_inserter(left));
   pairs.clear();
-  std::ranges::merge(left, begun, std::back_inserter(pairs));
+  std::merge(left.begin(), left.end(), begun.begin(), begun.end(), std::back_inserter(pairs));
 }
 
 }  // namespace
@@ -43,7 +43,8 @@ Filter RecordedFrame::filter(BoxId slot) const {
 }
 
 bool RecordedFrame::must_report(Pair pair) const {
-  return accepts(filter(pair.first), filter(pair.second)) && !std::ranges::binary_search(ignored_, pair);
+  return accepts(filter(pair.first), filter(pair.second)) &&
+         !std::binary_search(ignored_.begin(), ignored_.end(), pair);
 }
 
 }  // namespace broadside::lab

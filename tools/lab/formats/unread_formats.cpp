@@ -94,9 +94,10 @@ std::string command_for(const UnreadFormat& format, std::string_view file) {
 }  // namespace
 
 std::string unread_format(std::string_view beginning, std::string_view extension, std::string_view file) {
-  const auto found = std::ranges::find_if(unread_formats, [&](const UnreadFormat& format) {
-    return extension.empty() ? begins_with(beginning, format.magic) : has_extension(format, extension);
-  });
+  const auto found =
+      std::find_if(unread_formats.begin(), unread_formats.end(), [&](const UnreadFormat& format) {
+        return extension.empty() ? begins_with(beginning, format.magic) : has_extension(format, extension);
+      });
   if (found == unread_formats.end()) return {};
   return fmt::format("is {}, which is not read here; expected what a converter makes of it: {}", found->name,
                      command_for(*found, file));

@@ -12,7 +12,7 @@ namespace {
 template <int D>
 std::size_t count_present(std::span<const Box<D>> boxes) {
   return static_cast<std::size_t>(
-      std::ranges::count_if(boxes, [](const Box<D>& box) { return is_present(box); }));
+      std::count_if(boxes.begin(), boxes.end(), [](const Box<D>& box) { return is_present(box); }));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // The paper's grid as an algorithm: its searcher, its outline, and its description.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -47,10 +47,10 @@ std::pair<float, float> ends(const GridListing& listing, std::span<const Box2> b
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto begin = static_cast<float>(origin + static_cast<double>(cell) * listing.size());
   const auto end = static_cast<float>(origin + static_cast<double>(cell + 1) * listing.size());
-  const bool before =
-      cell == 0 && std::ranges::any_of(boxes, [&](const Box2& e) { return e.min[axis] < begin; });
-  const bool beyond =
-      cell + 1 == count && std::ranges::any_of(boxes, [&](const Box2& e) { return e.max[axis] > end; });
+  const bool before = cell == 0 && std::any_of(boxes.begin(), boxes.end(),
+                                               [&](const Box2& e) { return e.min[axis] < begin; });
+  const bool beyond = cell + 1 == count && std::any_of(boxes.begin(), boxes.end(),
+                                                       [&](const Box2& e) { return e.max[axis] > end; });
   return {before ? -infinity : begin, beyond ? infinity : end};
 }
 
@@ -76,12 +76,10 @@ Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Setti
       outline.levels[0].push_back({{left, top}, {right, bottom}});
     }
   }
-  // As a stream would format it, but independent of the rounding mode.
   std::array<char, 32> size;
-  const auto end =
-      std::to_chars(size.data(), size.data() + size.size(), listing.size(), std::chars_format::general, 3);
+  std::snprintf(size.data(), size.size(), "%.3g", listing.size());
   outline.caption = std::to_string(columns) + " x " + std::to_string(rows) +
-                    (rows == 1 ? " cell of " : " cells of ") + std::string(size.data(), end.ptr);
+                    (rows == 1 ? " cell of " : " cells of ") + size.data();
   return outline;
 }
 

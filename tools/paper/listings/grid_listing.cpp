@@ -21,7 +21,8 @@ double max_auto_cells(double boxes) { return std::min<double>(4 * boxes, 1 << 22
 double max_auto_references(double boxes) { return 16 * boxes; }
 
 double count_present(std::span<const Box2> boxes) {
-  return static_cast<double>(std::ranges::count_if(boxes, [](const Box2& box) { return is_present(box); }));
+  return static_cast<double>(
+      std::count_if(boxes.begin(), boxes.end(), [](const Box2& box) { return is_present(box); }));
 }
 
 /// Twice the mean finite extent; if boxes have none, the size that gives each its own cell.

@@ -102,7 +102,7 @@ class GridListingFollower final : public CoherentFollower<2> {
   void search_and_delete(BoxId id) {
     std::uint64_t looked_at = 0;
     for (std::vector<BoxId>& cell : grid_.cells()) {
-      const auto place = std::ranges::find(cell, id);
+      const auto place = std::find(cell.begin(), cell.end(), id);
       looked_at += static_cast<std::uint64_t>(place - cell.begin()) + 1;
       if (place != cell.end()) take_out(cell, place);
     }
@@ -167,7 +167,7 @@ class GridListingFollower final : public CoherentFollower<2> {
 
   void erase(BoxId id, std::size_t column, std::size_t row) {
     std::vector<BoxId>& cell = grid_.g(column, row);
-    const auto place = std::ranges::find(cell, id);
+    const auto place = std::find(cell.begin(), cell.end(), id);
     const auto looked_at = static_cast<std::uint64_t>(place - cell.begin()) + 1;
     counts().visited += looked_at;
     checkpoint().count(looked_at);

@@ -115,8 +115,10 @@ bool QuadTreeNode::can_split() const {
 }
 
 void QuadTreeNode::add_where_missing(BoxId e) {
-  if (is_leaf() && std::ranges::find(tree_->leaves[index(e)], this) == tree_->leaves[index(e)].end())
-    return algorithm_7_add_element(e);
+  if (is_leaf()) {
+    const auto& leaves = tree_->leaves[index(e)];
+    if (std::find(leaves.begin(), leaves.end(), this) == leaves.end()) return algorithm_7_add_element(e);
+  }
   ++tree_->visits;
   if (is_leaf()) return;
   for (QuadTreeNode* const child : {qi_.get(), qii_.get(), qiii_.get(), qiv_.get()}) {
@@ -125,7 +127,7 @@ void QuadTreeNode::add_where_missing(BoxId e) {
 }
 
 void QuadTreeNode::remove(BoxId e) {
-  const auto place = std::ranges::find(e_, e);
+  const auto place = std::find(e_.begin(), e_.end(), e);
   const auto looked_at = static_cast<std::uint64_t>(place - e_.begin());
   tree_->checkpoint->count(looked_at);
   tree_->entries += looked_at;

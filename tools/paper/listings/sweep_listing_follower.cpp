@@ -76,7 +76,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
           std::pop_heap(e_.begin(), end, is_later);
           return (--end)->id;
         });
-    std::ranges::reverse(e_);
+    std::reverse(e_.begin(), e_.end());
     note_places();
     return statistics;
   }
@@ -211,7 +211,7 @@ class SweepListingFollower final : public CoherentFollower<D> {
 
   template <typename IsWanted>
   std::vector<SweepEntry>::iterator first_from_begin(const IsWanted& is_wanted) {
-    const auto place = std::ranges::find_if(e_, is_wanted);
+    const auto place = std::find_if(e_.begin(), e_.end(), is_wanted);
     const auto looked_at = static_cast<std::uint64_t>(place - e_.begin()) + 1;
     this->counts().visited += looked_at;
     this->checkpoint().count(looked_at);

@@ -37,8 +37,8 @@ bool is_before(std::string_view line) {
 
 /// Whether the fields are probably a row of data, with a number or a geometry, rather than column names.
 bool is_table_row(const Fields& fields) {
-  return std::ranges::all_of(fields, [](std::string_view field) { return field.empty(); }) ||
-         std::ranges::any_of(fields, [](std::string_view field) {
+  return std::all_of(fields.begin(), fields.end(), [](std::string_view field) { return field.empty(); }) ||
+         std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
            return field.find_first_of("([") != std::string_view::npos || is_number(field);
          });
 }
@@ -64,6 +64,14 @@ constexpr auto conventions = std::to_array<Convention>({
     {"cxcyczwhd", BoundsForm::centre_size, "cx,cy,cz,w,h,d"},
 });
 
+/// Null if none has this name.
+const Convention* convention_named(std::string_view name) {
+  for (const Convention& convention : conventions) {
+    if (convention.name == name) return &convention;
+  }
+  return nullptr;
+}
+
 /// Opens a table: resolves its columns.
 class CsvOpener {
  public:
@@ -81,7 +89,9 @@ class CsvOpener {
     if (!has_header) lines_ = rows_;
     look_into_rows();
     std::vector<std::string> others = other_meanings(columns_);
-    if (!are_named_) std::ranges::copy(unnamed_meanings(fields_.size()), std::back_inserter(others));
+    if (!are_named_) {
+      for (std::string& meaning : unnamed_meanings(fields_.size())) others.push_back(std::move(meaning));
+    }
     std::string note = note_on_columns();
     if (!note.empty()) note = fmt::format("{}: {}", input_->name(), note);
     std::shared_ptr<BoxLabels> labels = find_labels();
@@ -112,8 +122,9 @@ class CsvOpener {
     std::string problem = resolve(fields_, columns_);
     if (problem.empty()) return true;
     if (!is_table_row(fields_)) {
-      const auto slip = std::ranges::find_if(
-          fields_, [](std::string_view field) { return !number_fault(field).expected.empty(); });
+      const auto slip = std::find_if(fields_.begin(), fields_.end(), [](std::string_view field) {
+        return !number_fault(field).expected.empty();
+      });
       if (slip != fields_.end())
         lines_.refuse(fmt::format("{}, {}", shown(*slip), number_fault(*slip).found),
                       number_fault(*slip).expected);
@@ -138,11 +149,10 @@ class CsvOpener {
   /// Resolves the columns that the user names, from left to right, or by a convention such as "xywh". Returns
   /// whether the first line holds names.
   bool take_columns(std::string_view list) {
-    const auto* const convention = std::ranges::find(conventions, list, &Convention::name);
-    const bool is_convention = convention != conventions.end();
-    if (is_convention && !is_table_row(fields_)) return take_convention(*convention);
-    Fields names = fields_of(is_convention ? convention->columns : list, Separator::comma);
-    std::ranges::replace(names, std::string_view("-"), std::string_view());
+    const Convention* const convention = convention_named(list);
+    if (convention != nullptr && !is_table_row(fields_)) return take_convention(*convention);
+    Fields names = fields_of(convention != nullptr ? convention->columns : list, Separator::comma);
+    std::replace(names.begin(), names.end(), std::string_view("-"), std::string_view());
     const BoundsForm form = take_form(list, names);
     if (names.size() > fields_.size())
       lines_.refuse(fmt::format("{} column{}", fields_.size(), fields_.size() == 1 ? "" : "s"),
@@ -166,19 +176,20 @@ class CsvOpener {
     for (std::string_view& name : names) {
       const std::size_t equals = name.find('=');
       if (equals == std::string_view::npos) continue;
-      const auto* const told = std::ranges::find(conventions, name.substr(equals + 1), &Convention::name);
+      const Convention* const told = convention_named(name.substr(equals + 1));
       name = name.substr(0, equals);
-      if (told == conventions.end() || !is_geometry_name(name))
+      if (told == nullptr || !is_geometry_name(name))
         lines_.refuse(fmt::format("--columns names '{}'", list), "bbox=xyxy, bbox=xywh or bbox=cxcywh");
       form = told->form;
     }
     // In a file with names, one column is found by its name; other columns of bounds are ignored.
     const std::string_view only = names.front();
     const bool has_form = list.find('=') != std::string_view::npos;
-    if (!has_form || names.size() != 1 || std::ranges::find(fields_, only) == fields_.end()) return form;
+    if (!has_form || names.size() != 1 || std::find(fields_.begin(), fields_.end(), only) == fields_.end())
+      return form;
     names = fields_;
-    std::ranges::replace_if(
-        names,
+    std::replace_if(
+        names.begin(), names.end(),
         [only](std::string_view other) {
           return other != only && (meaning_of(other) || is_geometry_name(other));
         },
@@ -211,7 +222,8 @@ class CsvOpener {
   }
 
   std::size_t column_of(int place) const {
-    return static_cast<std::size_t>(std::ranges::find(columns_.places, place) - columns_.places.begin());
+    return static_cast<std::size_t>(std::find(columns_.places.begin(), columns_.places.end(), place) -
+                                    columns_.places.begin());
   }
 
   /// Looks for the first geometry, which determines the dimension, and for the first row that shows in which
@@ -270,8 +282,11 @@ class CsvOpener {
     const std::size_t track = column_of(BoxColumns::track);
     const std::string default_name = track < names.size() ? names[track] : "id";
     const std::string wanted = options_.ids.empty() && options_.finds_ids ? default_name : options_.ids;
-    auto column = std::ranges::find(names, wanted);
-    if (column == names.end()) column = std::ranges::find(names, plain(wanted), plain);
+    auto column = std::find(names.begin(), names.end(), wanted);
+    if (column == names.end()) {
+      column = std::find_if(names.begin(), names.end(),
+                            [&](const std::string& name) { return plain(name) == plain(wanted); });
+    }
     if (column == names.end() && !options_.ids.empty())
       lines_.refuse(fmt::format("no column {} of ids", shown(wanted)),
                     fmt::format("one of: {}", plainly(fmt::to_string(fmt::join(names, ", ")))));
@@ -312,11 +327,11 @@ bool is_csv(std::string_view bytes, std::string_view extension) {
   // The last field may be cut off within a number.
   if (lines.bytes_left() == 0 && bytes.size() == Input::beginning_bytes) fields.pop_back();
   if (fields.size() < 2) return false;
-  return std::ranges::count_if(fields, is_column_name) >= 2 ||
-         std::ranges::any_of(fields, is_geometry_name) || is_kitti(fields) ||
-         (std::ranges::any_of(fields, is_number) && std::ranges::all_of(fields, [](std::string_view field) {
-            return field.empty() || is_number(field);
-          }));
+  return std::count_if(fields.begin(), fields.end(), is_column_name) >= 2 ||
+         std::any_of(fields.begin(), fields.end(), is_geometry_name) || is_kitti(fields) ||
+         (std::any_of(fields.begin(), fields.end(), is_number) &&
+          std::all_of(fields.begin(), fields.end(),
+                      [](std::string_view field) { return field.empty() || is_number(field); }));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ DoubleBox3 CsvRows::checked_box() const {
   const std::span min = std::span(row.box.min).first(axes);
   const std::span max = std::span(row.box.max).first(axes);
   const auto is_nan = [](double number) { return std::isnan(number); };
-  if (std::ranges::any_of(min, is_nan) || std::ranges::any_of(max, is_nan))
+  if (std::any_of(min.begin(), min.end(), is_nan) || std::any_of(max.begin(), max.end(), is_nan))
     table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
   table_.lines.refuse(
       fmt::format("min ({}) and max ({})", fmt::join(min, ", "), fmt::join(max, ", ")),
@@ -152,7 +152,8 @@ bool CsvRows::take_slice(std::size_t slice, std::size_t slices) {
 }
 
 std::size_t CsvRows::column_of(int place) const noexcept {
-  return static_cast<std::size_t>(std::ranges::find(columns().places, place) - columns().places.begin());
+  const std::vector<int>& places = columns().places;
+  return static_cast<std::size_t>(std::find(places.begin(), places.end(), place) - places.begin());
 }
 
 std::string_view CsvRows::field(int place) const {

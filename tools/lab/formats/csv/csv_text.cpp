@@ -99,7 +99,7 @@ void append_csv_field(std::string& line, std::string_view field) {
 bool has_open_quote(std::string_view line, const std::vector<CsvField>& fields) {
   // Most lines have no quotes.
   if (line.find('"') == npos) return false;
-  return std::ranges::any_of(fields, [line](const CsvField& field) {
+  return std::any_of(fields.begin(), fields.end(), [line](const CsvField& field) {
     const char* const begin = field.text.data();
     return !field.is_quoted && field.text.starts_with('"') &&
            std::count(begin, line.data() + line.size(), '"') % 2 == 1;
@@ -153,7 +153,8 @@ void CsvLines::take_slice(std::size_t slice, std::size_t slices) {
 }
 
 void CsvLines::refuse(std::uint64_t line, const std::string& found, const std::string& expected) const {
-  const auto before = static_cast<std::uint64_t>(std::ranges::count(before_slice_, '\n'));
+  const auto before =
+      static_cast<std::uint64_t>(std::count(before_slice_.begin(), before_slice_.end(), '\n'));
   throw FileError(fmt::format("{}:{}: {}; expected {}", input_->name(), before + line, found, expected));
 }
 

@@ -144,12 +144,12 @@ class GeometryText {
     std::string name = word();
     std::size_t numbers = 0;  // numbers per point, if the text says it
     for (const std::string_view suffix : {"ZM", "Z", "M"}) {
-      const bool is_known = std::ranges::find(kinds, name) != kinds.end();
+      const bool is_known = std::find(kinds.begin(), kinds.end(), name) != kinds.end();
       if (numbers != 0 || (is_known ? !take_word(suffix) : !name.ends_with(suffix))) continue;
       if (!is_known) name.resize(name.size() - suffix.size());
       numbers = 2 + suffix.size();
     }
-    if (std::ranges::find(kinds, name) == kinds.end())
+    if (std::find(kinds.begin(), kinds.end(), name) == kinds.end())
       return fail(fmt::format(", with {}", shown(name)), std::string(kind_list));
     return read_list(numbers, name == "GEOMETRYCOLLECTION", nested);
   }

@@ -18,7 +18,7 @@ namespace {
 /// The columns that a list for --columns names.
 BoxColumns columns_of(const std::string& list, std::size_t count) {
   std::vector<std::string_view> names = fields_of(list, Separator::comma);
-  std::ranges::replace(names, std::string_view("-"), std::string_view());
+  std::replace(names.begin(), names.end(), std::string_view("-"), std::string_view());
   names.resize(count);
   BoxColumns columns;
   if (!resolve(names, columns, true).empty()) columns.places.clear();
@@ -63,8 +63,8 @@ std::string other_ways(CsvLines lines, Separator separator, const std::vector<st
 
 std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns) {
   if (columns.geometry_form != BoundsForm::min_max) return {};
-  const auto column = static_cast<std::size_t>(std::ranges::find(columns.places, BoxColumns::geometry) -
-                                               columns.places.begin());
+  const auto column = static_cast<std::size_t>(
+      std::find(columns.places.begin(), columns.places.end(), BoxColumns::geometry) - columns.places.begin());
   std::uint64_t rows = 0;
   while (lines.next()) {
     const std::vector<std::string_view> fields = fields_of(lines.line(), separator);

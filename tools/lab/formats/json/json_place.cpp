@@ -33,7 +33,7 @@ JsonPlace JsonPlace::at(const char* name) const {
 void JsonPlace::check_fields(std::initializer_list<const char*> names) const {
   if (!value_->is_object()) refuse("an object");
   for (const auto& [name, value] : value_->items()) {
-    if (std::ranges::find(names, name) == names.end())
+    if (std::find(names.begin(), names.end(), name) == names.end())
       throw FileError(
           fmt::format("{} has a field '{}'; expected some of: {}", place_, name, fmt::join(names, ", ")));
   }

@@ -83,7 +83,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
   static constexpr std::size_t max_open = 100;
 
   static bool has(const std::vector<std::string>& names, const std::string& name) {
-    return std::ranges::find(names, name) != names.end();
+    return std::find(names.begin(), names.end(), name) != names.end();
   }
 
   /// Whether the innermost container is a list whose elements are handed over.
@@ -160,7 +160,7 @@ class JsonBuilder final : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 const JsonValue* JsonValue::find(std::string_view name) const {
-  const auto found = std::ranges::find(names, name);
+  const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? nullptr : &items[static_cast<std::size_t>(found - names.begin())];
 }
 

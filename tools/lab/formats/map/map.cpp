@@ -86,7 +86,7 @@ class MapReader {
     std::size_t end = 0;
     do {
       begin_ = std::min(bytes.find_first_not_of(blanks, end), bytes.size());
-      line += std::ranges::count(bytes.substr(end, begin_ - end), '\n');
+      line += std::count(bytes.data() + end, bytes.data() + begin_, '\n');
       end = is_lines ? std::min(bytes.find('\n', begin_), bytes.size()) : bytes.size();
       list_ = {};
       in_feature_ = false;
@@ -137,7 +137,7 @@ class MapReader {
       return;
     if (!list_.empty() && list != list_)
       refuse(fmt::format("'{}' beside '{}'", list, list_), "one list of boxes");
-    list_ = *std::ranges::find(element_lists, list);
+    list_ = *std::find(element_lists.begin(), element_lists.end(), list);
     if (list == annotations)
       read_annotation(element);
     else if (list == shapes)
@@ -233,7 +233,8 @@ class MapReader {
         read_geometry(one, nested + 1);
       return;
     }
-    const auto* const kind = std::ranges::find(geometry_kinds, type, &GeometryKind::name);
+    const auto* const kind = std::find_if(geometry_kinds.begin(), geometry_kinds.end(),
+                                          [&](const GeometryKind& known) { return known.name == type; });
     if (kind == geometry_kinds.end())
       refuse(fmt::format("a geometry of type {}", shown(type)), geometry_types);
     read_coordinates(member_of(geometry, "coordinates"), *kind, kind->depth);
@@ -398,15 +399,16 @@ const std::vector<std::string> extensions = {".geojson", ".json", ".geojsonl", "
 /// Whether the file has the extension of a map, or its bytes begin an object whose first members identify it
 /// as a map or a geometry.
 bool is_map(std::string_view bytes, std::string_view extension) {
-  if (std::ranges::find(extensions, extension) != extensions.end()) return true;
+  if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return true;
   const std::size_t first = bytes.find_first_not_of(" \t\r\n\x1e\xEF\xBB\xBF");
   if (first == std::string_view::npos || bytes[first] != '{') return false;
   const auto says = [&](std::string_view word) {
     return bytes.find(fmt::format("\"{}\"", word)) != std::string_view::npos;
   };
-  return std::ranges::any_of(geometry_kinds, says, &GeometryKind::name) || says("FeatureCollection") ||
-         says("Feature") || says("GeometryCollection") || says("Topology") || says("licenses") ||
-         says(annotations) || says(shapes);
+  return std::any_of(geometry_kinds.begin(), geometry_kinds.end(),
+                     [&](const GeometryKind& kind) { return says(kind.name); }) ||
+         says("FeatureCollection") || says("Feature") || says("GeometryCollection") || says("Topology") ||
+         says("licenses") || says(annotations) || says(shapes);
 }
 
 }  // namespace

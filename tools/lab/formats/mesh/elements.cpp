@@ -62,7 +62,8 @@ std::vector<DoubleBox3> MeshElements::boxes(const IndexedMesh& mesh, const std::
 }
 
 bool share_vertex(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
-  return std::ranges::any_of(a, [&](std::uint32_t v) { return std::ranges::find(b, v) != b.end(); });
+  return std::any_of(a.begin(), a.end(),
+                     [&](std::uint32_t v) { return std::find(b.begin(), b.end(), v) != b.end(); });
 }
 
 }  // namespace broadside::lab

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <utility>
+
+#include "src/core/bit_cast.hpp"
 
 namespace broadside::lab {
 
@@ -15,7 +16,7 @@ namespace {
 std::array<std::uint64_t, 3> place_of(const std::array<double, 3>& vertex) {
   std::array<std::uint64_t, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    place[axis] = vertex[axis] == 0 ? 0 : std::bit_cast<std::uint64_t>(vertex[axis]);
+    place[axis] = vertex[axis] == 0 ? 0 : core::bit_cast<std::uint64_t>(vertex[axis]);
   return place;
 }
 
@@ -29,7 +30,7 @@ std::vector<std::uint32_t> first_in_place(const IndexedMesh& a, const IndexedMes
   }
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, [&](std::uint32_t i, std::uint32_t j) {
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
     return places[i] < places[j] || (places[i] == places[j] && i < j);
   });
   std::vector<std::uint32_t> first(places.size());
@@ -97,7 +98,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const IndexedMesh& mesh) {
       if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
     }
   }
-  std::ranges::sort(edges);
+  std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
@@ -114,7 +115,8 @@ bool begins_as_obj(std::string_view text) {
     if (line.empty() || line.starts_with('#')) continue;
     constexpr std::array<std::string_view, 8> words = {"v", "vn", "vt", "f", "o", "g", "mtllib", "usemtl"};
     const std::size_t end = line.find_first_of(blanks);
-    return end != std::string_view::npos && std::ranges::find(words, line.substr(0, end)) != words.end();
+    return end != std::string_view::npos &&
+           std::find(words.begin(), words.end(), line.substr(0, end)) != words.end();
   }
   return false;
 }

@@ -191,7 +191,8 @@ class PlyReader {
 
   void begin_vertices(const Element& element) {
     for (const std::string_view axis : {"x", "y", "z"}) {
-      const auto found = std::ranges::find(element.properties, axis, &Property::name);
+      const auto found = std::find_if(element.properties.begin(), element.properties.end(),
+                                      [axis](const Property& property) { return property.name == axis; });
       if (found == element.properties.end() || found->is_list)
         throw FileError(fmt::format("{}: its vertices have no {}; expected the properties x, y and z",
                                     input_.name(), axis));

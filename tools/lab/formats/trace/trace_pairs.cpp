@@ -77,15 +77,15 @@ void TraceReader::take_pair_list(std::size_t at, std::uint32_t count, bool may_r
 /// Refuses a pair that ends without being reported, or more often than it was.
 void TraceReader::check_held(std::size_t end, const std::vector<Pair>& ended,
                              const std::vector<Pair>& held) const {
-  if (std::ranges::includes(held, ended)) return;
+  if (std::includes(held.begin(), held.end(), ended.begin(), ended.end())) return;
   std::vector<Pair> wrong;
-  std::ranges::set_difference(ended, held, std::back_inserter(wrong));
+  std::set_difference(ended.begin(), ended.end(), held.begin(), held.end(), std::back_inserter(wrong));
   refuse(begin_ + end, fmt::format("{} ends", text_of(wrong.front())), "one that the frame before had");
 }
 
 /// Refuses a pair of this frame that names a slot without a box, or that is ignored twice.
 void TraceReader::check_boxes(const FrameHeader& header) const {
-  const auto twice = std::ranges::adjacent_find(pairs_.ignored());
+  const auto twice = std::adjacent_find(pairs_.ignored().begin(), pairs_.ignored().end());
   if (twice != pairs_.ignored().end())
     refuse(header.byte, fmt::format("{} is ignored twice", text_of(*twice)), "once");
   for (const std::vector<Pair>* const pairs : {&pairs_.reported(), &pairs_.ignored()}) {

@@ -1,6 +1,5 @@
 // Reads a trace frame by frame, and checks it against all rules of docs/trace-format.md.
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -11,6 +10,7 @@
 
 #include "lab/formats/format.hpp"
 #include "lab/formats/trace/trace.hpp"
+#include "src/core/bit_cast.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -77,7 +77,7 @@ void TraceReader::read_header() {
   if (bytes_[14] != 0 || bytes_[15] != 0)
     refuse(14, fmt::format("{:02x} {:02x}", bytes_[14], bytes_[15]), "00 00");
   if (!has_pairs_) return;
-  recorded_.margin = std::bit_cast<double>(long_word(common));
+  recorded_.margin = core::bit_cast<double>(long_word(common));
   if (!(recorded_.margin >= 0) || std::isinf(recorded_.margin) || std::signbit(recorded_.margin))
     refuse(common, fmt::format("margin {}", recorded_.margin), "a finite number, 0 or more");
 }
@@ -198,8 +198,8 @@ std::uint64_t TraceReader::long_word(std::size_t at) const noexcept {
 }
 
 double TraceReader::coordinate(std::size_t at) const noexcept {
-  if (coordinate_bytes_ == 4) return static_cast<double>(std::bit_cast<float>(word(at)));
-  return std::bit_cast<double>(long_word(at));
+  if (coordinate_bytes_ == 4) return static_cast<double>(core::bit_cast<float>(word(at)));
+  return core::bit_cast<double>(long_word(at));
 }
 
 /// Verifies the checksum after the first `count` bytes of those read last.
