@@ -44,10 +44,9 @@ struct Frame {
   std::span<const Pair> ignored_changed{};
 };
 
-namespace world {
-template <int D, typename Real>
-class WorldTracker;
-}  // namespace world
+namespace detail {
+struct CheckedUpdate;
+}  // namespace detail
 
 /// Follows boxes frame after frame and reports which pairs began and which ended.
 ///
@@ -133,8 +132,7 @@ class BROADSIDE_PUBLIC Tracker final {
   void set_workers(const Workers& workers);
 
  private:
-  template <int, typename>
-  friend class world::WorldTracker;
+  friend struct detail::CheckedUpdate;
 
   /// update() for worlds, without checks: `changed` lists each box once, and these are valid or absent.
   std::optional<Statistics> update_checked(const Frame<D, Real>& frame, PairSink& begun, PairSink& ended);

@@ -7,6 +7,20 @@
 
 #include "core/former_names.hpp"
 
+namespace broadside::detail {
+
+/// Gives a world Tracker::update_checked(). A public header cannot name a class of broadside::world: a user's
+/// global variable `world` would be ambiguous after `using namespace broadside`.
+struct CheckedUpdate {
+  template <int D, typename Real>
+  static std::optional<Statistics> of(Tracker<D, Real>& tracker, const Frame<D, Real>& frame, PairSink& begun,
+                                      PairSink& ended) {
+    return tracker.update_checked(frame, begun, ended);
+  }
+};
+
+}  // namespace broadside::detail
+
 namespace broadside::world {
 
 template <int D, typename Real>
@@ -28,7 +42,7 @@ void WorldTracker<D, Real>::update(const Frame<D, Real>& frame, PairEvents& even
     PairCollector begun_pairs(events.begun);
     PairCollector ended_pairs(events.ended);
     if (Plain* const plain = std::get_if<Plain>(&tracker_))
-      statistics_ = plain->update_checked(frame, begun_pairs, ended_pairs);
+      statistics_ = detail::CheckedUpdate::of(*plain, frame, begun_pairs, ended_pairs);
     else
       take(frame, begun_pairs, ended_pairs);
   } catch (...) {

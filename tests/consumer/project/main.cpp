@@ -5,6 +5,10 @@
 
 #include "broadside/broadside.hpp"
 
+using namespace broadside;
+
+World2 world;  // no namespace of the library has the name of a variable that users have
+
 namespace {
 
 int failures = 0;
@@ -18,7 +22,6 @@ void expect(bool holds, const char* what) {
 }  // namespace
 
 int main() {
-  using namespace broadside;
   const std::vector<Box2> boxes = {{{0, 0}, {2, 2}}, {{1, 1}, {3, 3}}, {{3, 3}, {4, 4}}, {{9, 9}, {9, 9}}};
 
   expect(find_pairs(boxes).size() == 2, "two pairs from the default algorithm");
@@ -26,11 +29,13 @@ int main() {
     if (algorithm.has_dimension(2))
       expect(find_pairs(boxes, {.algorithm = algorithm.name}).size() == 2, algorithm.name.c_str());
   }
+  world.add(boxes[0]);
+  expect(world.size() == 1, "a box in a world");
   PairCounter counter;
   find_pairs(boxes, counter, {.algorithm = "brute_force"});
   expect(counter.count() == 2, "two pairs counted");
 
-  World2 world("brute_force");
+  world = World2("brute_force");
   const Handle still = world.add(boxes[0]);
   const Handle moving = world.add(boxes[3]);
   expect(world.update().begun.empty(), "no pair at first");
