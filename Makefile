@@ -73,14 +73,14 @@ $(python_folder)/%/ready: | setup
 	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
 
-# CMake's build folders: one for each dimension, with and without SIMD.
+# CMake's build folders: one for each dimension.
 wasm_folder := build/wasm
-wasm_flavours := 2d 3d 2d-scalar 3d-scalar
+wasm_dimensions := 2d 3d
 
-wasm: $(wasm_flavours:%=$(wasm_folder)/%/build.ninja) ## Build the npm package for JavaScript: build/wasm/package/
-	for flavour in $(wasm_flavours); do \
-	  test -f $(wasm_folder)/$$flavour/build.ninja || emcmake cmake --preset wasm-$$flavour || exit 1; \
-	  cmake --build --preset wasm-$$flavour || exit 1; done
+wasm: $(wasm_dimensions:%=$(wasm_folder)/%/build.ninja) ## Build the npm package for JavaScript: build/wasm/package/
+	for dimension in $(wasm_dimensions); do \
+	  test -f $(wasm_folder)/$$dimension/build.ninja || emcmake cmake --preset wasm-$$dimension || exit 1; \
+	  cmake --build --preset wasm-$$dimension || exit 1; done
 	node bindings/wasm/build.mjs $(wasm_folder) $(wasm_folder)/package
 
 test-wasm: wasm ## Run the tests of the npm package
@@ -91,7 +91,7 @@ test-wasm: wasm ## Run the tests of the npm package
 test-installed: test-wasm ## Install the npm package in an empty project, build it with Vite, test it in Node 18; needs the network
 	node tests/bindings/wasm/installed.mjs $(wasm_folder)/package $(wasm_folder)/tests
 
-$(wasm_flavours:%=$(wasm_folder)/%/build.ninja): $(wasm_folder)/%/build.ninja: CMakePresets.json | setup
+$(wasm_dimensions:%=$(wasm_folder)/%/build.ninja): $(wasm_folder)/%/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset wasm-$*
 
 compare-web: wasm ## Compare the npm package with other JavaScript libraries, in Node and in Chromium

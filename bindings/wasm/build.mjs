@@ -2,7 +2,6 @@
 //
 //   node build.mjs MODULES PACKAGE           MODULES/2d and so on are CMake's build folders; to PACKAGE
 //   node build.mjs --tests FOLDER PACKAGE    the tests of a PACKAGE, to FOLDER/*.test.mjs
-import { execFileSync } from "node:child_process";
 import {
   cpSync, mkdirSync, readFileSync, readdirSync, rmSync, symlinkSync, writeFileSync,
 } from "node:fs";
@@ -21,46 +20,31 @@ function version() {
   return /define BROADSIDE_VERSION "([^"]+)"/.exec(header)[1];
 }
 
-/** CMake's build folders: a dimension, with SIMD or without. */
-const flavours = ["2d", "3d", "2d-scalar", "3d-scalar"];
-
 /** The modules by the names of their files in the package. */
 function readModules(folder) {
   const modules = new Map();
   for (const [name, target] of [["broadside", "broadside_wasm"], ["broadside-pairs", "broadside_wasm_pairs"]]) {
-    for (const flavour of flavours)
-      modules.set(`${name}-${flavour}`, readFileSync(join(folder, flavour, "bindings/wasm", `${target}.wasm`)));
+    for (const dimension of ["2d", "3d"])
+      modules.set(`${name}-${dimension}`, readFileSync(join(folder, dimension, "bindings/wasm", `${target}.wasm`)));
   }
   return modules;
 }
 
-/**
- * A module as src/inline.ts reads it, by LZMA, which makes it a sixth smaller than gzip does. Base64 of what is compressed
- * is a hundredth larger when it is compressed again.
- */
+/** A module as src/inline.ts reads it. Base64 of what is compressed is a hundredth larger when it is compressed again. */
 function script(bytes) {
-  const format = ["--format=raw", "--lzma1=preset=9e,lc=3,lp=0,pb=0,nice=273"];
-  const packed = execFileSync("xz", [...format, "--stdout"], { input: bytes });
-  return `export const size=${bytes.length},bytes="${packed.toString("base64")}";
-`;
+  return `export default "${gzipSync(bytes, { level: 9 }).toString("base64")}";\n`;
 }
 
-/**
- * Leaves `module:NAME` to be imported from NAME.js when it is needed, and takes `unpacker` into the entry: the module that
- * decompresses the others, which any build folder has.
- */
-const modulesApart = (folder) => ({
+/** Leaves `module:NAME` to be imported from NAME.js when it is needed. */
+const modulesApart = {
   name: "modules",
-  setup({ onResolve, onLoad }) {
+  setup({ onResolve }) {
     onResolve({ filter: /^module:/ }, ({ path }) => ({ path: `./${path.slice("module:".length)}.js`, external: true }));
-    onResolve({ filter: /^unpacker$/ }, () => (
-      { path: resolve(folder, "2d-scalar/bindings/wasm/broadside_wasm_unpack.wasm"), namespace: "base64" }));
-    onLoad({ filter: /./, namespace: "base64" }, ({ path }) => ({ contents: readFileSync(path, "base64"), loader: "text" }));
   },
-});
+};
 
 /** A file of the package for each entry, and one for each module. */
-async function bundle(modules, modulesFolder, folder) {
+async function bundle(modules, folder) {
   await build({
     entryPoints: {
       index: join(here, "src/index.ts"),
@@ -74,7 +58,7 @@ async function bundle(modules, modulesFolder, folder) {
     target: "es2022",
     charset: "utf8",
     logLevel: "warning",
-    plugins: [modulesApart(modulesFolder)],
+    plugins: [modulesApart],
   });
   for (const [name, bytes] of modules) writeFileSync(join(folder, `${name}.js`), script(bytes));
 }
@@ -107,7 +91,7 @@ async function makePackage(modulesFolder, packageFolder) {
   const modules = readModules(modulesFolder);
   rmSync(packageFolder, { recursive: true, force: true });
   mkdirSync(packageFolder, { recursive: true });
-  await bundle(modules, modulesFolder, packageFolder);
+  await bundle(modules, packageFolder);
   for (const [name, bytes] of modules) writeFileSync(join(packageFolder, `${name}.wasm`), bytes);
   cpSync(join(here, "types"), packageFolder, { recursive: true });
   cpSync(join(here, "README.md"), join(packageFolder, "README.md"));

@@ -1,12 +1,18 @@
-// Numbers and text, by the standard library.
+// Numbers and text, by the standard library or, where it has not got them for doubles, by that of C.
 #include "core/number_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <clocale>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 namespace broadside::core {
+
+#if __cpp_lib_to_chars >= 201611L
 
 double number_in(std::string_view text) {
   double value = 0;
@@ -35,5 +41,52 @@ std::string text_of(double value, int digits) {
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
   return {text.data(), end};
 }
+
+#else
+
+// libc++ before version 20. The functions of C write and read the decimal point of the global locale.
+
+namespace {
+
+std::string printed(const char* format, int digits, double value) {
+  std::array<char, 400> buffer;
+  std::string text(buffer.data(), static_cast<std::size_t>(
+                                      std::snprintf(buffer.data(), buffer.size(), format, digits, value)));
+  const std::string_view point = std::localeconv()->decimal_point;
+  if (const std::size_t at = text.find(point); at != text.npos) text.replace(at, point.size(), ".");
+  return text;
+}
+
+}  // namespace
+
+double number_in(std::string_view text) {
+  // strtod() also takes spaces, a plus, hexadecimal digits and the locale's point.
+  if (text.starts_with('+') || text.find_first_not_of("0123456789.eE+-inftyaINFTYA") != text.npos)
+    return std::nan("");
+  std::string copy(text);
+  if (const std::size_t at = copy.find('.'); at != copy.npos)
+    copy.replace(at, 1, std::localeconv()->decimal_point);
+  char* end = nullptr;
+  const double value = std::strtod(copy.c_str(), &end);
+  return !copy.empty() && end == copy.c_str() + copy.size() ? value : std::nan("");
+}
+
+std::string text_of(double value) {
+  std::string text;
+  int digits = 0;  // after the first, as few as read back to the value
+  for (; digits < 17; ++digits) {
+    text = printed("%.*e", digits, value);
+    if (number_in(text) == value) break;
+  }
+  const std::size_t exponent = text.find('e');
+  if (exponent == text.npos) return text;  // "inf" or "nan"
+  const std::string fixed =
+      printed("%.*f", std::max(0, digits - std::atoi(text.c_str() + exponent + 1)), value);
+  return fixed.size() <= text.size() ? fixed : text;
+}
+
+std::string text_of(double value, int digits) { return printed("%.*g", digits, value); }
+
+#endif
 
 }  // namespace broadside::core

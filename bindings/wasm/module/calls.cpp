@@ -1,6 +1,7 @@
-// Memory, and information about the module.
+// Memory, exceptions as numbers, and information about the module.
 #include "module/calls.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <string_view>
 
@@ -8,6 +9,21 @@
 #include "broadside/version.hpp"
 
 namespace broadside::wasm {
+namespace {
+
+/// The message of the last failure. Longer ones are cut off, so that reporting a failure needs no memory.
+std::array<char, 1000> message;
+
+}  // namespace
+
+broadside_status status_of_exception() noexcept {
+  return bindings::status_of_exception([](broadside_status, std::string_view text, std::size_t place) {
+    const std::size_t size = text.copy(message.data(), message.size());
+    reply[0] = static_cast<std::uint32_t>(place);
+    answer(std::span<const char>(message.data(), size), 1);
+  });
+}
+
 BROADSIDE_EXPORT(reply) std::uint32_t* reply_address() { return reply.data(); }
 BROADSIDE_EXPORT(question) float* question_address() { return question.data(); }
 
@@ -27,13 +43,5 @@ BROADSIDE_EXPORT(version) void version() {
 }
 
 BROADSIDE_EXPORT(dimension) int dimension_of_boxes() { return dimension; }
-
-BROADSIDE_EXPORT(has_simd) bool has_simd() {
-#if defined(__wasm_simd128__)
-  return true;
-#else
-  return false;
-#endif
-}
 
 }  // namespace broadside::wasm

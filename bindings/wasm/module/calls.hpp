@@ -14,23 +14,11 @@
 #include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 
+#include "bindings/status_of_exception.hpp"
 #include "core/dimensions.hpp"
 #include "module/export.hpp"
 
 namespace broadside::wasm {
-
-/// The result of a call. src/error.ts has the same numbers.
-enum Status : std::int32_t {
-  ok = 0,
-  invalid_input,
-  invalid_frame,
-  invalid_query,
-  invalid_spec,
-  invalid_handle,
-  invalid_argument,
-  out_of_memory,
-  failed
-};
 
 /// What a call returns to JavaScript: addresses and counts; or, if the call failed, the place of the invalid
 /// box, and the address and the length of the message.
@@ -40,14 +28,14 @@ inline std::array<std::uint32_t, 8> reply;
 inline std::array<float, 16> question;
 
 /// Writes the exception in flight to `reply`, and returns its status.
-Status status_of_exception() noexcept;
+broadside_status status_of_exception() noexcept;
 
 /// Runs `body`, and turns an exception into a status.
 template <typename Body>
-Status guarded(const Body& body) noexcept {
+broadside_status guarded(const Body& body) noexcept {
   try {
     body();
-    return ok;
+    return BROADSIDE_OK;
   } catch (...) {
     return status_of_exception();
   }
@@ -80,7 +68,7 @@ static_assert(core::has_dimension<2> != core::has_dimension<3>,
 
 /// Makes an object that JavaScript holds by its address, and writes the address to `reply`.
 template <typename Kept, typename... Arguments>
-Status make_kept(const Arguments&... arguments) noexcept {
+broadside_status make_kept(const Arguments&... arguments) noexcept {
   return guarded([&] {
     reply[0] = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(new Kept(arguments...)));
   });

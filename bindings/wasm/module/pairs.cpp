@@ -1,13 +1,13 @@
 // Finders and trackers that JavaScript holds.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <string_view>
 
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
+#include "core/bit_cast.hpp"
 #include "module/calls.hpp"
 
 namespace broadside::wasm {
@@ -102,8 +102,8 @@ class WasmTracker {
   /// Whether two boxes have the same bits. Most have, and this needs no branch per coordinate.
   static bool equal(const Box<dimension>& a, const Box<dimension>& b) noexcept {
     using Bits = std::array<std::uint64_t, dimension>;
-    const Bits a_bits = std::bit_cast<Bits>(a);
-    const Bits b_bits = std::bit_cast<Bits>(b);
+    const Bits a_bits = core::bit_cast<Bits>(a);
+    const Bits b_bits = core::bit_cast<Bits>(b);
     std::uint64_t differ = 0;
     for (int i = 0; i < dimension; ++i) differ |= a_bits[i] ^ b_bits[i];
     return differ == 0;
@@ -117,28 +117,28 @@ class WasmTracker {
 
 }  // namespace
 
-BROADSIDE_EXPORT(finder_make) Status finder_make(const char* spec, std::size_t size) {
+BROADSIDE_EXPORT(finder_make) broadside_status finder_make(const char* spec, std::size_t size) {
   return make_kept<WasmFinder>(std::string_view(spec, size));
 }
 
 BROADSIDE_EXPORT(finder_free) void finder_free(WasmFinder* finder) { delete finder; }
 
 BROADSIDE_EXPORT(finder_find)
-Status finder_find(WasmFinder* finder, const float* boxes, std::size_t count, const float* right,
-                   std::size_t right_count, const Filter* filters, const Filter* right_filters,
-                   std::uint32_t mode) {
+broadside_status finder_find(WasmFinder* finder, const float* boxes, std::size_t count, const float* right,
+                             std::size_t right_count, const Filter* filters, const Filter* right_filters,
+                             std::uint32_t mode) {
   return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
 }
 
-BROADSIDE_EXPORT(tracker_make) Status tracker_make(const char* spec, std::size_t size) {
+BROADSIDE_EXPORT(tracker_make) broadside_status tracker_make(const char* spec, std::size_t size) {
   return make_kept<WasmTracker>(std::string_view(spec, size));
 }
 
 BROADSIDE_EXPORT(tracker_free) void tracker_free(WasmTracker* tracker) { delete tracker; }
 
 BROADSIDE_EXPORT(tracker_update)
-Status tracker_update(WasmTracker* tracker, const float* boxes, std::size_t count, const BoxId* changed,
-                      std::size_t changed_count, const Filter* filters) {
+broadside_status tracker_update(WasmTracker* tracker, const float* boxes, std::size_t count,
+                                const BoxId* changed, std::size_t changed_count, const Filter* filters) {
   return guarded([&] { tracker->update(boxes, count, changed, changed_count, filters); });
 }
 

@@ -75,7 +75,7 @@ void ask_world(const World<dimension>& world, double except, const Ask& ask) {
 /// Calls `ask` with the index or world at `address` and the box to leave out, and writes to `reply` where
 /// `ids` or their handles are. An `except` below 0 leaves out nothing.
 template <typename Ask>
-Status asked(bool is_world, void* address, double except, const Ask& ask) noexcept {
+broadside_status asked(bool is_world, void* address, double except, const Ask& ask) noexcept {
   return guarded([&] {
     ids.clear();
     if (is_world)
@@ -87,18 +87,18 @@ Status asked(bool is_world, void* address, double except, const Ask& ask) noexce
 
 }  // namespace
 
-BROADSIDE_EXPORT(index_make) Status index_make() { return make_kept<WasmIndex>(); }
+BROADSIDE_EXPORT(index_make) broadside_status index_make() { return make_kept<WasmIndex>(); }
 
 BROADSIDE_EXPORT(index_free) void index_free(WasmIndex* index) { delete index; }
 
 BROADSIDE_EXPORT(index_update)
-Status index_update(WasmIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
-                    std::size_t changed_count, const Filter* filters) {
+broadside_status index_update(WasmIndex* index, const float* boxes, std::size_t count, const BoxId* changed,
+                              std::size_t changed_count, const Filter* filters) {
   return guarded([&] { index->update(boxes, count, changed, changed_count, filters); });
 }
 
 BROADSIDE_EXPORT(query_overlapping)
-Status query_overlapping(bool is_world, void* address, const Filter* filter, double except) {
+broadside_status query_overlapping(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
                  index.overlapping(Box<dimension>{point_at(0), point_at(dimension)},
@@ -107,8 +107,8 @@ Status query_overlapping(bool is_world, void* address, const Filter* filter, dou
 }
 
 BROADSIDE_EXPORT(query_nearest)
-Status query_nearest(bool is_world, void* address, const Filter* filter, double except, std::size_t k,
-                     double max_distance) {
+broadside_status query_nearest(bool is_world, void* address, const Filter* filter, double except,
+                               std::size_t k, double max_distance) {
   return asked(
       is_world, address, except, [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
         index.nearest(point_at(0), k, neighbours, {filter, left_out, static_cast<float>(max_distance)});
@@ -123,7 +123,7 @@ Status query_nearest(bool is_world, void* address, const Filter* filter, double 
 
 /// Writes the parameter of the hit to `question`.
 BROADSIDE_EXPORT(query_first_hit)
-Status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
+broadside_status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
                  if (const auto hit = index.first_hit(cast_at(), {filter, left_out})) {

@@ -92,48 +92,48 @@ void WasmWorld::ignore(double a, double b, bool ignores) {
 }
 
 BROADSIDE_EXPORT(world_make)
-Status world_make(const char* texts, std::size_t size) {
+broadside_status world_make(const char* texts, std::size_t size) {
   // The algorithm's spec, and the options on the next line.
   WorldOptions options;
-  const Status status = guarded([&] {
+  const broadside_status status = guarded([&] {
     const std::string_view both(texts, size);
     const std::size_t line = both.find('\n');
     options = world_options(both.substr(line + 1));
     options.algorithm = both.substr(0, line);
     options.first_generation = next_first_generation();
   });
-  return status == ok ? make_kept<WasmWorld>(options) : status;
+  return status == BROADSIDE_OK ? make_kept<WasmWorld>(options) : status;
 }
 
 BROADSIDE_EXPORT(world_free) void world_free(WasmWorld* world) { delete world; }
 
 BROADSIDE_EXPORT(world_add)
-Status world_add(WasmWorld* world, const float* boxes, std::size_t count, const Filter* filters,
-                 double* handles) {
+broadside_status world_add(WasmWorld* world, const float* boxes, std::size_t count, const Filter* filters,
+                           double* handles) {
   return guarded([&] { world->add(boxes, count, filters, handles); });
 }
 
 BROADSIDE_EXPORT(world_move)
-Status world_move(WasmWorld* world, const double* handles, const float* boxes, std::size_t count,
-                  const float* velocities) {
+broadside_status world_move(WasmWorld* world, const double* handles, const float* boxes, std::size_t count,
+                            const float* velocities) {
   return guarded([&] { world->move(handles, boxes, count, velocities); });
 }
 
 BROADSIDE_EXPORT(world_remove)
-Status world_remove(WasmWorld* world, const double* handles, std::size_t count) {
+broadside_status world_remove(WasmWorld* world, const double* handles, std::size_t count) {
   return guarded([&] { world->remove(handles, count); });
 }
 
-BROADSIDE_EXPORT(world_update) Status world_update(WasmWorld* world) {
+BROADSIDE_EXPORT(world_update) broadside_status world_update(WasmWorld* world) {
   return guarded([&] { world->update(); });
 }
 
-BROADSIDE_EXPORT(world_pairs) Status world_pairs(WasmWorld* world) {
+BROADSIDE_EXPORT(world_pairs) broadside_status world_pairs(WasmWorld* world) {
   return guarded([&] { world->pairs(); });
 }
 
 /// Writes the box to `question`.
-BROADSIDE_EXPORT(world_box) Status world_box(WasmWorld* world, double handle) {
+BROADSIDE_EXPORT(world_box) broadside_status world_box(WasmWorld* world, double handle) {
   return guarded([&] { world->box(handle); });
 }
 
@@ -143,11 +143,12 @@ BROADSIDE_EXPORT(world_contains) bool world_contains(WasmWorld* world, double ha
 }
 
 BROADSIDE_EXPORT(world_set_filter)
-Status world_set_filter(WasmWorld* world, double handle, const Filter* filter) {
+broadside_status world_set_filter(WasmWorld* world, double handle, const Filter* filter) {
   return guarded([&] { world->set_filter(handle, *filter); });
 }
 
-BROADSIDE_EXPORT(world_ignore) Status world_ignore(WasmWorld* world, double a, double b, bool ignores) {
+BROADSIDE_EXPORT(world_ignore)
+broadside_status world_ignore(WasmWorld* world, double a, double b, bool ignores) {
   return guarded([&] { world->ignore(a, b, ignores); });
 }
 

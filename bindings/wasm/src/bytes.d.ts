@@ -1,11 +1,5 @@
-// build.mjs makes a file of each module's bytes, which is fetched when it is needed.
+// build.mjs makes a file of each module's bytes, which is fetched when it is needed: compressed by gzip, as base64.
 declare module "module:*" {
-  export const size: number;
-  export const bytes: string;
-}
-
-/** The module that decompresses the others, module/unpack.cpp, in base64. */
-declare module "unpacker" {
-  const base64: string;
-  export default base64;
+  const gzipped: string;
+  export default gzipped;
 }

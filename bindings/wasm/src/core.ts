@@ -14,7 +14,6 @@ export interface Exports {
   algorithm_name(number: number): void;
   version(): void;
   dimension(): Dimension;
-  has_simd(): number;
   finder_make(spec: number, size: number): number;
   finder_free(finder: number): void;
   finder_find(
@@ -55,16 +54,13 @@ export class Core {
   readonly question: number;  // in elements of f32
   readonly algorithms: readonly string[];
   readonly dimension: Dimension;
-  readonly simd: boolean;
   #staging = 0;
   #room = 0;
   #used = 0;
 
   static async make(wasm: WebAssembly.Module): Promise<Core> {
-    let memory: WebAssembly.Memory;
-    const instance = await WebAssembly.instantiate(wasm, importsOf(() => memory.buffer));
+    const instance = await WebAssembly.instantiate(wasm, importsOf(wasm));
     const exports = instance.exports as unknown as Exports;
-    memory = exports.memory;
     exports._initialize();
     return new Core(exports);
   }
@@ -75,7 +71,6 @@ export class Core {
     this.reply = exports.reply() >> 2;
     this.question = exports.question() >> 2;
     this.dimension = exports.dimension();
-    this.simd = exports.has_simd() !== 0;
     this.algorithms = [...this.#algorithms()];
   }
 

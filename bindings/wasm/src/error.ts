@@ -1,11 +1,11 @@
 // BroadsideError, and the module's numbers for what went wrong.
 import type { BroadsideErrorCode, Dimension } from "../types/types.d.ts";
 
-/** By the module's `Status`, less one. */
-const codes = [
-  "INVALID_INPUT", "INVALID_FRAME", "INVALID_QUERY", "INVALID_SPEC", "INVALID_HANDLE", "INVALID_ARGUMENT",
-  "OUT_OF_MEMORY", "FAILED",
-] as const satisfies readonly BroadsideErrorCode[];
+/** By `broadside_status` of bindings/c/broadside.h. All other failures are `FAILED`. */
+const codes: Readonly<Record<number, BroadsideErrorCode>> = {
+  1: "INVALID_INPUT", 2: "INVALID_FRAME", 3: "INVALID_QUERY", 4: "INVALID_SPEC", 5: "INVALID_HANDLE",
+  7: "INVALID_ARGUMENT", 10: "OUT_OF_MEMORY",
+};
 
 export class BroadsideError extends Error {
   override readonly name = "BroadsideError";
@@ -20,7 +20,7 @@ export class BroadsideError extends Error {
 }
 
 export function errorOf(status: number, message: string, index: number): BroadsideError {
-  const code = codes[status - 1] ?? "FAILED";
+  const code = codes[status] ?? "FAILED";
   return new BroadsideError(code, message, code === "INVALID_INPUT" ? index : undefined);
 }
 

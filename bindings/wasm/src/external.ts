@@ -1,11 +1,11 @@
 // The entry "broadside/external": everything, over modules that the caller brings.
 import type { Broadside } from "../types/types.d.ts";
 import type { ExternalOptions, ModuleSource } from "../types/external.d.ts";
+import { compile } from "./compile.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { broadsideOf } from "./face.ts";
 
 export { BroadsideError } from "./error.ts";
-export { supportsSimd } from "./simd.ts";
 
 async function compiled(source: ModuleSource): Promise<WebAssembly.Module> {
   const wasm = await source;
@@ -13,9 +13,9 @@ async function compiled(source: ModuleSource): Promise<WebAssembly.Module> {
   if (typeof wasm === "string" || wasm instanceof URL) return compiled(await fetch(wasm));
   if (typeof Response !== "undefined" && wasm instanceof Response) {
     if (!wasm.ok) refuse("the response's status", wasm.status, "200");
-    return WebAssembly.compile(await wasm.arrayBuffer());
+    return compile(await wasm.arrayBuffer());
   }
-  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm);
+  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return compile(wasm);
   return refuse("wasm", wasm, "a WebAssembly.Module, its bytes, a Response, or its address");
 }
 

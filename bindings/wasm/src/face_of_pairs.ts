@@ -15,7 +15,6 @@ export class PairFindingFace implements PairFinding {
   readonly #plane: Pairs | undefined;
   readonly #space: Pairs | undefined;
   readonly version: string;
-  readonly simd: boolean;
 
   constructor(cores: Cores) {
     const { main } = cores;
@@ -26,7 +25,6 @@ export class PairFindingFace implements PairFinding {
     this.#space = space === main ? this.#main : space && new Pairs(space);
     main.exports.version();
     this.version = main.text(0);
-    this.simd = main.simd;
   }
 
   /** What finds the pairs of boxes of a dimension. */

@@ -5,9 +5,9 @@
 // they are called for one box as well: a method of an object with state of its own costs as much as a comparison.
 import type { Dimension } from "../types/types.d.ts";
 
-/** Up to how many boxes this is the faster way; measured by bench/web/compare.mjs. */
-export function maxFew(simd: boolean, dimension: Dimension): number {
-  return simd ? (dimension === 2 ? 44 : 42) : 300;
+/** Up to how many boxes this is the faster way; measured by tools/bench/web/compare.mjs. */
+export function maxFew(dimension: Dimension): number {
+  return dimension === 2 ? 44 : 42;
 }
 
 export function fewPairs2(boxes: Float32Array, pairs: Uint32Array): number {

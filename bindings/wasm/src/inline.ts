@@ -1,50 +1,16 @@
-// The modules' bytes as the package carries them: compressed by LZMA, as base64.
-import unpacker from "unpacker";
-
+// The modules that the package carries in files of their own, compressed.
 import type { Dimension, LoadOptions } from "../types/types.d.ts";
-import { checkDimension, checkOptions, refuse } from "./error.ts";
-import { supportsSimd } from "./simd.ts";
+import { compile, gunzip } from "./compile.ts";
+import { checkDimension, checkOptions } from "./error.ts";
 
-/** What the module exports that decompresses the others: module/unpack.cpp. */
-interface Unpacker {
-  readonly memory: WebAssembly.Memory;
-  room(): number;
-  unpack(packedSize: number, size: number): void;
-}
+/** Imports the bytes of an entry's module for each dimension. */
+export type Modules = Readonly<Record<Dimension, () => Promise<{ readonly default: string }>>>;
 
-interface Packed {
-  readonly size: number;
-  readonly bytes: string;
-}
-
-const bytesIn = (base64: string) => Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0));
-
-async function unpacked({ size, bytes }: Packed): Promise<Uint8Array<ArrayBuffer>> {
-  const packed = bytesIn(bytes);
-  const { instance } = await WebAssembly.instantiate(bytesIn(unpacker));
-  const { memory, room, unpack } = instance.exports as unknown as Unpacker;
-  memory.grow(Math.ceil((packed.length + size) / 65536));
-  new Uint8Array(memory.buffer).set(packed, room());
-  unpack(packed.length, size);
-  return new Uint8Array(memory.buffer as ArrayBuffer, room() + packed.length, size);
-}
-
-/** Imports a module's bytes. */
-type Import = () => Promise<Packed>;
-
-/** The modules of an entry by their dimension, with SIMD and without. */
-export type Modules = Readonly<Record<`${Dimension}d${"" | "-scalar"}`, Import>>;
-
-/**
- * Compiles the modules that suit this host, or that the options ask for: one for each dimension. Only their bytes are
- * fetched, at the same time.
- */
+/** Compiles the modules that the options ask for. Only their bytes are fetched, at the same time. */
 export async function compileInline(options: LoadOptions, modules: Modules): Promise<WebAssembly.Module[]> {
-  checkOptions(options, ["simd", "dimension"]);
-  const { simd = supportsSimd(), dimension } = options;
-  if (typeof simd !== "boolean") refuse("simd", simd, "true or false");
+  checkOptions(options, ["dimension"]);
+  const { dimension } = options;
   if (dimension !== undefined) checkDimension(dimension);
-  const compile = async (of: Dimension) =>
-    WebAssembly.compile(await unpacked(await modules[`${of}d${simd ? "" : "-scalar"}`]()));
-  return Promise.all(dimension === undefined ? [compile(2), compile(3)] : [compile(dimension)]);
+  const compileOne = async (of: Dimension) => compile(await gunzip((await modules[of]()).default));
+  return Promise.all(dimension === undefined ? [compileOne(2), compileOne(3)] : [compileOne(dimension)]);
 }

@@ -42,7 +42,7 @@ export class Pairs {
   constructor(core: Core) {
     this.#core = core;
     this.#isFlat = core.dimension === 2;
-    const max = maxFew(core.simd, core.dimension);
+    const max = maxFew(core.dimension);
     this.#maxOfFew = 2 * core.dimension * max;
     this.#maxFewIds = max * (max - 1);
     this.#fewPairs = new Uint32Array(this.#maxFewIds);

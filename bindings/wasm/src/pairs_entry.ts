@@ -7,9 +7,7 @@ export { BroadsideError } from "./error.ts";
 
 export async function load(options: LoadOptions = {}): Promise<PairFinding> {
   return pairFindingOf(await compileInline(options, {
-    "2d": () => import("module:broadside-pairs-2d"),
-    "3d": () => import("module:broadside-pairs-3d"),
-    "2d-scalar": () => import("module:broadside-pairs-2d-scalar"),
-    "3d-scalar": () => import("module:broadside-pairs-3d-scalar"),
+    2: () => import("module:broadside-pairs-2d"),
+    3: () => import("module:broadside-pairs-3d"),
   }));
 }

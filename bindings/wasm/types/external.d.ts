@@ -10,12 +10,6 @@ export type ModuleSource =
   WebAssembly.Module | BufferSource | Response | PromiseLike<WebAssembly.Module | BufferSource | Response> | URL | string;
 
 export interface ExternalOptions {
-  /**
-   * `broadside/broadside-2d.wasm`, `broadside/broadside-3d.wasm`, or an array of both; without SIMD, the
-   * files with `-scalar` in their names.
-   */
+  /** `broadside/broadside-2d.wasm`, `broadside/broadside-3d.wasm`, or an array of both. */
   readonly wasm: ModuleSource | readonly ModuleSource[];
 }
-
-/** Whether WebAssembly has SIMD here. */
-export declare function supportsSimd(): boolean;

@@ -228,8 +228,6 @@ export interface PairFinding {
   /** The names of the algorithms. */
   algorithms(): string[];
   readonly version: string;
-  /** Whether this is the build that uses SIMD. */
-  readonly simd: boolean;
 }
 
 /** Pairs, trackers, worlds and queries. */
@@ -269,6 +267,4 @@ export interface LoadOptions {
    * out, both dimensions are loaded, and the default is 2.
    */
   readonly dimension?: Dimension;
-  /** Whether to take the build that uses SIMD. If left out, it is taken wherever WebAssembly has SIMD. */
-  readonly simd?: boolean;
 }

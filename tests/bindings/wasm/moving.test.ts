@@ -2,12 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { type Broadside, type Dimension, type Handle, load } from "broadside";
+import { type Dimension, type Handle, load } from "broadside";
 
 import { at, pairsByDefinition, random, scenes, without } from "./support.ts";
 
-const builds = [await load({ simd: true }), await load({ simd: false })];
-const broadside = builds[0] as Broadside;
+const broadside = await load();
 const uniform = scenes[0] as (typeof scenes)[0];
 
 /** Moves a share of the boxes, and returns which. */
@@ -26,27 +25,25 @@ function move(boxes: Float32Array, dimension: Dimension, share: number, rng: () 
   return moved;
 }
 
-for (const build of builds) {
-  for (const dimension of [2, 3] as const) {
-    for (const algorithm of build.algorithms()) {
-      test(`a tracker by ${algorithm}, ${dimension}D, ${build.simd ? "with" : "without"} SIMD`, () => {
-        const rng = random(dimension);
-        for (const count of [5, 200]) {
-          const boxes = uniform.boxes(count, dimension, 5).map((x) => x / 4);
-          const tracker = build.tracker({ dimension, algorithm });
-          let before: number[] = [];
-          for (let frame = 0; frame < 12; ++frame) {
-            const moved = frame === 0 ? [] : move(boxes, dimension, frame % 3 === 0 ? 1 : 0.1, rng);
-            const { begun, ended } = tracker.update(boxes, frame % 2 === 0 ? {} : { changed: moved });
-            const now = pairsByDefinition(boxes, dimension);
-            assert.deepEqual([...begun], without(now, before), `begun in frame ${frame}`);
-            assert.deepEqual([...ended], without(before, now), `ended in frame ${frame}`);
-            before = now;
-          }
-          tracker.free();
+for (const dimension of [2, 3] as const) {
+  for (const algorithm of broadside.algorithms()) {
+    test(`a tracker by ${algorithm}, ${dimension}D`, () => {
+      const rng = random(dimension);
+      for (const count of [5, 200]) {
+        const boxes = uniform.boxes(count, dimension, 5).map((x) => x / 4);
+        const tracker = broadside.tracker({ dimension, algorithm });
+        let before: number[] = [];
+        for (let frame = 0; frame < 12; ++frame) {
+          const moved = frame === 0 ? [] : move(boxes, dimension, frame % 3 === 0 ? 1 : 0.1, rng);
+          const { begun, ended } = tracker.update(boxes, frame % 2 === 0 ? {} : { changed: moved });
+          const now = pairsByDefinition(boxes, dimension);
+          assert.deepEqual([...begun], without(now, before), `begun in frame ${frame}`);
+          assert.deepEqual([...ended], without(before, now), `ended in frame ${frame}`);
+          before = now;
         }
-      });
-    }
+        tracker.free();
+      }
+    });
   }
 }
 
@@ -62,46 +59,44 @@ test("a tracker sees boxes that come and go, and filters that change", () => {
   assert.deepEqual([[...begun], [...ended]], [[], [0, 1]]);
 });
 
-for (const build of builds) {
-  for (const dimension of [2, 3] as const) {
-    for (const options of [{}, { margin: 0.5 }, { margin: 1, predictedFrames: 3 }, { algorithm: "grid" }]) {
-      test(`a world, ${dimension}D, ${JSON.stringify(options)}, ${build.simd ? "with" : "without"} SIMD`, () => {
-        const rng = random(11);
-        const world = build.world({ dimension, ...options });
-        const boxes = uniform.boxes(300, dimension, 9).map((x) => x / 4);
-        const size = 2 * dimension;
-        // By handle: its box and its place in the model's array.
-        const live = new Map<Handle, Float32Array>();
-        let before: number[] = [];
-        for (let frame = 0; frame < 12; ++frame) {
-          for (const [handle, box] of live) {
-            if (rng() < 0.1) {
-              world.remove(handle);
-              live.delete(handle);
-            } else if (rng() < 0.2) {
-              move(box, dimension, 1, rng);
-              world.move(handle, box);
-            }
+for (const dimension of [2, 3] as const) {
+  for (const options of [{}, { margin: 0.5 }, { margin: 1, predictedFrames: 3 }, { algorithm: "grid" }]) {
+    test(`a world, ${dimension}D, ${JSON.stringify(options)}`, () => {
+      const rng = random(11);
+      const world = broadside.world({ dimension, ...options });
+      const boxes = uniform.boxes(300, dimension, 9).map((x) => x / 4);
+      const size = 2 * dimension;
+      // By handle: its box and its place in the model's array.
+      const live = new Map<Handle, Float32Array>();
+      let before: number[] = [];
+      for (let frame = 0; frame < 12; ++frame) {
+        for (const [handle, box] of live) {
+          if (rng() < 0.1) {
+            world.remove(handle);
+            live.delete(handle);
+          } else if (rng() < 0.2) {
+            move(box, dimension, 1, rng);
+            world.move(handle, box);
           }
-          const from = size * Math.floor(rng() * 280);
-          const added = boxes.slice(from, from + size * 20);
-          world.add(added).forEach((handle, i) => live.set(handle, added.slice(size * i, size * (i + 1))));
-          assert.equal(world.size, live.size);
-
-          const { begun, ended } = world.update();
-          // The model's pairs as handles, in the order of slots.
-          const handles = [...live.keys()].sort((a, b) => world.slot(a) - world.slot(b));
-          const all = Float32Array.from(handles.flatMap((handle) => [...(live.get(handle) as Float32Array)]));
-          const now = pairsByDefinition(all, dimension).map((i) => handles[i] as Handle);
-          assert.deepEqual([...begun], without(now, before), `begun in frame ${frame}`);
-          assert.deepEqual(new Set(byPairs(ended)), new Set(byPairs(without(before, now))), `ended in frame ${frame}`);
-          assert.deepEqual([...world.pairs()], now);
-          before = now;
         }
-        for (const [handle, box] of live) assert.deepEqual(world.box(handle), box);
-        world.free();
-      });
-    }
+        const from = size * Math.floor(rng() * 280);
+        const added = boxes.slice(from, from + size * 20);
+        world.add(added).forEach((handle, i) => live.set(handle, added.slice(size * i, size * (i + 1))));
+        assert.equal(world.size, live.size);
+
+        const { begun, ended } = world.update();
+        // The model's pairs as handles, in the order of slots.
+        const handles = [...live.keys()].sort((a, b) => world.slot(a) - world.slot(b));
+        const all = Float32Array.from(handles.flatMap((handle) => [...(live.get(handle) as Float32Array)]));
+        const now = pairsByDefinition(all, dimension).map((i) => handles[i] as Handle);
+        assert.deepEqual([...begun], without(now, before), `begun in frame ${frame}`);
+        assert.deepEqual(new Set(byPairs(ended)), new Set(byPairs(without(before, now))), `ended in frame ${frame}`);
+        assert.deepEqual([...world.pairs()], now);
+        before = now;
+      }
+      for (const [handle, box] of live) assert.deepEqual(world.box(handle), box);
+      world.free();
+    });
   }
 }
 

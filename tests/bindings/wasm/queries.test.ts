@@ -6,7 +6,7 @@ import { type Dimension, type Index, load } from "broadside";
 
 import { at, overlap, random, scenes } from "./support.ts";
 
-const builds = [await load({ simd: true }), await load({ simd: false })];
+const broadside = await load();
 
 /** The square of a box's distance, as the library defines it: sums of floats. */
 function distanceSquared(point: ArrayLike<number>, boxes: Float32Array, i: number, dimension: Dimension): number {
@@ -39,44 +39,42 @@ function enters(origin: ArrayLike<number>, direction: ArrayLike<number>, boxes: 
   return enter <= leave ? enter : undefined;
 }
 
-for (const build of builds) {
-  for (const dimension of [2, 3] as const) {
-    for (const scene of scenes.slice(0, 4)) {
-      test(`queries of boxes ${scene.name}, ${dimension}D, ${build.simd ? "with" : "without"} SIMD`, () => {
-        const rng = random(4);
-        const count = 700;
-        const boxes = scene.boxes(count, dimension, 2);
-        const index = build.index(boxes, { dimension });
-        const world = build.world({ dimension });
-        const handles = world.add(boxes);
-        const places = Array.from({ length: count }, (_, i) => i);
-        for (let question = 0; question < 40; ++question) {
-          const point = Float32Array.from({ length: dimension }, () => 100 * rng());
-          const box = Float32Array.from([...point, ...point.map((x) => x + 10 * rng())]);
-          const overlapping = places.filter((i) => overlap(boxes, i, box, 0, dimension));
-          assert.deepEqual([...index.overlapping(box)].sort((a, b) => a - b), overlapping);
-          assert.deepEqual(new Set(world.overlapping(box)), new Set(overlapping.map((i) => at(handles, i))));
+for (const dimension of [2, 3] as const) {
+  for (const scene of scenes.slice(0, 4)) {
+    test(`queries of boxes ${scene.name}, ${dimension}D`, () => {
+      const rng = random(4);
+      const count = 700;
+      const boxes = scene.boxes(count, dimension, 2);
+      const index = broadside.index(boxes, { dimension });
+      const world = broadside.world({ dimension });
+      const handles = world.add(boxes);
+      const places = Array.from({ length: count }, (_, i) => i);
+      for (let question = 0; question < 40; ++question) {
+        const point = Float32Array.from({ length: dimension }, () => 100 * rng());
+        const box = Float32Array.from([...point, ...point.map((x) => x + 10 * rng())]);
+        const overlapping = places.filter((i) => overlap(boxes, i, box, 0, dimension));
+        assert.deepEqual([...index.overlapping(box)].sort((a, b) => a - b), overlapping);
+        assert.deepEqual(new Set(world.overlapping(box)), new Set(overlapping.map((i) => at(handles, i))));
 
-          const distances = places.map((i) => distanceSquared(point, boxes, i, dimension));
-          const nearest = [...places].sort((a, b) => at(distances, a) - at(distances, b) || a - b).slice(0, 5);
-          const neighbours = index.nearest(point, 5);
-          assert.deepEqual([...neighbours.ids], nearest);
-          assert.deepEqual([...neighbours.distances], nearest.map((i) => Math.sqrt(at(distances, i))));
-          assert.deepEqual([...world.nearest(point, 5).ids], nearest.map((i) => at(handles, i)));
+        const distances = places.map((i) => distanceSquared(point, boxes, i, dimension));
+        const nearest = [...places].sort((a, b) => at(distances, a) - at(distances, b) || a - b).slice(0, 5);
+        const neighbours = index.nearest(point, 5);
+        assert.deepEqual([...neighbours.ids], nearest);
+        assert.deepEqual([...neighbours.distances], nearest.map((i) => Math.sqrt(at(distances, i))));
+        assert.deepEqual([...world.nearest(point, 5).ids], nearest.map((i) => at(handles, i)));
 
-          const direction = Float32Array.from({ length: dimension }, () => 2 * rng() - 1);
-          let first: { id: number; t: number } | undefined;
-          for (const i of places) {
-            const t = enters(point, direction, boxes, i, dimension);
-            if (t !== undefined && (first === undefined || t < first.t)) first = { id: i, t };
-          }
-          assert.deepEqual(index.firstHit(point, direction), first);
-          assert.deepEqual(world.firstHit(point, direction), first && { ...first, id: at(handles, first.id) });
+        const direction = Float32Array.from({ length: dimension }, () => 2 * rng() - 1);
+        let first: { id: number; t: number } | undefined;
+        for (const i of places) {
+          const t = enters(point, direction, boxes, i, dimension);
+          if (t !== undefined && (first === undefined || t < first.t)) first = { id: i, t };
         }
-        index.free();
-        world.free();
-      });
-    }
+        assert.deepEqual(index.firstHit(point, direction), first);
+        assert.deepEqual(world.firstHit(point, direction), first && { ...first, id: at(handles, first.id) });
+      }
+      index.free();
+      world.free();
+    });
   }
 }
 

@@ -31,7 +31,7 @@ async function inNode() {
     const { user, system } = process.cpuUsage();
     return (user + system) / 1000;
   };
-  const libraries = [...ours(await load()), ...ours(await load({ simd: false }), "broadside, scalar"), ...others, rapier2d];
+  const libraries = [...ours(await load()), ...others, rapier2d];
   console.log(`Node ${process.version}, ${cpus()[0].model}, processor time`);
   compareAll({ clock, libraries, minCount, maxCount, say: (text) => console.log(`\n${text}`) });
 }
@@ -54,8 +54,7 @@ async function inChromium() {
           say: (text) => console.log("\\n" + text) });
         console.log("done");`,
     },
-    bundle: true, format: "esm", write: false, external: ["*-scalar.js"],
-    define: { global: "globalThis" }, logLevel: "warning",
+    bundle: true, format: "esm", write: false, define: { global: "globalThis" }, logLevel: "warning",
   });
   const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
   const page = await browser.newPage();

@@ -25,7 +25,7 @@ function withEngine(path) {
 
 const modules = join(here, "../../../build/playground/engine");
 
-/** An engine module, packed for bench/unpack.ts. */
+/** An engine module, compressed for bench/serve.ts. */
 function packed(name) {
   return gzipSync(readFileSync(join(modules, name)), { level: 9 }).toString("base64");
 }

@@ -22,7 +22,7 @@ export interface Setup {
   selected: number;
 }
 
-/** The first message to the bench: the engine's modules, packed as in unpack.ts. */
+/** The first message to the bench: the engine's modules, compressed by gzip, as base64. */
 export interface Start {
   kind: "start";
   engine: string;

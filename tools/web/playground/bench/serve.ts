@@ -3,7 +3,7 @@
 import { loadEngine } from "../engine/engine.ts";
 import { Bench } from "./bench.ts";
 import type { Reply, Request, Start } from "./protocol.ts";
-import { unpack } from "./unpack.ts";
+import { gunzip } from "../../../../bindings/wasm/src/compile.ts";
 
 export interface Port {
   postMessage(reply: Reply, transfer: Transferable[]): void;
@@ -23,7 +23,7 @@ async function start(port: Port, { engine, observing }: Start): Promise<void> {
   port.onmessage = ({ data }) => void waiting.push(data as Request);
   const send = (reply: Reply): void => port.postMessage(reply, buffersOf(reply));
   try {
-    const [plain, watching] = await Promise.all([unpack(engine), unpack(observing)]);
+    const [plain, watching] = await Promise.all([gunzip(engine), gunzip(observing)]);
     const loaded = await loadEngine({ engine: plain, observing: watching });
     const bench = new Bench(loaded, send);
     send({ kind: "ready", algorithms: loaded.algorithms() });

@@ -1,5 +1,6 @@
 // A module of the engine (engine.cpp): its memory, its texts and its functions' errors.
-import { importsOf } from "../../../bindings/wasm/src/imports.ts";
+import { compile } from "../../../../bindings/wasm/src/compile.ts";
+import { importsOf } from "../../../../bindings/wasm/src/imports.ts";
 
 /** The exports of engine.cpp. */
 interface Exports {
@@ -29,19 +30,6 @@ interface Exports {
   read_file(): number;
 }
 
-/**
- * The imports of the package's module, and stubs for what else the standard library asks of the
- * system: files, arguments and a clock.
- */
-function imports(module: WebAssembly.Module, memory: () => ArrayBufferLike): WebAssembly.Imports {
-  const all: WebAssembly.Imports = importsOf(memory);
-  for (const { module: from, name } of WebAssembly.Module.imports(module)) {
-    const room = (all[from] ??= {});
-    room[name] ??= (): number => 0;
-  }
-  return all;
-}
-
 export class EngineModule {
   readonly #exports: Exports;
 
@@ -51,11 +39,9 @@ export class EngineModule {
   }
 
   static async load(bytes: BufferSource): Promise<EngineModule> {
-    const module = await WebAssembly.compile(bytes);
-    let exports: Exports;
-    const instance = await WebAssembly.instantiate(module, imports(module, () => exports.memory.buffer));
-    exports = instance.exports as unknown as Exports;
-    return new EngineModule(exports);
+    const module = await compile(bytes);
+    const instance = await WebAssembly.instantiate(module, importsOf(module));
+    return new EngineModule(instance.exports as unknown as Exports);
   }
 
   putText(text: string): void {
