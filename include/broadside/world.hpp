@@ -403,8 +403,8 @@ class BROADSIDE_PUBLIC World {
 
   /// The world as bytes; may be called at any time, also between changes and their update. The bytes hold all
   /// that the world's future depends on, except the predicate, the workers, your own tracker, and the options
-  /// bad_input, max_boxes, shadow and first_generation: a world that restores them keeps its own. O(slots + pairs). The
-  /// bytes are the same on every machine: see docs/snapshot-format.md.
+  /// bad_input, max_boxes, shadow and first_generation: a world that restores them keeps its own. O(slots +
+  /// pairs). The bytes are the same on every machine: see docs/snapshot-format.md.
   [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<std::byte> snapshot() const {
     std::vector<std::byte> bytes;
     detail::OutputTo output(bytes);
