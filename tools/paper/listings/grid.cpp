@@ -1,6 +1,7 @@
 // The paper's grid as an algorithm: its searcher, its outline, and its description.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -76,8 +77,13 @@ Outline<2> grid_outline(std::span<const Box2> boxes, const Workers&, const Setti
       outline.levels[0].push_back({{left, top}, {right, bottom}});
     }
   }
-  std::array<char, 32> size;
+  std::array<char, 32> size{};
+#if __cpp_lib_to_chars >= 201611L
+  // As a stream would format it, but independent of the rounding mode.
+  std::to_chars(size.data(), size.data() + size.size() - 1, listing.size(), std::chars_format::general, 3);
+#else
   std::snprintf(size.data(), size.size(), "%.3g", listing.size());
+#endif
   outline.caption = std::to_string(columns) + " x " + std::to_string(rows) +
                     (rows == 1 ? " cell of " : " cells of ") + size.data();
   return outline;
