@@ -65,7 +65,7 @@ function write(path, text) {
 
 async function buildPage(path) {
   const [before, after] = await page();
-  write(path, `// Written by web/build.mjs.
+  write(path, `// Written by tools/web/build.mjs.
 #include "lab/report/page.hpp"
 
 namespace broadside::lab {

@@ -1,6 +1,6 @@
 // Prints the cost of the built page in headless Chromium, as the table of README.md:
 //
-//   node web/playground/frame_times.mjs [PAGE]    PAGE: default build/playground/index.html
+//   node tools/web/playground/frame_times.mjs [PAGE]    PAGE: default build/playground/index.html
 //
 // The script's time is that of the page's own thread; searches run in a worker. Drawing is the
 // processor time of the browser's drawing process, because software does the drawing here. Other

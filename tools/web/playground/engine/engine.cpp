@@ -275,7 +275,7 @@ std::string unread(std::string_view beginning, const std::string& name) {
 }
 
 /// Opens a file by its content, as the program does, in the formats whose readers need no other library.
-lab::AnyFrameReader open_file(std::unique_ptr<lab::CallInput> file) {
+lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
   const std::string_view beginning = file->beginning();
   if (const std::string why = unread(beginning, file->name()); !why.empty())
     throw lab::FileError(file->name() + ": " + why);
@@ -419,7 +419,7 @@ BROADSIDE_EXPORT(read_file)()->int {
     const std::size_t end = input.text.find('\n');
     const std::string name = input.text.substr(0, end);
     const std::string_view bytes = std::string_view(input.text).substr(end + 1);
-    read_frames(open_file(std::make_unique<broadside::lab::CallInput>(name, bytes)), name);
+    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes)), name);
   });
 }
 #endif

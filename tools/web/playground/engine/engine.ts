@@ -1,7 +1,7 @@
 // The library in a page or in Node: two WebAssembly modules, the regular build and one that records
 // its tests.
-import engineBytes from "../../../build/playground/engine/engine.wasm";
-import observingBytes from "../../../build/playground/engine/observing.wasm";
+import engineBytes from "../../../../build/playground/engine/engine.wasm";
+import observingBytes from "../../../../build/playground/engine/observing.wasm";
 
 import type { Recorded } from "../scene/frames.ts";
 import { EngineModule } from "./module.ts";
