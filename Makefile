@@ -160,7 +160,7 @@ wasm test-wasm test-installed compare-web playground: setup_options := --web
 setup:
 	@tools/setup/setup $(setup_options)
 
-setup-ci:
+setup-ci: | setup
 	@tools/setup/setup --ci
 
 # The build must be configured again after setup has installed packages: setup then removes build.ninja, but make has

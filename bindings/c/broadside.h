@@ -30,7 +30,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define BROADSIDE_C_API_VERSION 1
+#define BROADSIDE_C_API_VERSION 2
 
 #if defined(_WIN32) && defined(BROADSIDE_SHARED)
 #ifdef BROADSIDE_BUILDING
@@ -254,8 +254,8 @@ typedef struct broadside_world_options {
   int quarantines;         /**< 1: invalid boxes pair with nothing, instead of being refused */
   uint32_t first_generation; /**< of handles; worlds that begin far apart refuse each other's handles */
   const broadside_executor* executor; /**< as in broadside_find_options; must live as long as the world */
-  const char* settings; /**< any option of a world by its name in C++, such as "world:shadow=yes:margin=0.1", or null;
-                             a field above that is not 0 counts instead */
+  const char* settings; /**< options by their names in world_tunables() of world.hpp, such as
+                             "world:shadow=yes:max_boxes=1000", or null; a field above that is not 0 counts instead */
 } broadside_world_options;
 
 BROADSIDE_API void broadside_world_options_init(broadside_world_options* options);

@@ -215,7 +215,12 @@ WorldStatistics statistics(AnyWorld& any) {
 
 std::unique_ptr<AnyWorld> make_world(int dimension, bool has_doubles, const std::string& algorithm,
                                      nb::handle threads, const std::string& settings) {
-  WorldOptions options = world_options(settings);
+  WorldOptions options;
+  try {
+    options = world_options(settings);
+  } catch (const InvalidSpec& error) {
+    throw std::invalid_argument(error.what());  // a ValueError, not an InvalidAlgorithmError
+  }
   options.algorithm = algorithm;
   return std::make_unique<AnyWorld>(bindings::kind_with(dimension, has_doubles), options,
                                     threads_of(threads, algorithm));

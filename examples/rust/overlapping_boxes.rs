@@ -6,7 +6,7 @@ use std::ptr;
 const BROADSIDE_OK: i32 = 0;
 const BROADSIDE_TOO_SMALL: i32 = 8;
 const BROADSIDE_FLOAT_2D: i32 = 0;
-const BROADSIDE_C_API_VERSION: c_int = 1;
+const BROADSIDE_C_API_VERSION: c_int = 2;
 
 #[repr(C)]
 struct Boxes {

@@ -127,8 +127,9 @@ struct WorldOptions {
   /// a move within the enlarged box costs a comparison and a store. overlaps() tells which boxes overlap.
   WorldEvents events = WorldEvents::exact;
 
-  /// The most boxes that the world may hold, so that its memory is bounded; 0: no limit. add() throws
-  /// InvalidFrame and restore() InvalidSnapshot where there would be more, and change nothing.
+  /// The most boxes that the world may hold; 0: no limit. add() throws InvalidFrame and restore()
+  /// InvalidSnapshot if there would be more, and change nothing. Removed boxes do not count; their memory is
+  /// reused after two updates.
   std::uint32_t max_boxes = 0;
 
   /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
@@ -148,7 +149,7 @@ struct WorldOptions {
 [[nodiscard]] BROADSIDE_PUBLIC std::span<const Tunable> world_tunables();
 
 /// The options that a text names, such as "world:margin=0.1:events=enlarged"; the others have their default
-/// values. Throws InvalidSpec for an unknown name or a value out of range.
+/// values. Throws InvalidSpec for an unknown name, a value out of range or another word than "world".
 [[nodiscard]] BROADSIDE_PUBLIC WorldOptions world_options(const Spec& spec);
 
 /// Whether two boxes count as a pair. They overlap, their filters accept each other, and
@@ -230,7 +231,8 @@ class BROADSIDE_PUBLIC World {
   World& operator=(World&& other) noexcept;
   ~World();
 
-  /// Adds a box. O(1). Throws InvalidInput if it has a NaN or min > max.
+  /// Adds a box. O(1). Throws InvalidInput if it has a NaN or min > max, InvalidFrame if there would be more
+  /// boxes than WorldOptions::max_boxes.
   Handle add(const Box<D, Real>& box, const BoxOptions& options = {});
 
   /// Replaces a box. O(1). Throws InvalidHandle if it is not in the world, InvalidInput as add() does.

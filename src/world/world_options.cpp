@@ -1,6 +1,7 @@
 // The options of a world by name: one table for all languages.
 #include <limits>
 
+#include "broadside/error.hpp"
 #include "broadside/world.hpp"
 
 namespace broadside {
@@ -85,6 +86,9 @@ std::span<const Tunable> world_tunables() {
 }
 
 WorldOptions world_options(const Spec& spec) {
+  if (spec.name != "world")
+    throw InvalidSpec("'" + spec.text() + "': the options of a world are named '" + spec.name +
+                      "'; expected 'world', as in world:margin=0.1");
   const Settings settings(spec, world_tunables());
   WorldOptions options;
   for (const WorldOption& option : table()) option.set(options, settings);

@@ -34,6 +34,8 @@ const std::vector<Rule>& rules() {
       {"bindings/any_kind", bindings},
       {"bindings/status_of_exception", bindings},
       {"bindings/c/", bindings + R"(|"bindings/(any_kind|status_of_exception)\.hpp")"},
+      {"bindings/wasm/", core + R"(|"module/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
+                             R"(|"bindings/status_of_exception\.hpp")"},
       {"bindings/python/", library + R"(|"bindings/(python/[a-z]+|any_kind)\.hpp"|<nanobind/.*>)" +
                                R"(|"lab/((advise|formats|report|scenes)/[a-z_]+|catalogue)\.hpp")"},
       // An integration includes its engine.

@@ -58,7 +58,8 @@ TEST(WorldOptionTable, SetsEachOption) {
 TEST(WorldOptionTable, RefusesUnknownNamesAndValuesOutOfRange) {
   for (const auto& [text, part] :
        {std::pair("world:margins=1", "expected one of: margin"), std::pair("world:margin=-1", "at least 0"),
-        std::pair("world:margin=nan", "at least 0"), std::pair("world:events=some", "exact, enlarged"),
+        std::pair("grid:margin=1", "expected 'world'"), std::pair("world:margin=nan", "at least 0"),
+        std::pair("world:events=some", "exact, enlarged"),
         std::pair("world:first_generation=4294967296", "4294967295"),
         std::pair("world:first_generation=1.5", "a whole number")}) {
     EXPECT_THAT(message_of<InvalidSpec>([&, &spec = text] { static_cast<void>(world_options(spec)); }),

@@ -104,7 +104,7 @@ class World:
     ) -> NDArray[np.uint64]:
         """Adds n boxes, whatever `pairs` takes with these `columns`, and returns their handles, shape (n,).
 
-        Raises InvalidBoxError, and adds none, if one is invalid or absent.
+        Adds none, and raises InvalidBoxError if one is invalid or absent, ValueError if there would be more than `max_boxes`.
         """
         crs = _convert.common_crs(self._crs, "the world", boxes, "boxes")
         handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)

@@ -7,6 +7,8 @@ import re
 from collections.abc import Collection
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from broadside import _arguments, _core
 
 
@@ -27,6 +29,8 @@ class WorldOption(NamedTuple):
     def text(self, value: Any) -> str:
         """The value as the library reads it."""
         if self.is_switch:
+            if not isinstance(value, (bool, np.bool_)):
+                raise TypeError(f"{self.name} is {value!r}; expected True or False")
             return "yes" if value else "no"
         if self.choices:
             if value not in self.choices:

@@ -98,7 +98,11 @@ broadside_status world_make(const char* texts, std::size_t size) {
   const broadside_status status = guarded([&] {
     const std::string_view both(texts, size);
     const std::size_t line = both.find('\n');
-    options = world_options(both.substr(line + 1));
+    try {
+      options = world_options(both.substr(line + 1));
+    } catch (const InvalidSpec& error) {
+      throw std::invalid_argument(error.what());  // it is not about an algorithm
+    }
     options.algorithm = both.substr(0, line);
     options.first_generation = next_first_generation();
   });

@@ -1,5 +1,5 @@
 // Modules compiled, with an error that says what a host lacks.
-import { BroadsideError } from "./error.ts";
+import { BroadsideError, refuse } from "./error.ts";
 
 /** Throws if the host lacks something. */
 function refuseHost(lacks: string): never {
@@ -15,6 +15,8 @@ export async function gunzip(base64: string): Promise<Uint8Array<ArrayBuffer>> {
 }
 
 export async function compile(bytes: BufferSource): Promise<WebAssembly.Module> {
+  const start = ArrayBuffer.isView(bytes) ? new Uint8Array(bytes.buffer, bytes.byteOffset) : new Uint8Array(bytes);
+  if (start[0] !== 0 || start[1] !== 0x61) refuse("wasm", bytes, "the bytes of a WebAssembly module, which begin with '\\0asm'");
   try {
     return await WebAssembly.compile(bytes);
   } catch (error) {

@@ -38,7 +38,10 @@ function settingsOf(options: Readonly<Record<string, unknown>>): string {
   for (const [name, value] of Object.entries(options)) {
     if (value === undefined) continue;
     if (!["number", "string", "boolean"].includes(typeof value)) refuse(name, value, "a number, a text, true or false");
+    // The module gives each world handles that no other one takes.
+    if (name === "firstGeneration") refuse(name, value, "none, as worlds choose it themselves");
     const text = typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
+    if (/[:=\n]/.test(text)) refuse(name, value, "a text without ':', '=' and line breaks");
     settings.push(`${name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`)}=${text}`);
   }
   return settings.join(":");

@@ -248,7 +248,7 @@ export declare class BroadsideError extends Error {
 export type BroadsideErrorCode =
   /** A box with a NaN, or with min > max. */
   | "INVALID_INPUT"
-  /** Arrays that do not fit together. */
+  /** Arrays that do not fit together, or more boxes than `maxBoxes`. */
   | "INVALID_FRAME"
   /** A query with a NaN, or with an infinity where none is allowed. */
   | "INVALID_QUERY"

@@ -1,7 +1,7 @@
 // auto: looks at a sample of the boxes, and chooses the algorithm that suits them.
 //
 // The rules depend on the boxes alone, never on a clock: the same boxes are always searched in the same way.
-// thresholds.hpp has their thresholds, and says where these come from.
+// auto_thresholds.hpp has their thresholds, and says where these come from.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -120,6 +120,13 @@ def test_keeps_float32_exact():
     assert len(world) == 5 and world.boxes().dtype == np.float32
 
 
+def test_holds_no_more_than_max_boxes():
+    world = broadside.World(2, max_boxes=1)
+    with pytest.raises(ValueError, match="2 boxes"):
+        world.add([[0, 0, 1, 1], [2, 2, 3, 3]])
+    assert len(world) == 0
+
+
 def test_refuses_options_that_do_not_exist():
     for arguments, error in [
         ({"dimension": 4}, ValueError),
@@ -132,6 +139,7 @@ def test_refuses_options_that_do_not_exist():
         ({"dimension": 2, "threads": 0}, ValueError),
         ({"dimension": 2.0}, TypeError),
         ({"dimension": 2, "margin": None}, TypeError),
+        ({"dimension": 2, "shadow": "no"}, TypeError),
         ({"dimension": 2, "algorithm": None}, TypeError),
         ({"dimension": 2, "first_generation": 1.5}, TypeError),
     ]:

@@ -54,6 +54,12 @@ test("specs", () => {
     "world: margin is '-1'; expected a number of at least 0");
   assert.equal(errorOf(() => broadside.world({ events: "some" as "exact" })).message,
     "world: events is 'some'; expected one of: exact, enlarged");
+  assert.equal(errorOf(() => broadside.world({ margin: -1 })).code, "INVALID_ARGUMENT");
+  assert.equal(errorOf(() => broadside.world({ firstGeneration: 5 })).code, "INVALID_ARGUMENT");
+  assert.equal(errorOf(() => broadside.world({ events: "exact:shadow=yes" as "exact" })).code, "INVALID_ARGUMENT");
+  const world = broadside.world({ maxBoxes: 1 });
+  assert.equal(errorOf(() => world.add([0, 0, 1, 1, 2, 2, 3, 3])).code, "INVALID_FRAME");
+  assert.equal(world.size, 0);
 });
 
 /** Calls that take what JavaScript's types do not keep out. */
