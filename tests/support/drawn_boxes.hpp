@@ -48,11 +48,11 @@ std::vector<Box<D>> random_boxes(Choices& choices, std::size_t count, const BoxK
 
 /// Any float but NaN: small whole numbers and their quarters, of all magnitudes, denormal, infinite.
 inline float any_float(Choices& choices) {
-  constexpr float largest = std::numeric_limits<float>::max();
-  constexpr float smallest = std::numeric_limits<float>::denorm_min();
+  constexpr float max_float = std::numeric_limits<float>::max();
+  constexpr float min_denormal = std::numeric_limits<float>::denorm_min();
   constexpr std::array<float, 14> special = {
-      infinity, -infinity, largest, -largest,  -0.0F,  smallest, -smallest,
-      16777216, 1e6F,      -1e6F,   1.000001F, 1e-30F, -1e30F,   std::numeric_limits<float>::min()};
+      infinity, -infinity, max_float, -max_float, -0.0F,  min_denormal, -min_denormal,
+      16777216, 1e6F,      -1e6F,     1.000001F,  1e-30F, -1e30F,       std::numeric_limits<float>::min()};
   const std::size_t kind = choices.below(8);
   if (kind < 3) return static_cast<float>(choices.whole(-4, 4));
   if (kind < 5) return static_cast<float>(choices.whole(-20, 20)) / 4;

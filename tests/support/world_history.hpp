@@ -232,7 +232,7 @@ class WorldHistory {
       if (removal.updates < 2)
         expect(world_->box(handle) == removal.box, "a removed box is not what it was");
       else if (removal.updates == 2)
-        expect_throw<InvalidHandle>([&] { static_cast<void>(world_->box(handle)); });
+        expect_throw<InvalidHandle>([&, &its = handle] { static_cast<void>(world_->box(its)); });
     }
     expect(world_->statistics().ignored_pairs == model_.ignored.size(),
            "the count of ignored pairs is wrong");
