@@ -18,7 +18,8 @@ PairBlock* PairBlocks::take() {
   const std::lock_guard lock(mutex_);
   if (used_ == max_blocks) return nullptr;
   if (free_ == nullptr) {
-    all_.push_back(std::unique_ptr<PairBlock>(new PairBlock));
+    // make_unique() would also set it to zeros.
+    all_.push_back(std::unique_ptr<PairBlock>(new PairBlock));  // NOLINT(modernize-make-unique)
     free_ = all_.back().get();
     free_->next = nullptr;
   }

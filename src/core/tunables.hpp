@@ -14,11 +14,11 @@ Tunable threads_tunable();
 Tunable update_tunable();
 Update update_of(const Settings& settings);
 
-/// Returns make(), or no strategies in a build without D dimensions, whose code is not linked then.
-template <int D, Strategies<D> (*make)()>
+/// Returns Make(), or no strategies in a build without D dimensions, whose code is not linked then.
+template <int D, Strategies<D> (*Make)()>
 Strategies<D> in_dimension() {
   if constexpr (has_dimension<D>)
-    return make();
+    return Make();
   else
     return {};
 }
