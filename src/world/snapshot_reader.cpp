@@ -124,6 +124,11 @@ void SnapshotReader<D, Real>::read_slots(std::uint32_t first_generation) {
     expect(states[slot] == SlotState::live || !is_present(boxes[slot]), "a slot is not live but has a box");
   }
   Parts& parts = *decoded_.parts;
+  const auto live = static_cast<std::size_t>(std::count(states.begin(), states.end(), SlotState::live));
+  const std::size_t max_boxes = parts.options.max_boxes;
+  if (max_boxes != 0 && live > max_boxes)
+    throw InvalidSnapshot("a snapshot has " + std::to_string(live) + " boxes; expected at most " +
+                          std::to_string(max_boxes) + ", the world's option max_boxes");
   std::vector<Box<D, Real>> enlarged;
   if (parts.boxes.enlarges()) {
     enlarged = get_all<Box<D, Real>>(in_, count, "enlarged boxes");

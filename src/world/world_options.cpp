@@ -27,6 +27,14 @@ Tunable length(const char* name, const char* summary) {
   return {.name = name, .summary = summary, .default_value = "0"};
 }
 
+Tunable whole_number(const char* name, const char* summary) {
+  return {.name = name,
+          .summary = summary,
+          .default_value = "0",
+          .type = Type::integer,
+          .max = std::numeric_limits<std::uint32_t>::max()};
+}
+
 /// To add an option, add it here and to WorldOptions; for snapshots to keep it, also to snapshot_codec.cpp.
 const std::vector<WorldOption>& table() {
   static const std::vector<WorldOption> options = {
@@ -54,19 +62,13 @@ const std::vector<WorldOption>& table() {
        }},
       {yes_or_no("shadow", "check each update by brute force, for debugging", "no"),
        [](WorldOptions& o, const Settings& s) { o.shadow = s.text("shadow") == "yes"; }},
-      {{.name = "max_boxes",
-        .summary = "the most boxes that the world may hold; 0: no limit",
-        .default_value = "0",
-        .type = Type::integer,
-        .max = std::numeric_limits<std::uint32_t>::max()},
+      {whole_number("max_boxes", "the most boxes that the world may hold; 0: no limit"),
        [](WorldOptions& o, const Settings& s) {
          o.max_boxes = static_cast<std::uint32_t>(s.integer("max_boxes"));
        }},
-      {{.name = "first_generation",
-        .summary = "generation of the first handles: worlds that begin far apart refuse each other's handles",
-        .default_value = "0",
-        .type = Type::integer,
-        .max = std::numeric_limits<std::uint32_t>::max()},
+      {whole_number(
+           "first_generation",
+           "generation of the first handles: worlds that begin far apart refuse each other's handles"),
        [](WorldOptions& o, const Settings& s) {
          o.first_generation = static_cast<std::uint32_t>(s.integer("first_generation"));
        }},

@@ -178,11 +178,6 @@ template <int D, typename Real>
 void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
   const auto decoded = SnapshotCodec<D, Real>::decode(bytes, parts, tracker);
   WorldParts<D, Real>& restored = *decoded.parts;
-  const std::size_t max_boxes = parts.options.max_boxes;
-  if (max_boxes != 0 && restored.slots.live() > max_boxes)
-    throw InvalidSnapshot(
-        core::message({"a snapshot has ", restored.slots.live(), " boxes; expected at most ", max_boxes,
-                       ", the world's option max_boxes"}));
   query_index.mark_differences(parts.boxes, restored.boxes);
   std::optional<WorldTracker<D, Real>> another;
   if (decoded.spec != tracker.spec()) another.emplace(tracker.remade(decoded.spec));
