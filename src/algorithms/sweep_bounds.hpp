@@ -40,13 +40,10 @@ std::uint64_t bound_of_tests(const kernels::Run<D>& run, std::uint64_t limit, st
   return tests;
 }
 
-/// Whether a sweep of the run would make more than `limit` tests and few of them would find a pair. Counts
-/// the tests, to within a bucket per box, and tries a sample of them if they are many. Cost: O(n log n) at
-/// most, O(n / 16) where tests are few.
-template <int D>
-bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
-  if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
-  if (bound_of_tests(run, limit, 16) <= limit || bound_of_tests(run, limit, 1) <= limit) return false;
+/// Whether few of a sweep's tests would find a pair, in a sample of them. `end_of(place)` is the end of the
+/// boxes with which the one at that place is compared.
+template <int D, typename EndOf>
+bool finds_few(const kernels::Run<D>& run, const EndOf& end_of) {
   constexpr std::size_t looked_at = 32;
   constexpr std::size_t max_tests_of_one = 4096;
   std::uint64_t tests = 0;
@@ -59,7 +56,7 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
     const std::size_t at = core::sampled_place(i, run.size);
     std::uint64_t own_tests = 0;
     std::uint64_t own_hits = 0;
-    const std::size_t end = end_of_reach(run.min[0], run.size, at, run.max[0][at]);
+    const std::size_t end = std::max<std::size_t>(end_of(at), at);
     const std::size_t stride = (end - at) / max_tests_of_one + 1;
     for (std::size_t other = at + 1; other < end; other += stride) {
       bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
@@ -75,6 +72,18 @@ bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
     tests_of_greatest = own_tests;
   }
   return tests - tests_of_greatest > max_tests_per_pair * (hits - max_hits);
+}
+
+/// Whether a sweep of the run would make more than `limit` tests and few of them would find a pair. Counts
+/// the tests, to within a bucket per box, and tries a sample of them if they are many. Cost: O(n log n) at
+/// most, O(n / 16) where tests are few.
+template <int D>
+bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
+  if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
+  if (bound_of_tests(run, limit, 16) <= limit || bound_of_tests(run, limit, 1) <= limit) return false;
+  return finds_few(run, [&run](std::size_t place) {
+    return end_of_reach(run.min[0], run.size, place, run.max[0][place]);
+  });
 }
 
 }  // namespace broadside::algorithm

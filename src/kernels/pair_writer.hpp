@@ -65,9 +65,9 @@ class PairWriter {
   /// determines when that test runs.
   std::uint64_t written() const { return handed_on_ + static_cast<std::uint64_t>(out_ - begin_); }
 
-  /// How many times `at_once` pairs may be written before room() is called again: at least once.
-  HWY_INLINE std::size_t room() {
-    if (HWY_UNLIKELY(left() < 1)) {
+  /// How many times `at_once` pairs may be written before room() is called again: at least `min` times.
+  HWY_INLINE std::size_t room(std::size_t min = 1) {
+    if (HWY_UNLIKELY(left() < min)) {
       Pair* const begin = begin_;
       handed_on_ += static_cast<std::uint64_t>(out_ - begin);
       Pair* const end = last_test_(begin, out_);

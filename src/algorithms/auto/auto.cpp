@@ -15,7 +15,7 @@
 #include "broadside/debug/outline.hpp"
 
 #include "algorithms/auto/auto_thresholds.hpp"
-#include "algorithms/auto/overlap_estimate.hpp"
+#include "algorithms/auto/clustering.hpp"
 #include "algorithms/auto/segment_join.hpp"
 #include "algorithms/follow_costs.hpp"
 #include "algorithms/registry.hpp"
@@ -28,10 +28,10 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class AutoReason { few, one_axis, tree, dense, clusters, cells, few_in_one_place, one_place, shapes };
+enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, clusters, cells };
 
-constexpr std::array<std::string_view, 9> chosen_algorithm = {
-    "brute_force", "sweep_and_prune", "bvh", "bvh", "bvh", "grid", "brute_force", "sweep_and_prune", "grid"};
+constexpr std::array<std::string_view, 8> chosen_algorithm = {
+    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
@@ -88,6 +88,17 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
+/// Notes that a search has given up before it wrote a pair.
+template <int D>
+class DeclinedSearch final : public Successor<D> {
+ public:
+  void finish(const typename Successor<D>::IsMissing&) override { has_declined_ = true; }
+  bool has_declined() const noexcept { return has_declined_; }
+
+ private:
+  bool has_declined_ = false;
+};
+
 /// Chooses among searchers, and keeps those it has used.
 template <int D>
 class AutoSearcher final : public Searcher<D> {
@@ -96,14 +107,16 @@ class AutoSearcher final : public Searcher<D> {
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     choose(input.boxes);
-    auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
-    if (!chosen) {
-      const Algorithm& algorithm = algorithm_of(choice_);
-      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
+    has_handed_over_ = false;
+    if (choice_ == AutoReason::tile) {
+      // The search of a tile counts its tests before it makes one.
+      DeclinedSearch<D> declined;
+      const std::optional<Statistics> statistics = search_with(choice_, input, declined, pairs);
+      if (!declined.has_declined()) return statistics;
+      choice_ = AutoReason::uneven_tile;
     }
     SegmentSuccessor<D> successor(input, pairs, segments_);
-    const SearchInput<D> its_input{input.boxes, input.left_count, input.doubles, &successor, input.workers};
-    std::optional<Statistics> statistics = chosen->search(its_input, pairs);
+    std::optional<Statistics> statistics = search_with(choice_, input, successor, pairs);
     has_handed_over_ = successor.work().has_value();
     if (has_handed_over_) {
       statistics->tests += successor.work()->tests;
@@ -142,8 +155,10 @@ class AutoSearcher final : public Searcher<D> {
         return text + boxes + " are so few that comparing all of them costs less than sorting them";
       case AutoReason::one_axis:
         return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
-      case AutoReason::tree:
-        return text + boxes + " are too few for cells to pay";
+      case AutoReason::tile:
+        return text + boxes + " fit in a core's cache, where sorting them into cells costs least";
+      case AutoReason::uneven_tile:
+        return text + boxes + " are too uneven for cells of one size";
       case AutoReason::dense:
         return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
       case AutoReason::clusters:
@@ -151,14 +166,21 @@ class AutoSearcher final : public Searcher<D> {
                " times as many are near each other as evenly spread ones would be";
       case AutoReason::cells:
         return text + boxes + " spread as evenly as these suit cells";
-      case AutoReason::few_in_one_place:
       case AutoReason::one_place:
         return text + "a box overlaps some " + rounded(overlaps_) + " of " + boxes +
                ", so that separating them gains nothing";
-      case AutoReason::shapes:
-        return text + "the shapes of these " + boxes + " suit cells better than a tree's bounds";
     }
     return text;
+  }
+
+  std::optional<Statistics> search_with(AutoReason choice, const SearchInput<D>& input,
+                                        Successor<D>& successor, PairSink& pairs) {
+    auto& chosen = searchers_[static_cast<std::size_t>(choice)];
+    if (!chosen) {
+      const Algorithm& algorithm = algorithm_of(choice);
+      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
+    }
+    return chosen->search({input.boxes, input.left_count, input.doubles, &successor, input.workers}, pairs);
   }
 
   void choose(std::span<const Box<D>> boxes) {
@@ -168,7 +190,7 @@ class AutoSearcher final : public Searcher<D> {
 
   AutoReason choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return AutoReason::few;
-    if (boxes.size() <= Limits::boxes_for_cells) return choose_by_estimate(boxes);
+    if (boxes.size() <= Limits::boxes_of_a_tile) return AutoReason::tile;
     sample_.take(boxes, Limits::sampled_boxes);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
@@ -182,48 +204,10 @@ class AutoSearcher final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *
                                        (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-    estimate_.take(boxes, Limits::sampled_boxes);
-    clustering_ = estimate_.clustering(reach);
+    clustering_ = clustering<D>(boxes, reach);
     return clustering_ >= Limits::clustered ? AutoReason::clusters : AutoReason::cells;
   }
 
-  /// Chooses for up to boxes_for_cells boxes. Sorting a sample would take a good part of the time there.
-  AutoReason choose_by_estimate(std::span<const Box<D>> boxes) {
-    const std::size_t size = boxes.size();
-    const auto half = static_cast<double>(size) / 2;
-    estimate_.take(boxes, size < 2 * Limits::boxes_of_a_line ? 32 : 48);
-    estimate_.compare();
-    overlaps_ = half * estimate_.overlap_on_all();
-    if (estimate_.overlap_on_all() >= Limits::dense_pair_share)
-      return size <= Limits::few_boxes_in_one_place ? AutoReason::few_in_one_place : AutoReason::one_place;
-    if (size < Limits::boxes_of_a_line) return AutoReason::tree;
-    std::array<double, D> overlap = estimate_.overlap();
-    std::sort(overlap.begin(), overlap.end());
-    tests_ = half * overlap[0];
-    if (overlap[1] >= Limits::in_line && tests_ <= Limits::tests_of_a_line) return AutoReason::one_axis;
-    double expected = half;  // overlaps per box if axes were independent; stacks of plates have far fewer
-    for (const double part : overlap) expected *= part;
-    const bool are_stacked = size >= Limits::stacked_boxes_for_a_tree && expected >= Limits::many_overlaps;
-    if (are_stacked || !shapes_suit_cells(boxes, overlap[D - 1])) return AutoReason::tree;
-    std::array<float, D> reach = estimate_.range();
-    for (float& distance : reach) distance *= Limits::near;
-    clustering_ = estimate_.clustering(reach);
-    return clustering_ >= Limits::clustered ? AutoReason::clusters : AutoReason::shapes;
-  }
-
-  bool shapes_suit_cells(std::span<const Box<D>> boxes, double max_overlap_on_axis) const {
-    const std::size_t size = boxes.size();
-    if (overlaps_ >= Limits::max_overlaps_for_shapes) return false;
-    if (D == 3 && size >= Limits::flat_boxes_for_cells && max_overlap_on_axis >= Limits::flat) return true;
-    if (size < Limits::very_uneven_boxes_for_cells) return false;
-    const ExtentStats sides = extent_stats<D>(boxes);
-    if (sides.unevenness >= Limits::very_uneven_boxes || (D == 3 && sides.unevenness <= Limits::of_one_size))
-      return true;
-    return (size >= Limits::long_boxes_for_cells && sides.longest_over_shortest >= Limits::long_boxes) ||
-           (size >= Limits::uneven_boxes_for_cells && sides.unevenness >= Limits::uneven_boxes);
-  }
-
-  OverlapEstimate<D> estimate_;
   core::Sample<D> sample_;
   std::array<std::unique_ptr<Searcher<D>>, chosen_algorithm.size()> searchers_;  // null until chosen
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over

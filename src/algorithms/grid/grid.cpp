@@ -21,6 +21,8 @@
 #include "algorithms/followers.hpp"
 #include "algorithms/grid/grid_layout.hpp"
 #include "algorithms/grid/grid_sweep.hpp"
+#include "algorithms/grid/tile_cells.hpp"
+#include "algorithms/grid/tile_search.hpp"
 #include "algorithms/outline_text.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/sweep_bounds.hpp"
@@ -34,12 +36,27 @@
 namespace broadside::algorithm {
 namespace {
 
+/// Up to this many boxes, a tile's cells are the best however uneven the boxes are.
+constexpr std::size_t max_uneven_tile = 4096;
+
+/// The unevenness up to which they are, with more boxes.
+constexpr double max_unevenness = 5;
+
+/// Places of a tile that a thread sweeps at a time.
+constexpr std::size_t swept_at_once = 64;
+
+/// The tests of a box in a tile up to which no other search is better.
+constexpr std::uint64_t max_tests_in_tile = 160;
+
 template <int D>
 class GridSearcher final : public Searcher<D> {
  public:
   explicit GridSearcher(const Settings& settings) : cell_(settings.optional_number("cell")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    if (is_tile(input.boxes)) {
+      if (const std::optional<Statistics> statistics = search_tile(input, pairs)) return statistics;
+    }
     const std::size_t boxes = input.boxes.size();
     parallel_.start(input.workers, boxes);
     sweeps_.resize(std::max(sweeps_.size(), parallel_.workers()));
@@ -120,6 +137,51 @@ class GridSearcher final : public Searcher<D> {
                                               begin_[layout_.slab_begin(slab) * length]);
     const double share = inserted / static_cast<double>(std::max<std::size_t>(1, begin_.back()));
     return static_cast<std::uint64_t>(share * static_cast<double>(max_tests_per_box * boxes)) + 1;
+  }
+
+  /// Whether the boxes fit in a core's cache, and may be in cells of any size.
+  bool is_tile(std::span<const Box<D>> boxes) const {
+    return !cell_ && boxes.size() <= TileCells<D>::max_boxes && !boxes.empty();
+  }
+
+  /// Sorts the boxes by cells that suit a sample of them, if these take fewer tests: a few boxes far away may
+  /// have left most cells empty. Returns how many tests a sweep makes.
+  std::uint64_t sort_by_sample(const SearchInput<D>& input, const TileCells<D>& cells, std::uint64_t tests) {
+    sample_.take(input.boxes);
+    const auto by_sample = TileCells<D>::choose(TileStats<D>::of(sample_), input.boxes.size());
+    const std::uint64_t fewer = *tile_.sort(input.boxes, by_sample, input.left_count);
+    return fewer < tests ? fewer : *tile_.sort(input.boxes, cells, input.left_count);
+  }
+
+  /// Sorts the boxes by cells that suit them. Returns how many tests a sweep makes; nothing if the boxes are
+  /// too uneven for cells of one size.
+  std::optional<std::uint64_t> sort_tile(const SearchInput<D>& input) {
+    const std::size_t boxes = input.boxes.size();
+    const auto cells = TileCells<D>::choose(TileStats<D>::of(input.boxes), boxes);
+    const double limit = boxes > max_uneven_tile ? max_unevenness : std::numeric_limits<double>::infinity();
+    std::optional<std::uint64_t> tests = tile_.sort(input.boxes, cells, input.left_count, limit);
+    const auto are_too_many = [&] { return *tests > max_tests_in_tile * boxes && tile_.finds_few_pairs(); };
+    if (!tests || !are_too_many()) return tests;
+    tests = sort_by_sample(input, cells, *tests);
+    return are_too_many() ? std::nullopt : tests;
+  }
+
+  /// Nothing, and no pair is written, if the boxes are too uneven and no other search takes over.
+  std::optional<Statistics> search_tile(const SearchInput<D>& input, PairSink& pairs) {
+    if (!sort_tile(input)) {
+      if (input.successor == nullptr) return std::nullopt;
+      input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
+      return Statistics{};
+    }
+    parallel_.start(input.workers, input.boxes.size());
+    const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
+      return Statistics{.tests = tile_.sweep(some.begin * swept_at_once, some.end * swept_at_once,
+                                             input.doubles, parallel_.checkpoint(worker), sink)};
+    };
+    Statistics statistics =
+        parallel_.search((tile_.places() + swept_at_once - 1) / swept_at_once, pairs, sweep);
+    statistics.references = tile_.references();
+    return statistics;
   }
 
   void choose_cells(std::span<const Box<D>> boxes) {
@@ -218,6 +280,7 @@ class GridSearcher final : public Searcher<D> {
 
   std::optional<double> cell_;
 
+  TileSearch<D> tile_;
   core::Sample<D> sample_;
   GridLayout<D> layout_;
   core::LargeArray<std::uint64_t> begin_;

@@ -1,0 +1,130 @@
+// Chooses a tile's cells by what a search is estimated to cost.
+#include "algorithms/grid/tile_cells.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace broadside::algorithm {
+namespace {
+
+constexpr float largest = std::numeric_limits<float>::max();
+
+/// The cost of a box in a row, in comparisons of a box with a vector of others.
+constexpr float reference_cost = 3;
+
+/// How many boxes are compared with one at a time.
+constexpr float at_once = 16;
+
+constexpr float max_rows = 256;
+constexpr float min_boxes_per_row = 32;
+
+core::CellAxis cell_axis(float low, float high, float cells) {
+  const float range = high - low;
+  // Neither zero nor infinite: the product with an infinite or a zero distance would be NaN.
+  const float per_unit =
+      std::clamp(range > 0 ? cells / range : 1, std::numeric_limits<float>::min(), largest);
+  return {.low = low, .per_unit = per_unit, .last = cells - 1};
+}
+
+}  // namespace
+
+template <int D>
+TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
+  TileStats stats;
+  stats.low.fill(largest);
+  stats.high.fill(-largest);
+  stats.side.fill(0);
+  for (const Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      const float min = box.min[axis];
+      stats.low[axis] = min < stats.low[axis] ? min : stats.low[axis];
+      stats.high[axis] = min > stats.high[axis] ? min : stats.high[axis];
+      stats.side[axis] += box.max[axis] - min;
+    }
+  }
+  for (int axis = 0; axis < D; ++axis) {
+    stats.low[axis] = std::clamp(stats.low[axis], -largest, largest);
+    stats.high[axis] = std::clamp(stats.high[axis], -largest, largest);
+    stats.side[axis] /= static_cast<float>(boxes.size());
+  }
+  return stats;
+}
+
+template <int D>
+TileStats<D> TileStats<D>::of(const core::Sample<D>& sample) {
+  TileStats stats;
+  for (int axis = 0; axis < D; ++axis) {
+    stats.low[axis] = sample[axis].low;
+    stats.high[axis] = sample[axis].high;
+    stats.side[axis] = static_cast<float>(std::min<double>(sample[axis].mean_extent, largest));
+  }
+  return stats;
+}
+
+template <int D>
+TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) {
+  const auto count = static_cast<float>(boxes);
+  // The share of an axis that a box takes, which is about the chance that another begins within it.
+  std::array<float, D> share;
+  TileCells cells;
+  for (int axis = 0; axis < D; ++axis) {
+    const float of_range = stats.side[axis] / (stats.high[axis] - stats.low[axis]);
+    share[axis] = of_range < 1 ? of_range : 1;  // also if it is NaN
+    cells.axes[axis] = axis;
+  }
+  std::sort(cells.axes.begin(), cells.axes.end(),
+            [&](int a, int b) { return std::pair(share[a], a) < std::pair(share[b], b); });
+
+  const float swept = count * share[cells.axes[0]];
+  const auto cost_of = [](float references, float tests) {
+    return references * (reference_cost + std::max(1.0F, tests / at_once + 0.5F));
+  };
+  std::array<float, across> best;
+  best.fill(1);
+  float best_tests = swept;
+  float best_cost = cost_of(1, swept);
+  const float row_limit = std::min(max_rows, count / min_boxes_per_row);
+  // Rows as wide as so many boxes.
+  for (float width = 2; swept > at_once && width < 256; width *= 1.25F) {
+    std::array<float, across> rows;
+    float all_rows = 1;
+    float references = 1;
+    float tests = swept;
+    for (int axis = 0; axis < across; ++axis) {
+      const float of_row = width * share[cells.axes[axis + 1]];
+      rows[axis] = of_row * 2 <= 1 ? static_cast<float>(static_cast<int>(std::min(1 / of_row, max_rows))) : 1;
+      all_rows *= rows[axis];
+      if (rows[axis] == 1) continue;
+      const float in_row = 1 + share[cells.axes[axis + 1]] * rows[axis];
+      references *= in_row;
+      tests *= in_row / rows[axis];
+    }
+    if (all_rows > row_limit) continue;
+    const float cost = cost_of(references, tests);
+    if (cost < best_cost) {
+      best = rows;
+      best_tests = references * tests;
+      best_cost = cost;
+    }
+    if (all_rows == 1) break;
+  }
+  float all_rows = 1;
+  for (int axis = 0; axis < across; ++axis) {
+    cells.row_axes[axis] =
+        cell_axis(stats.low[cells.axes[axis + 1]], stats.high[cells.axes[axis + 1]], best[axis]);
+    all_rows *= best[axis];
+  }
+  float buckets = min_buckets;
+  while (buckets * all_rows < count) buckets *= 2;
+  cells.buckets = cell_axis(stats.low[cells.axes[0]], stats.high[cells.axes[0]], buckets);
+  cells.tests = best_tests;
+  return cells;
+}
+
+template struct TileStats<2>;
+template struct TileStats<3>;
+template struct TileCells<2>;
+template struct TileCells<3>;
+
+}  // namespace broadside::algorithm
