@@ -22,4 +22,7 @@ struct CellAxis {
   std::uint32_t count() const { return static_cast<std::uint32_t>(last) + 1; }
 };
 
+/// The least float in the cell or after it. `cell` is at least 1.
+float border_before(const CellAxis& axis, std::uint32_t cell);
+
 }  // namespace broadside::core

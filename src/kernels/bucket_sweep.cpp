@@ -98,11 +98,14 @@ HWY_INLINE void sweep_many(const Run<D>& run, std::size_t i, std::size_t begin, 
                            PairWriter<Numbers, LastTest>& pairs) {
   const Query<HasMasks, D> query(run, i);
   const std::size_t skip_from = begin + min_skipping;
-  for (std::size_t at = begin; at < end; at += lanes) {
-    const NumberMask hits = query.hits(run, at);
-    if (at >= skip_from && all_false(Numbers(), hits)) continue;
-    pairs.room();
-    query.write(pairs, run, at, hits);
+  for (std::size_t at = begin; at < end;) {
+    // As below, no call in the inner loop.
+    const std::size_t stop = std::min(end, at + pairs.room() * lanes);
+    for (; at < stop; at += lanes) {
+      const NumberMask hits = query.hits(run, at);
+      if (at >= skip_from && all_false(Numbers(), hits)) continue;
+      query.write(pairs, run, at, hits);
+    }
   }
 }
 

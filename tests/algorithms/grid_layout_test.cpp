@@ -29,7 +29,7 @@ TEST(GridLayout, HasACoordinateInTheCellBetweenTwoBorders) {
       ASSERT_GT(layout.rows(), 2U);
       EXPECT_EQ(layout.cells(), layout.rows() * layout.row_length());
       if (cell) {
-        EXPECT_NEAR(layout.cell_size(0), 13, 0.5);
+        EXPECT_NEAR(1 / layout.cell_axes()[0].per_unit, 13, 0.5);
       }
       for (const Box<D>& box : boxes) {
         const std::size_t row = layout.row_of(box);

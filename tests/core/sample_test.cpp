@@ -1,4 +1,4 @@
-// Sample and OverlapEstimate against what all pairs of the boxes say.
+// Sample against what all pairs of the boxes say.
 #include "core/sample.hpp"
 
 #include <algorithm>
@@ -8,14 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "algorithms/auto/overlap_estimate.hpp"
 #include "tests/support/model.hpp"
 
 namespace broadside::core {
 namespace {
-
-using algorithm::extent_stats;
-using algorithm::OverlapEstimate;
 
 /// The part of the pairs that overlap on `axis`, or on all axes if it is D.
 template <int D>
@@ -76,55 +72,6 @@ TEST(Sample, SweepsAlongTheAxisOfTheLeastOverlapAndIgnoresOutliers) {
     EXPECT_EQ(sample.axes_by_overlap()[0], D - 1);
     EXPECT_GE(sample[D - 1].low, -100);
     EXPECT_LE(sample[D - 1].high, 200);
-  });
-}
-
-TEST(OverlapEstimate, CountsThePairsOfTheBoxesThatItLookedAt) {
-  in_each_dimension([]<int D>() {
-    Rng rng(2);
-    OverlapEstimate<D> estimate;
-    for (const std::size_t count : {2, 60, 5000}) {
-      const std::vector<Box<D>> boxes = random_boxes<D>(rng, count);
-      std::vector<Box<D>> seen;
-      for (std::size_t i = 0; i < std::min<std::size_t>(count, 64); ++i)
-        seen.push_back(boxes[sampled_place(i, count)]);
-      estimate.take(boxes, 64);
-      estimate.compare();
-      for (int axis = 0; axis < D; ++axis)
-        EXPECT_DOUBLE_EQ(estimate.overlap()[axis], overlapping_part(seen, axis));
-      EXPECT_DOUBLE_EQ(estimate.overlap_on_all(), overlapping_part(seen, D));
-    }
-  });
-}
-
-TEST(OverlapEstimate, TellsClustersFromBoxesThatAreSpreadEvenly) {
-  in_each_dimension([]<int D>() {
-    Rng rng(3);
-    std::vector<Box<D>> even = random_boxes<D>(rng, 5000, {.places = 1000, .infinite_one_in = 0});
-    std::vector<Box<D>> clustered = even;
-    for (Box<D>& box : clustered) box.min.fill(static_cast<float>(rng.whole(0, 7) * 120 + rng.whole(0, 20)));
-    std::array<float, D> reach;
-    reach.fill(60);
-    OverlapEstimate<D> estimate;
-    estimate.take(even, 96);
-    EXPECT_LT(estimate.clustering(reach), 2);
-    estimate.take(clustered, 96);
-    EXPECT_GT(estimate.clustering(reach), 3);
-    EXPECT_NEAR(estimate.range()[0], 860, 100);
-  });
-}
-
-TEST(ExtentStats, TellHowUnevenAndHowLongSidesAre) {
-  in_each_dimension([]<int D>() {
-    std::vector<Box<D>> boxes(100);
-    for (Box<D>& box : boxes) {
-      box.max.fill(2);
-      box.max[0] = 6;
-    }
-    EXPECT_DOUBLE_EQ(extent_stats<D>(boxes).unevenness, 1);
-    EXPECT_DOUBLE_EQ(extent_stats<D>(boxes).longest_over_shortest, 3);
-    boxes[7].max[0] = 600;
-    EXPECT_GT(extent_stats<D>(boxes).unevenness, 10);
   });
 }
 

@@ -201,8 +201,8 @@ TEST(Outline, OfAnAlgorithmThatChoosesIsThatOfItsChoice) {
   const std::vector<Box2> few = scattered<2>(100);
   EXPECT_EQ(outline_by<2>("auto", few).caption, "brute_force");
   const std::vector<Box2> some = scattered<2>(2000);
-  EXPECT_EQ(outline_by<2>("auto", some).levels, outline_by<2>("bvh", some).levels);
-  EXPECT_EQ(outline_by<2>("auto", some).caption, "bvh: " + outline_by<2>("bvh", some).caption);
+  EXPECT_EQ(outline_by<2>("auto", some).levels, outline_by<2>("grid", some).levels);
+  EXPECT_EQ(outline_by<2>("auto", some).caption, "grid: " + outline_by<2>("grid", some).caption);
 }
 
 TEST(Outline, OfDoublesIsThatOfTheirFloats) {

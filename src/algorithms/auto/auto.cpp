@@ -28,10 +28,10 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, clusters, cells };
+enum class AutoReason { few, tile, one_axis, one_place, dense, clusters, cells };
 
-constexpr std::array<std::string_view, 8> chosen_algorithm = {
-    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
+constexpr std::array<std::string_view, 7> chosen_algorithm = {
+    "brute_force", "grid", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
@@ -88,17 +88,6 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
-/// Notes that a search has given up before it wrote a pair.
-template <int D>
-class DeclinedSearch final : public Successor<D> {
- public:
-  void finish(const typename Successor<D>::IsMissing&) override { has_declined_ = true; }
-  bool has_declined() const noexcept { return has_declined_; }
-
- private:
-  bool has_declined_ = false;
-};
-
 /// Chooses among searchers, and keeps those it has used.
 template <int D>
 class AutoSearcher final : public Searcher<D> {
@@ -107,16 +96,14 @@ class AutoSearcher final : public Searcher<D> {
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     choose(input.boxes);
-    has_handed_over_ = false;
-    if (choice_ == AutoReason::tile) {
-      // The search of a tile counts its tests before it makes one.
-      DeclinedSearch<D> declined;
-      const std::optional<Statistics> statistics = search_with(choice_, input, declined, pairs);
-      if (!declined.has_declined()) return statistics;
-      choice_ = AutoReason::uneven_tile;
-    }
     SegmentSuccessor<D> successor(input, pairs, segments_);
-    std::optional<Statistics> statistics = search_with(choice_, input, successor, pairs);
+    const SearchInput<D> its_input{input.boxes, input.left_count, input.doubles, &successor, input.workers};
+    auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
+    if (!chosen) {
+      const Algorithm& algorithm = algorithm_of(choice_);
+      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
+    }
+    std::optional<Statistics> statistics = chosen->search(its_input, pairs);
     has_handed_over_ = successor.work().has_value();
     if (has_handed_over_) {
       statistics->tests += successor.work()->tests;
@@ -157,8 +144,6 @@ class AutoSearcher final : public Searcher<D> {
         return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
       case AutoReason::tile:
         return text + boxes + " fit in a core's cache, where sorting them into cells costs least";
-      case AutoReason::uneven_tile:
-        return text + boxes + " are too uneven for cells of one size";
       case AutoReason::dense:
         return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
       case AutoReason::clusters:
@@ -171,16 +156,6 @@ class AutoSearcher final : public Searcher<D> {
                ", so that separating them gains nothing";
     }
     return text;
-  }
-
-  std::optional<Statistics> search_with(AutoReason choice, const SearchInput<D>& input,
-                                        Successor<D>& successor, PairSink& pairs) {
-    auto& chosen = searchers_[static_cast<std::size_t>(choice)];
-    if (!chosen) {
-      const Algorithm& algorithm = algorithm_of(choice);
-      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
-    }
-    return chosen->search({input.boxes, input.left_count, input.doubles, &successor, input.workers}, pairs);
   }
 
   void choose(std::span<const Box<D>> boxes) {

@@ -14,9 +14,8 @@ struct AutoThresholds {
   /// Up to this many boxes brute_force is the fastest.
   static constexpr std::size_t few_boxes = 44;
 
-  /// Up to this many, the boxes are a tile of a grid, which needs no sample: it counts its tests before it
-  /// makes one.
-  static constexpr std::size_t boxes_of_a_tile = 16'384;
+  /// Up to this many, the grid needs no sample: they are one tile of it, however unevenly they are spread.
+  static constexpr std::size_t boxes_of_a_tile = 4096;
 
   /// Up to this many tests per box, a sweep along one axis beats all other algorithms.
   static constexpr double tests_of_a_good_axis = 4;

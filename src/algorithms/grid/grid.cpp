@@ -7,11 +7,11 @@
 // greater of the two minima on every gridded axis.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -48,15 +48,55 @@ constexpr std::size_t swept_at_once = 64;
 /// The tests of a box in a tile up to which no other search is better.
 constexpr std::uint64_t max_tests_in_tile = 160;
 
+/// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
+template <int D>
+std::string caption_of(const std::array<int, D>& axes, const std::array<core::CellAxis, D - 1>& cells) {
+  const std::string swept = " swept along " + axis_name(axes[0]);
+  const auto size = [&cells](int axis) { return three_digits(1 / cells[axis].per_unit); };
+  if (std::all_of(cells.begin(), cells.end(), [](const core::CellAxis& axis) { return axis.count() == 1; }))
+    return "1 cell," + swept;
+  if constexpr (D == 2)
+    return counted(cells[0].count(), "cell") + " of " + size(0) + " over " + axis_name(axes[1]) + ", each" +
+           swept;
+  else
+    return std::to_string(cells[0].count()) + " x " + counted(cells[1].count(), "cell") + " of " + size(0) +
+           " x " + size(1) + " over " + axis_name(axes[1]) + " and " + axis_name(axes[2]) + ", each" + swept;
+}
+
+/// An outline of cells over all axes but axes[0].
+template <int D>
+Outline<D> outline_of(const std::array<int, D>& axes, const std::array<core::CellAxis, D - 1>& cells) {
+  Outline<D> outline;
+  outline.kind = "cells";
+  outline.swept_axis = axes[0];
+  outline.caption = caption_of<D>(axes, cells);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Box<D> whole;
+  whole.min.fill(-infinity);
+  whole.max.fill(infinity);
+  outline.levels = {{whole}};
+  // Cuts what there is along one axis after the other, the rows first.
+  for (int axis = D - 2; axis >= 0; --axis) {
+    const auto cut = std::exchange(outline.levels[0], {});
+    for (Box<D> part : cut) {
+      const std::uint32_t count = cells[axis].count();
+      for (std::uint32_t cell = 0; cell < count; ++cell) {
+        part.max[axes[axis + 1]] = cell + 1 < count ? core::border_before(cells[axis], cell + 1) : infinity;
+        outline.levels[0].push_back(part);
+        part.min[axes[axis + 1]] = part.max[axes[axis + 1]];
+      }
+    }
+  }
+  return outline;
+}
+
 template <int D>
 class GridSearcher final : public Searcher<D> {
  public:
   explicit GridSearcher(const Settings& settings) : cell_(settings.optional_number("cell")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    if (is_tile(input.boxes)) {
-      if (const std::optional<Statistics> statistics = search_tile(input, pairs)) return statistics;
-    }
+    if (is_tile(input.boxes) && sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
     const std::size_t boxes = input.boxes.size();
     parallel_.start(input.workers, boxes);
     sweeps_.resize(std::max(sweeps_.size(), parallel_.workers()));
@@ -91,33 +131,9 @@ class GridSearcher final : public Searcher<D> {
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers&) {
+    if (is_tile(boxes) && sort_tile(boxes, 0)) return outline_of<D>(tile_cells_.axes, tile_cells_.row_axes);
     choose_cells(boxes);
-    const std::array<int, D>& axes = layout_.axes();
-    Outline<D> outline;
-    outline.kind = "cells";
-    outline.swept_axis = axes[0];
-    outline.levels.resize(1);
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    Box<D> cell;
-    cell.min.fill(-infinity);
-    cell.max.fill(infinity);
-    // The last cell's border is NaN: the cell is unbounded, like the first one.
-    const auto end = [](float border) {
-      return std::isnan(border) ? std::numeric_limits<float>::infinity() : border;
-    };
-    for (std::size_t row = 0; row < layout_.rows(); ++row) {
-      cell.min[axes[D - 1]] = row == 0 ? -infinity : layout_.row_border(row - 1);
-      cell.max[axes[D - 1]] = end(layout_.row_border(row));
-      for (std::size_t column = 0; column < layout_.row_length(); ++column) {
-        if constexpr (D == 3) {
-          cell.min[axes[1]] = column == 0 ? -infinity : layout_.column_border(column - 1);
-          cell.max[axes[1]] = end(layout_.column_border(column));
-        }
-        outline.levels[0].push_back(cell);
-      }
-    }
-    outline.caption = caption();
-    return outline;
+    return outline_of<D>(layout_.axes(), layout_.cell_axes());
   }
 
  private:
@@ -144,35 +160,28 @@ class GridSearcher final : public Searcher<D> {
     return !cell_ && boxes.size() <= TileCells<D>::max_boxes && !boxes.empty();
   }
 
-  /// Sorts the boxes by cells that suit a sample of them, if these take fewer tests: a few boxes far away may
-  /// have left most cells empty. Returns how many tests a sweep makes.
-  std::uint64_t sort_by_sample(const SearchInput<D>& input, const TileCells<D>& cells, std::uint64_t tests) {
-    sample_.take(input.boxes);
-    const auto by_sample = TileCells<D>::choose(TileStats<D>::of(sample_), input.boxes.size());
-    const std::uint64_t fewer = *tile_.sort(input.boxes, by_sample, input.left_count);
-    return fewer < tests ? fewer : *tile_.sort(input.boxes, cells, input.left_count);
+  /// Sorts the boxes by cells that suit them. False if the boxes are too uneven for a tile's cells.
+  bool sort_tile(std::span<const Box<D>> boxes, std::size_t left_count) {
+    const auto sort = [&](const TileCells<D>& cells) {
+      tile_cells_ = cells;
+      const double limit =
+          boxes.size() > max_uneven_tile ? max_unevenness : std::numeric_limits<double>::infinity();
+      return tile_.sort(boxes, cells, left_count, limit);
+    };
+    const auto cells = TileCells<D>::choose(TileStats<D>::of(boxes), boxes.size());
+    const std::optional<std::uint64_t> tests = sort(cells);
+    if (!tests) return false;
+    const auto are_many = [&](std::uint64_t some) {
+      return some > max_tests_in_tile * boxes.size() && tile_.finds_few_pairs();
+    };
+    if (!are_many(*tests)) return true;
+    // A few boxes far away may have left most cells empty.
+    sample_.take(boxes);
+    const auto by_sample = sort(TileCells<D>::choose(TileStats<D>::of(sample_), boxes.size()));
+    return by_sample && !are_many(*by_sample);
   }
 
-  /// Sorts the boxes by cells that suit them. Returns how many tests a sweep makes; nothing if the boxes are
-  /// too uneven for cells of one size.
-  std::optional<std::uint64_t> sort_tile(const SearchInput<D>& input) {
-    const std::size_t boxes = input.boxes.size();
-    const auto cells = TileCells<D>::choose(TileStats<D>::of(input.boxes), boxes);
-    const double limit = boxes > max_uneven_tile ? max_unevenness : std::numeric_limits<double>::infinity();
-    std::optional<std::uint64_t> tests = tile_.sort(input.boxes, cells, input.left_count, limit);
-    const auto are_too_many = [&] { return *tests > max_tests_in_tile * boxes && tile_.finds_few_pairs(); };
-    if (!tests || !are_too_many()) return tests;
-    tests = sort_by_sample(input, cells, *tests);
-    return are_too_many() ? std::nullopt : tests;
-  }
-
-  /// Nothing, and no pair is written, if the boxes are too uneven and no other search takes over.
-  std::optional<Statistics> search_tile(const SearchInput<D>& input, PairSink& pairs) {
-    if (!sort_tile(input)) {
-      if (input.successor == nullptr) return std::nullopt;
-      input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
-      return Statistics{};
-    }
+  Statistics sweep_tile(const SearchInput<D>& input, PairSink& pairs) {
     parallel_.start(input.workers, input.boxes.size());
     const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
       return Statistics{.tests = tile_.sweep(some.begin * swept_at_once, some.end * swept_at_once,
@@ -187,19 +196,6 @@ class GridSearcher final : public Searcher<D> {
   void choose_cells(std::span<const Box<D>> boxes) {
     sample_.take(boxes);
     layout_.choose(sample_, boxes.size(), cell_);
-  }
-
-  /// Such as "12 x 9 cells of 2.1 x 2.5 over x and z, each swept along y".
-  std::string caption() const {
-    const std::array<int, D>& axes = layout_.axes();
-    const std::string swept = " swept along " + axis_name(axes[0]);
-    if (layout_.cells() == 1) return "1 cell," + swept;
-    if constexpr (D == 2)
-      return counted(layout_.rows(), "cell") + " of " + three_digits(layout_.cell_size(0)) + " over " +
-             axis_name(axes[1]) + ", each" + swept;
-    return std::to_string(layout_.row_length()) + " x " + counted(layout_.rows(), "cell") + " of " +
-           three_digits(layout_.cell_size(0)) + " x " + three_digits(layout_.cell_size(1)) + " over " +
-           axis_name(axes[1]) + " and " + axis_name(axes[D - 1]) + ", each" + swept;
   }
 
   /// The sample's range on the swept axis and a little more, since a sample misses the ends.
@@ -280,6 +276,7 @@ class GridSearcher final : public Searcher<D> {
 
   std::optional<double> cell_;
 
+  TileCells<D> tile_cells_{};
   TileSearch<D> tile_;
   core::Sample<D> sample_;
   GridLayout<D> layout_;

@@ -5,9 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/bit_cast.hpp"
-#include "core/radix_sort.hpp"
-
 namespace broadside::algorithm {
 namespace {
 
@@ -43,11 +40,6 @@ double chance_within(const core::AxisSample& sample, double distance) {
 }
 
 double range_of(const core::AxisSample& sample) { return static_cast<double>(sample.high) - sample.low; }
-
-/// The float whose sort_key() is `key`.
-float float_of(std::uint32_t key) {
-  return core::bit_cast<float>(key ^ (key >> 31 != 0 ? 0x80000000U : 0xffffffffU));
-}
 
 }  // namespace
 
@@ -149,26 +141,10 @@ void GridLayout<D>::set(const core::Sample<D>& sample, const std::array<double, 
 
 template <int D>
 void GridLayout<D>::set_borders(int axis) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   std::vector<float>& borders = borders_[axis];
   borders.resize(cells_[axis]);
-  for (std::uint32_t cell = 1; cell < cells_[axis]; ++cell) {
-    // The least float that lies in the cell or after it. Rounding may have moved it by a little.
-    float border = cell_axes_[axis].low + static_cast<float>(cell) / cell_axes_[axis].per_unit;
-    for (int i = 0; i < 4 && cell_of(border, axis) < cell; ++i) border = std::nextafter(border, infinity);
-    for (int i = 0; i < 4 && cell_of(std::nextafter(border, -infinity), axis) >= cell; ++i)
-      border = std::nextafter(border, -infinity);
-    if (cell_of(border, axis) < cell || cell_of(std::nextafter(border, -infinity), axis) >= cell) {
-      std::uint32_t below = core::sort_key(-infinity);
-      std::uint32_t at = core::sort_key(infinity);
-      while (at - below > 1) {
-        const std::uint32_t middle = below + (at - below) / 2;
-        (cell_of(float_of(middle), axis) < cell ? below : at) = middle;
-      }
-      border = float_of(at);
-    }
-    borders[cell - 1] = border;
-  }
+  for (std::uint32_t cell = 1; cell < cells_[axis]; ++cell)
+    borders[cell - 1] = core::border_before(cell_axes_[axis], cell);
   borders.back() = std::numeric_limits<float>::quiet_NaN();
 }
 

@@ -35,6 +35,9 @@ class GridLayout {
   /// The axes of the caller's boxes: first the swept one, then the gridded ones.
   const std::array<int, D>& axes() const noexcept { return axes_; }
 
+  /// The cells on the axes but the swept one.
+  const std::array<core::CellAxis, gridded>& cell_axes() const noexcept { return cell_axes_; }
+
   std::size_t cells() const noexcept { return cell_count_; }
   std::size_t row_length() const noexcept { return D == 2 ? 1 : cells_[0]; }
   std::size_t rows() const noexcept { return cells_[gridded - 1]; }
@@ -56,9 +59,6 @@ class GridLayout {
   /// The least coordinate in the next row or column; NaN for the last one, so that no box reaches it.
   float row_border(std::size_t row) const { return borders_[gridded - 1][row]; }
   float column_border(std::size_t column) const { return borders_[0][column]; }
-
-  /// The width of the cells on the axis `axes()[1 + axis]`.
-  float cell_size(int axis) const { return 1 / cell_axes_[axis].per_unit; }
 
   /// The least coordinate in the slab after a row's slab; NaN for the last one.
   float slab_border(std::size_t row) const { return slab_border_[row]; }

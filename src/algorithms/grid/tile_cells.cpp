@@ -38,16 +38,14 @@ TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
   for (const Box<D>& box : boxes) {
     for (int axis = 0; axis < D; ++axis) {
       const float min = box.min[axis];
-      stats.low[axis] = min < stats.low[axis] ? min : stats.low[axis];
-      stats.high[axis] = min > stats.high[axis] ? min : stats.high[axis];
-      stats.side[axis] += box.max[axis] - min;
+      const float side = box.max[axis] - min;
+      // What is infinite does not count.
+      stats.low[axis] = min < stats.low[axis] && min >= -largest ? min : stats.low[axis];
+      stats.high[axis] = min > stats.high[axis] && min <= largest ? min : stats.high[axis];
+      stats.side[axis] += side <= largest ? side : 0;
     }
   }
-  for (int axis = 0; axis < D; ++axis) {
-    stats.low[axis] = std::clamp(stats.low[axis], -largest, largest);
-    stats.high[axis] = std::clamp(stats.high[axis], -largest, largest);
-    stats.side[axis] /= static_cast<float>(boxes.size());
-  }
+  for (float& side : stats.side) side = std::min(side / static_cast<float>(boxes.size()), largest);
   return stats;
 }
 
