@@ -4,6 +4,7 @@
 set(broadside_observing_sources
   ${PROJECT_SOURCE_DIR}/src/find/search.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bvh_join.cpp
+  ${PROJECT_SOURCE_DIR}/src/kernels/bucket_sweep.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/sweep.cpp
   ${PROJECT_SOURCE_DIR}/tools/paper/listings/brute_force.cpp
   ${PROJECT_SOURCE_DIR}/tools/paper/listings/grid_listing.cpp

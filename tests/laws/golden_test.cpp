@@ -45,12 +45,12 @@ struct GoldenOrder {
 };
 
 constexpr std::array<GoldenOrder, 14> golden_orders = {{
-    {"auto", 2, 0x84e8fe29d048d7edU},
-    {"auto", 3, 0xa5ece44084832406U},
+    {"auto", 2, 0xe6634f59d2ef9559U},
+    {"auto", 3, 0xf69ba59008c7fb8aU},
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
-    {"grid", 2, 0x00ef862ee0c5d3fdU},
-    {"grid", 3, 0x91bd1d5d7715c49aU},
+    {"grid", 2, 0xe6634f59d2ef9559U},
+    {"grid", 3, 0xf69ba59008c7fb8aU},
     {"sweep_and_prune", 2, 0xc9247fb29c7ca839U},
     {"sweep_and_prune", 3, 0xb56e0b088d97bcdeU},
     {"quadtree", 2, 0x85c4c8674de5ec01U},

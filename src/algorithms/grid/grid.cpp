@@ -43,7 +43,7 @@ constexpr std::size_t max_uneven_tile = 4096;
 constexpr double max_unevenness = 5;
 
 /// Places of a tile that a thread sweeps at a time.
-constexpr std::size_t swept_at_once = 64;
+constexpr std::size_t places_at_once = 64;
 
 /// The tests of a box in a tile up to which no other search is better.
 constexpr std::uint64_t max_tests_in_tile = 160;
@@ -184,11 +184,11 @@ class GridSearcher final : public Searcher<D> {
   Statistics sweep_tile(const SearchInput<D>& input, PairSink& pairs) {
     parallel_.start(input.workers, input.boxes.size());
     const auto sweep = [&](core::Range some, std::size_t worker, PairSink& sink) {
-      return Statistics{.tests = tile_.sweep(some.begin * swept_at_once, some.end * swept_at_once,
+      return Statistics{.tests = tile_.sweep(some.begin * places_at_once, some.end * places_at_once,
                                              input.doubles, parallel_.checkpoint(worker), sink)};
     };
     Statistics statistics =
-        parallel_.search((tile_.places() + swept_at_once - 1) / swept_at_once, pairs, sweep);
+        parallel_.search((tile_.places() + places_at_once - 1) / places_at_once, pairs, sweep);
     statistics.references = tile_.references();
     return statistics;
   }
