@@ -10,6 +10,9 @@ namespace {
 
 constexpr float largest = std::numeric_limits<float>::max();
 
+/// So many boxes tell of the others.
+constexpr std::size_t max_looked_at = 1024;
+
 /// The cost of a box in a row, in comparisons of a box with a vector of others.
 constexpr float reference_cost = 3;
 
@@ -35,7 +38,9 @@ TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
   stats.low.fill(largest);
   stats.high.fill(-largest);
   stats.side.fill(0);
-  for (const Box<D>& box : boxes) {
+  const std::size_t count = std::min(boxes.size(), max_looked_at);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Box<D>& box = boxes[core::sampled_place(i, count, boxes.size())];
     for (int axis = 0; axis < D; ++axis) {
       const float min = box.min[axis];
       const float side = box.max[axis] - min;
@@ -45,7 +50,7 @@ TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
       stats.side[axis] += side <= largest ? side : 0;
     }
   }
-  for (float& side : stats.side) side = std::min(side / static_cast<float>(boxes.size()), largest);
+  for (float& side : stats.side) side = std::min(side / static_cast<float>(count), largest);
   return stats;
 }
 

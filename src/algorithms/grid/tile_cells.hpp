@@ -15,14 +15,14 @@ namespace broadside::algorithm {
 /// What decides about the cells, by axis.
 template <int D>
 struct TileStats {
-  std::array<float, D> low;   ///< the least minimum
-  std::array<float, D> high;  ///< the greatest minimum
+  std::array<float, D> low;   ///< the least finite minimum
+  std::array<float, D> high;  ///< the greatest finite minimum
   std::array<float, D> side;  ///< the boxes' mean extent
 
-  /// Of all boxes. Cost: a pass.
+  /// Of at most 1,024 of the boxes.
   static TileStats of(std::span<const Box<D>> boxes);
 
-  /// Of a sample, without far outliers.
+  /// Of a sorted sample, without far outliers.
   static TileStats of(const core::Sample<D>& sample);
 };
 
