@@ -32,8 +32,8 @@ template <int D>
 struct TileCells {
   static constexpr int across = D - 1;
 
-  /// The maximum of rows() * buckets.count() for `boxes` boxes: a bucket's number has 16 bits.
-  static constexpr std::size_t max_boxes = std::size_t{1} << 14;
+  /// With more boxes, the cells of a whole grid cost less. Also, a bucket's number in a tile has 16 bits.
+  static constexpr std::size_t max_boxes = D == 2 ? std::size_t{1} << 15 : std::size_t{1} << 14;
 
   /// The minimum of buckets.count(), which is a power of two.
   static constexpr std::size_t min_buckets = 16;
