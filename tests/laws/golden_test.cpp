@@ -46,11 +46,11 @@ struct GoldenOrder {
 
 constexpr std::array<GoldenOrder, 14> golden_orders = {{
     {"auto", 2, 0xe6634f59d2ef9559U},
-    {"auto", 3, 0xf69ba59008c7fb8aU},
+    {"auto", 3, 0x015017327fed702eU},
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
     {"brute_force", 3, 0x14940631e712ac4aU},
     {"grid", 2, 0xe6634f59d2ef9559U},
-    {"grid", 3, 0xf69ba59008c7fb8aU},
+    {"grid", 3, 0x015017327fed702eU},
     {"sweep_and_prune", 2, 0xc9247fb29c7ca839U},
     {"sweep_and_prune", 3, 0xb56e0b088d97bcdeU},
     {"quadtree", 2, 0x85c4c8674de5ec01U},
