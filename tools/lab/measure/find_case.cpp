@@ -55,7 +55,7 @@ template <int D, typename Real>
 class FindCase {
  public:
   FindCase(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark)
-      : case_(measured), inputs_(inputs), benchmark_(benchmark) {
+      : case_(measured), inputs_(inputs), benchmark_(benchmark), caches_(benchmark.measure_options.cold) {
     for (const History<D, Real>& input : inputs) extremes_.template take<D, Real>(input.boxes);
   }
 
