@@ -76,6 +76,7 @@ const std::vector<Rule>& rules() {
       {"tools/lab/peers/", lab + engines + peers},
       {"tools/lab/literature/", library + R"(|"lab/peers/peer_follower\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"tools/lab/formats/", lab + R"(|<assimp/.*>)"},
+      {"tools/lab/measure/streamed_copy", lab + R"(|<hwy/[a-z_]+\.h>)"},
       {"tools/lab/", lab},
       {"tools/cli/", lab + R"(|"paper/plain/plain\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"tools/bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},

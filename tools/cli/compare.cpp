@@ -46,6 +46,7 @@ struct CompareArguments {
   ResultFiles files;
   std::string check;
   bool is_long = false;
+  bool is_cold = false;
   bool has_details = false;
 };
 
@@ -135,6 +136,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   options.plan = plan_of(arguments, options.find);
   options.seed = arguments.seed.value_or(options.seed);
   if (arguments.is_long) options.effort = lab::long_effort();
+  options.measure_options.cold = arguments.is_cold;
   if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
   if (!arguments.check.empty()) options.effort.definition_boxes = definition_boxes(arguments.check);
   options.watch.stop = interrupted;
@@ -230,6 +232,8 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   add_result_files(*verb, arguments->files);
   verb->add_flag("--details", arguments->has_details,
                  "Print a table a case, with every algorithm's time, memory and tests, instead of a line");
+  verb->add_flag("--cold", arguments->is_cold,
+                 "Empty all caches before each call, not only the small ones; takes far longer");
   verb->add_flag("--long", arguments->is_long, "The long comparison: up to 1,000,000 boxes, more motion");
   add_examples(
       *verb,

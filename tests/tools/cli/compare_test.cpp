@@ -69,6 +69,13 @@ TEST(CompareVerb, WritesJsonWithAMeasurementForEachLineOfTheTable) {
   }
 }
 
+TEST(CompareVerb, MeasuresWithColdCaches) {
+  const Ended ended = run({"compare", "uniform", "--dimension", "3", "-n", "100", "--moving", "0,1",
+                           "--algorithms", "grid,quadtree", "--cold"});
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("measurements, all verified\n"));
+}
+
 TEST(CompareVerb, TracksWhatMovesAndReadsNumbersAsPeopleWriteThem) {
   const TemporaryFolder folder;
   const Ended ended =

@@ -51,7 +51,7 @@ TEST(Compare, VerifiesAndTimesEveryAlgorithmOnAStillScene) {
   EXPECT_EQ(result.of.scene, "uniform");
   EXPECT_EQ(result.of.boxes, 300u);
   EXPECT_EQ(result.of.mode, Mode::find);
-  EXPECT_EQ(result.of.seeds.size(), 25u);
+  EXPECT_EQ(result.of.seeds.size(), 32u);
   ASSERT_EQ(result.measurements.size(), catalogue.select("own").size());
   const std::vector<Box2> boxes =
       make_history<2>(find_scene("uniform").scene, Spec{"uniform", {}}, {.boxes = 300, .seed = 1}).boxes;

@@ -11,36 +11,85 @@ namespace broadside::lab {
 namespace {
 
 using testing::Each;
-using testing::ElementsAre;
 using testing::Gt;
 using testing::IsEmpty;
 
 Box2 begins_at(float x, float y) { return {{x, y}, {x + 1, y + 2}}; }
 
-TEST(Floor, SortsByTheLeastXWithTiesInTheirOrder) {
-  const std::vector<Box2> boxes{begins_at(1e-20F, 0), begins_at(-3, 0),  begins_at(infinity, 0),
-                                begins_at(0, 0),      begins_at(1e9, 0), begins_at(-0.0F, 0),
-                                begins_at(-3.5F, 0),  begins_at(-3, 0),  begins_at(-infinity, 0)};
-  Floor<2> floor;
-  floor.run(boxes, {});
-  EXPECT_THAT(floor.order(), ElementsAre(8, 6, 1, 7, 3, 5, 0, 4, 2));
+/// Boxes in an order that has nothing to do with their places; not whole blocks, and several stripes.
+template <int D>
+std::vector<Box<D>> many() {
+  std::vector<Box<D>> boxes(20'001);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      boxes[i].min[axis] = static_cast<float>(i * 7'919 % 10'007 + axis);
+      boxes[i].max[axis] = boxes[i].min[axis] + static_cast<float>(i);
+    }
+  }
+  return boxes;
 }
 
-TEST(Floor, GathersTheBoundsInThatOrder) {
-  Floor<3> floor;
-  const std::vector<Box3> many(5, Box3{{9, 9, 9}, {9, 9, 9}});
-  floor.run(many, {});  // so that memory of another size is there
-  const std::vector<Box3> boxes{{{2, 30, 400}, {5, 60, 700}}, {{1, 31, 401}, {6, 61, 701}}};
-  floor.run(boxes, {});
-  EXPECT_THAT(floor.bounds(), ElementsAre(ElementsAre(1, 2), ElementsAre(31, 30), ElementsAre(401, 400),
-                                          ElementsAre(6, 5), ElementsAre(61, 60), ElementsAre(701, 700)));
+/// Each box is moved once, with its index, behind all that begin in a stripe before its own.
+template <int D>
+void expect_moved(const Floor<D>& floor, const std::vector<Box<D>>& boxes) {
+  const auto moved = floor.moved();
+  ASSERT_EQ(moved.size(), boxes.size());
+  std::vector<bool> seen(boxes.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    ASSERT_LT(moved[i].index, boxes.size());
+    ASSERT_FALSE(seen[moved[i].index]);
+    seen[moved[i].index] = true;
+    ASSERT_EQ(moved[i].box, boxes[moved[i].index]);
+    if (i == 0) continue;
+    ASSERT_LE(moved[i - 1].stripe, moved[i].stripe);
+    if (moved[i - 1].stripe == moved[i].stripe)
+      ASSERT_LT(moved[i - 1].index, moved[i].index);
+    else
+      ASSERT_LT(moved[i - 1].box.min[0], moved[i].box.min[0]);
+  }
+}
+
+template <int D>
+void expect_all_moved() {
+  Floor<D> floor;
+  for (const Stores stores : {Stores::plain, Stores::streamed}) {
+    const std::vector<Box<D>> boxes = many<D>();
+    floor.run(boxes, {}, stores);
+    expect_moved(floor, boxes);
+    EXPECT_GT(floor.moved().back().stripe, 3u);
+    // In memory that held others.
+    const std::vector<Box<D>> few(boxes.begin(), boxes.begin() + 17);
+    floor.run(few, {}, stores);
+    expect_moved(floor, few);
+  }
+}
+
+TEST(Floor, MovesEachBoxIntoItsStripe) {
+  expect_all_moved<2>();
+  expect_all_moved<3>();
+}
+
+TEST(Floor, TakesBoxesAtInfinityAndAbsentOnes) {
+  std::vector<Box2> boxes = many<2>();
+  boxes[3] = absent_box<2>();
+  boxes[5] = begins_at(-infinity, 0);
+  boxes[7] = begins_at(infinity, 0);
+  boxes[9] = begins_at(1e30F, 0);
+  Floor<2> floor;
+  floor.run(boxes, {}, Stores::streamed);
+  expect_moved(floor, boxes);
+  const std::vector<Box2> all_at_infinity(5'000, begins_at(infinity, 0));
+  floor.run(all_at_infinity, {}, Stores::streamed);
+  expect_moved(floor, all_at_infinity);
 }
 
 TEST(Floor, WritesEachPair) {
-  constexpr Pair unwritten{BoxId{77}, BoxId{77}};
-  std::vector<Pair> pairs(10, unwritten);
-  Floor<2>().run({}, pairs);
-  EXPECT_THAT(pairs, Each(testing::Ne(unwritten)));
+  constexpr Pair unwritten{BoxId{777}, BoxId{777}};
+  for (const Stores stores : {Stores::plain, Stores::streamed}) {
+    std::vector<Pair> pairs(300, unwritten);
+    Floor<2>().run({}, pairs, stores);
+    EXPECT_THAT(pairs, Each(testing::Ne(unwritten)));
+  }
 }
 
 CaseResult compared(const CaseRequest& request) {

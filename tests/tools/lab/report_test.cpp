@@ -107,7 +107,7 @@ TEST(Table, EndsWithTheFloorAndCountsInFloors) {
   EXPECT_THAT(lines[3], StartsWith("  second     9.00    2.0  -                 6.0       900 "));
   EXPECT_THAT(lines[4], StartsWith("  wrong         -      -  -                   -         - "));
   EXPECT_THAT(lines[5], StartsWith("  the floor  1.50   0.33  -                 1.0       150 "));
-  EXPECT_THAT(lines[5], HasSubstr("  1.40..1.60  boxes sorted and gathered, pairs written"));
+  EXPECT_THAT(lines[5], HasSubstr("  1.40..1.60  boxes moved into parts and read back, pairs written"));
 }
 
 TEST(Table, EndsWithOurLeadOverTheFastestPeer) {

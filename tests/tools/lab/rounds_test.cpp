@@ -32,6 +32,14 @@ TEST(Rounds, GoOnUntilAShareOfTimeIsSpent) {
   EXPECT_TRUE(has_another_round(timed(AlgorithmKind::own, {9, 9, 9, 9}, 2), effort, no_limit));
 }
 
+TEST(Rounds, TakeTurnsOnInputsThatTogetherAreTooManyToBeLearned) {
+  EXPECT_EQ(inputs_in_rotation(0), 32u);
+  EXPECT_EQ(inputs_in_rotation(100), 32u);
+  EXPECT_EQ(inputs_in_rotation(10'000), 10u);
+  EXPECT_EQ(inputs_in_rotation(499'999), 4u);
+  EXPECT_EQ(inputs_in_rotation(500'000), 1u);
+}
+
 TEST(Rounds, EndWithAFailure) {
   Measurement failed = timed(AlgorithmKind::own, {});
   failed.outcome = Outcome::failed;

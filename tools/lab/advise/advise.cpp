@@ -12,6 +12,7 @@
 #include "lab/measure/cases.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/reference.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/measure/samples.hpp"
 
 namespace broadside::lab {
@@ -103,7 +104,7 @@ std::vector<History<D, Real>> images_of(const History<D, Real>& history, std::si
 
 std::size_t image_count(std::size_t boxes, Mode mode) {
   if (mode == Mode::track) return boxes <= 20'000 ? 2 : 1;
-  return boxes <= 2'000 ? 32 : boxes <= 200'000 ? 4 : 1;
+  return boxes <= 200'000 ? inputs_in_rotation(boxes) : 1;
 }
 
 template <int D, typename Real>

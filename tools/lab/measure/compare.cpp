@@ -11,6 +11,7 @@
 #include "lab/measure/cases.hpp"
 #include "lab/measure/paired_ratio.hpp"
 #include "lab/measure/reference.hpp"
+#include "lab/measure/rounds.hpp"
 #include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/platform/machine.hpp"
@@ -19,13 +20,10 @@
 namespace broadside::lab {
 namespace {
 
-/// How many seeds of a case are taken in turn. A small input that is repeated would train the branch
-/// predictor as no user's boxes would, and seeds differ. Each seed is measured several times.
+/// How many seeds of a case are taken in turn. A history's frames already differ.
 std::size_t seeds_for(std::size_t boxes, Mode mode) {
-  if (mode == Mode::find && boxes <= 2'000) return 25;
-  const std::size_t seeds = boxes < 500'000 ? 4 : 1;
-  // The frames of a history already differ.
-  return mode == Mode::find || boxes <= 2'000 ? seeds : std::max<std::size_t>(seeds / 2, 1);
+  if (mode == Mode::find) return inputs_in_rotation(boxes);
+  return boxes <= 2'000 ? 4 : boxes < 500'000 ? 2 : 1;
 }
 
 template <int D>

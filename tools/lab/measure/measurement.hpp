@@ -38,6 +38,7 @@ struct MeasureOptions {
   bool times = true;       ///< if false, each algorithm runs once on each seed
   bool phases = false;     ///< the time of each phase of a listing's calls or frames
   bool made_anew = false;  ///< each timed search uses a new searcher, made before the clock starts
+  bool cold = false;       ///< nothing is in the caches when a call begins
 };
 
 /// The outcome of an algorithm in a case.

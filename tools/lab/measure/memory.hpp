@@ -36,14 +36,15 @@ void keep_freed_memory();
 /// The processor's caches.
 class CacheState {
  public:
-  CacheState();
+  explicit CacheState(bool is_cold);
 
   /// Evicts the first two cache levels, as the rest of an engine's frame does, and reads `input`, which an
-  /// engine has just written.
+  /// engine has just written. If cold, evicts all levels and reads nothing.
   void settle(std::span<const std::byte> input);
 
  private:
-  std::vector<std::uint64_t> memory_;  // larger than the second level
+  bool is_cold_;
+  std::vector<std::uint64_t> memory_;  // larger than the levels to evict
 };
 
 }  // namespace broadside::lab

@@ -34,6 +34,11 @@ double scaled(double seconds, std::size_t from, std::size_t to, double exponent)
 
 }  // namespace
 
+std::size_t inputs_in_rotation(std::size_t boxes) {
+  if (boxes >= 500'000) return 1;
+  return std::clamp<std::size_t>(100'000 / std::max<std::size_t>(boxes, 1), 4, 32);
+}
+
 std::vector<std::size_t> turns(std::size_t entries, std::size_t round) {
   std::vector<std::size_t> order(entries);
   std::iota(order.begin(), order.end(), std::size_t{0});

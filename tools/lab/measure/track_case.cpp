@@ -52,7 +52,7 @@ template <int D, typename Real>
 class TrackCase {
  public:
   TrackCase(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark)
-      : case_(measured), inputs_(inputs), benchmark_(benchmark) {
+      : case_(measured), inputs_(inputs), benchmark_(benchmark), caches_(benchmark.measure_options.cold) {
     for (const History<D, Real>& input : inputs) {
       extremes_.template take<D, Real>(input.boxes);
       for (const Step<D, Real>& step : input.steps) {

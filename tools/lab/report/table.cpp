@@ -176,7 +176,7 @@ std::string still_rows(const CaseResult& result) {
   if (floor > 0) {
     add({"the floor", scale.unit.text(floor) + scale.no_mark,
          scale.fastest > 0 ? ratio_text(floor / scale.fastest) : "-", "-", rounded(floor * 1e6 / scale.boxes),
-         "-", "-", "-", range(result.floor_ms), "boxes sorted and gathered, pairs written"},
+         "-", "-", "-", range(result.floor_ms), "boxes moved into parts and read back, pairs written"},
         "1.0");
   }
   return columns.text("  ");

@@ -150,7 +150,7 @@ function caseView(cases: readonly Case[]): HTMLElement | null {
     frames.element.hidden = chosen.mode !== "track";
     if (chosen.mode === "track") frames.show(`Time of each frame: ${chosen.name}`, (place) => drawFrames(chosen, place));
     table.replaceChildren(caseTable(chosen));
-    floor.textContent = chosen.floor_ms === null ? "" : `The floor, boxes sorted and gathered and as many pairs written: ${timeText(chosen.floor_ms)}.`;
+    floor.textContent = chosen.floor_ms === null ? "" : `The floor, boxes moved into parts and read back and as many pairs written: ${timeText(chosen.floor_ms)}.`;
   };
   const box = el("div", { class: "card", id: "cases" }, el("h3", {}, "Case by case"), el("div", { class: "controls" },
     cases.length > 1 && picker("Case", cases.map((one, i) => [String(i), one.name]), (value) => {
