@@ -40,12 +40,12 @@ std::uint64_t bound_of_tests(const kernels::Run<D>& run, std::uint64_t limit, st
   return tests;
 }
 
-/// Whether few of a sweep's tests would find a pair, in a sample of them. `end_of(place)` is the end of the
-/// boxes with which the one at that place is compared.
+/// Whether few of a sweep's tests would find a pair, in a sample of them: of 32 boxes, each with up to
+/// `max_tests_of_one` others. `end_of(place)` is the end of the boxes with which the one at that place is
+/// compared.
 template <int D, typename EndOf>
-bool finds_few(const kernels::Run<D>& run, const EndOf& end_of) {
+bool finds_few(const kernels::Run<D>& run, std::size_t max_tests_of_one, const EndOf& end_of) {
   constexpr std::size_t looked_at = 32;
-  constexpr std::size_t max_tests_of_one = 4096;
   std::uint64_t tests = 0;
   std::uint64_t hits = 0;
   // A box that overlaps all others, such as a floor, says nothing about them. It begins first, so the first
@@ -81,7 +81,8 @@ template <int D>
 bool is_wasteful(const kernels::Run<D>& run, std::uint64_t limit) {
   if (std::uint64_t{run.size} * run.size / 2 <= limit) return false;
   if (bound_of_tests(run, limit, 16) <= limit || bound_of_tests(run, limit, 1) <= limit) return false;
-  return finds_few(run, [&run](std::size_t place) {
+  constexpr std::size_t max_tests_of_one = 4096;
+  return finds_few(run, max_tests_of_one, [&run](std::size_t place) {
     return end_of_reach(run.min[0], run.size, place, run.max[0][place]);
   });
 }

@@ -28,10 +28,10 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class AutoReason { few, tile, one_axis, one_place, dense, clusters, cells };
+enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, clusters, cells };
 
-constexpr std::array<std::string_view, 7> chosen_algorithm = {
-    "brute_force", "grid", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
+constexpr std::array<std::string_view, 8> chosen_algorithm = {
+    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
@@ -88,6 +88,17 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
+/// Notes that a search has given up before it wrote a pair, as that of a tile does.
+template <int D>
+class RefusedTile final : public Successor<D> {
+ public:
+  void finish(const typename Successor<D>::IsMissing&) override { is_refused_ = true; }
+  bool is_refused() const noexcept { return is_refused_; }
+
+ private:
+  bool is_refused_ = false;
+};
+
 /// Chooses among searchers, and keeps those it has used.
 template <int D>
 class AutoSearcher final : public Searcher<D> {
@@ -96,14 +107,16 @@ class AutoSearcher final : public Searcher<D> {
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     choose(input.boxes);
-    SegmentSuccessor<D> successor(input, pairs, segments_);
-    const SearchInput<D> its_input{input.boxes, input.left_count, input.doubles, &successor, input.workers};
-    auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
-    if (!chosen) {
-      const Algorithm& algorithm = algorithm_of(choice_);
-      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
+    has_handed_over_ = false;
+    if (choice_ == AutoReason::tile) {
+      RefusedTile<D> refused;
+      const std::optional<Statistics> statistics = search_with_choice(input, refused, pairs);
+      if (!refused.is_refused()) return statistics;
+      choice_ = choice_by_sample(input.boxes, Limits::tests_of_an_uneven_tiles_axis);
+      if (choice_ == AutoReason::cells) choice_ = AutoReason::uneven_tile;
     }
-    std::optional<Statistics> statistics = chosen->search(its_input, pairs);
+    SegmentSuccessor<D> successor(input, pairs, segments_);
+    std::optional<Statistics> statistics = search_with_choice(input, successor, pairs);
     has_handed_over_ = successor.work().has_value();
     if (has_handed_over_) {
       statistics->tests += successor.work()->tests;
@@ -140,6 +153,9 @@ class AutoSearcher final : public Searcher<D> {
     switch (choice_) {
       case AutoReason::few:
         return text + boxes + " are so few that comparing all of them costs less than sorting them";
+      case AutoReason::uneven_tile:
+        return text + boxes +
+               " are too uneven for cells: these would take far more tests than they find pairs";
       case AutoReason::one_axis:
         return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
       case AutoReason::tile:
@@ -158,6 +174,16 @@ class AutoSearcher final : public Searcher<D> {
     return text;
   }
 
+  std::optional<Statistics> search_with_choice(const SearchInput<D>& input, Successor<D>& successor,
+                                               PairSink& pairs) {
+    auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
+    if (!chosen) {
+      const Algorithm& algorithm = algorithm_of(choice_);
+      chosen = algorithm.in<D>().searcher(settings_of(algorithm));
+    }
+    return chosen->search({input.boxes, input.left_count, input.doubles, &successor, input.workers}, pairs);
+  }
+
   void choose(std::span<const Box<D>> boxes) {
     count_ = boxes.size();
     choice_ = choice_for(boxes);
@@ -166,11 +192,15 @@ class AutoSearcher final : public Searcher<D> {
   AutoReason choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return AutoReason::few;
     if (boxes.size() <= Limits::boxes_of_a_tile) return AutoReason::tile;
+    return choice_by_sample(boxes, Limits::tests_of_a_good_axis);
+  }
+
+  AutoReason choice_by_sample(std::span<const Box<D>> boxes, double tests_of_a_good_axis) {
     sample_.take(boxes, Limits::sampled_boxes);
     const auto count = static_cast<double>(boxes.size());
     const int best = sample_.axes_by_overlap()[0];
     tests_ = count * sample_[best].overlap / 2;
-    if (tests_ <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
+    if (tests_ <= tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;

@@ -20,6 +20,9 @@ struct AutoThresholds {
   /// Up to this many tests per box, a sweep along one axis beats all other algorithms.
   static constexpr double tests_of_a_good_axis = 4;
 
+  /// The same where cells have been refused.
+  static constexpr double tests_of_an_uneven_tiles_axis = 24;
+
   /// From this share of all pairs on that overlap, separating boxes gains nothing.
   static constexpr double dense_pair_share = 0.5;
 

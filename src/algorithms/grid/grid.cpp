@@ -96,8 +96,15 @@ class GridSearcher final : public Searcher<D> {
   explicit GridSearcher(const Settings& settings) : cell_(settings.optional_number("cell")) {}
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    if (is_tile(input.boxes) && sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
     const std::size_t boxes = input.boxes.size();
+    if (is_tile(input.boxes)) {
+      if (sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
+      if (input.successor != nullptr && boxes <= max_uneven_tile) {
+        // A sample would say no more than the tests of all boxes.
+        input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
+        return Statistics{};
+      }
+    }
     parallel_.start(input.workers, boxes);
     sweeps_.resize(std::max(sweeps_.size(), parallel_.workers()));
     choose_cells(input.boxes);

@@ -52,7 +52,8 @@ std::optional<std::uint64_t> TileSearch<D>::sort(std::span<const Box<D>> boxes, 
 
 template <int D>
 bool TileSearch<D>::finds_few_pairs() const {
-  return finds_few(rows_.run, [this](std::size_t place) { return candidate_ends_[place]; });
+  constexpr std::size_t max_tests_of_one = 256;
+  return finds_few(rows_.run, max_tests_of_one, [this](std::size_t place) { return candidate_ends_[place]; });
 }
 
 template <int D>
