@@ -85,7 +85,6 @@ TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) 
   };
   std::array<float, across> best;
   best.fill(1);
-  float best_tests = swept;
   float best_cost = cost_of(1, swept);
   const float row_limit = std::min(max_rows, count / min_boxes_per_row);
   // Rows as wide as so many boxes.
@@ -107,7 +106,6 @@ TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) 
     const float cost = cost_of(references, tests);
     if (cost < best_cost) {
       best = rows;
-      best_tests = references * tests;
       best_cost = cost;
     }
     if (all_rows == 1) break;
@@ -121,7 +119,6 @@ TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) 
   float buckets = min_buckets;
   while (buckets * all_rows < count) buckets *= 2;
   cells.buckets = cell_axis(stats.low[cells.axes[0]], stats.high[cells.axes[0]], buckets);
-  cells.tests = best_tests;
   return cells;
 }
 

@@ -58,7 +58,6 @@ struct TileCells {
   std::array<int, D> axes;                      ///< the swept axis, then the others
   core::CellAxis buckets;                       ///< of the swept axis
   std::array<core::CellAxis, across> row_axes;  ///< of the others
-  double tests;                                 ///< how many a box will take, if boxes are spread evenly
 };
 
 }  // namespace broadside::algorithm

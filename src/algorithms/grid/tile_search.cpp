@@ -133,13 +133,15 @@ template <int D>
 double TileSearch<D>::unevenness(std::size_t buckets) const {
   const std::size_t length = std::max(buckets / spans_of_a_row, TileCells<D>::min_buckets);
   double squares = 0;
+  double spans = 0;
   for (std::size_t begin = 0; begin < bucket_ends_.size(); begin += length) {
     std::uint32_t sum = 0;
     for (const std::uint32_t count : std::span(bucket_ends_).subspan(begin, length)) sum += count;
     squares += static_cast<double>(sum) * sum;
+    ++spans;
   }
   const auto boxes = static_cast<double>(references_);
-  return squares / (boxes * boxes) * static_cast<double>(bucket_ends_.size() / length);
+  return squares * spans / (boxes * boxes);
 }
 
 /// Replaces the counts by the places where each bucket begins. Returns the number of places.
