@@ -59,9 +59,10 @@ bool finds_few(const kernels::Run<D>& run, std::size_t max_tests_of_one, const E
     const std::size_t end = std::max<std::size_t>(end_of(at), at);
     const std::size_t stride = (end - at) / max_tests_of_one + 1;
     for (std::size_t other = at + 1; other < end; other += stride) {
+      // Without a branch, which would be unpredictable.
       bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
       for (int axis = 0; axis < D; ++axis)
-        overlaps &= run.min[axis][other] <= run.max[axis][at] && run.min[axis][at] <= run.max[axis][other];
+        overlaps &= (run.min[axis][other] <= run.max[axis][at]) & (run.min[axis][at] <= run.max[axis][other]);
       own_tests += stride;
       own_hits += overlaps ? stride : 0;
     }

@@ -24,7 +24,7 @@ namespace {
 /// the same steps.
 constexpr std::size_t at_once = read_ahead;
 
-/// So many times `at_once` candidates are compared without asking whether there was a hit.
+/// How many times `at_once` candidates are compared in the loop for few.
 constexpr std::size_t few_groups = 2;
 
 /// Where there are more candidates, most vectors of them have no hit, and asking pays.

@@ -12,7 +12,7 @@
 namespace broadside::kernels {
 
 /// Boxes in rows; in each row sorted by buckets of min[0], in any order within a bucket. Each row is followed
-/// by read_ahead places without a box: min[0] is NaN there, and all else finite.
+/// by read_ahead places without a box: min[0] and max[0] are NaN there.
 template <int D>
 struct BucketRows {
   Run<D> run;                        ///< the places of all rows; `slack` and `rows` are not used

@@ -1,4 +1,5 @@
-// auto: looks at a sample of the boxes, and chooses the algorithm that suits them.
+// auto: chooses the algorithm that suits the boxes: by their number, by how the grid would sort them, by a
+// sample.
 //
 // The rules depend on the boxes alone, never on a clock: the same boxes are always searched in the same way.
 // auto_thresholds.hpp has their thresholds, and says where these come from.
@@ -88,7 +89,8 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
-/// Notes that a search has given up before it wrote a pair, as that of a tile does.
+/// Notes that the search of a tile has given up, which it does before it writes a pair. What takes over
+/// begins when that search has returned.
 template <int D>
 class RefusedTile final : public Successor<D> {
  public:
@@ -112,8 +114,10 @@ class AutoSearcher final : public Searcher<D> {
       RefusedTile<D> refused;
       const std::optional<Statistics> statistics = search_with_choice(input, refused, pairs);
       if (!refused.is_refused()) return statistics;
-      choice_ = choice_by_sample(input.boxes, Limits::tests_of_an_uneven_tiles_axis);
-      if (choice_ == AutoReason::cells) choice_ = AutoReason::uneven_tile;
+      sample_.take(input.boxes, Limits::sampled_boxes);
+      choice_ = tests_on_best_axis(input.boxes) <= Limits::tests_of_an_uneven_tiles_axis
+                    ? AutoReason::one_axis
+                    : AutoReason::uneven_tile;
     }
     SegmentSuccessor<D> successor(input, pairs, segments_);
     std::optional<Statistics> statistics = search_with_choice(input, successor, pairs);
@@ -135,7 +139,8 @@ class AutoSearcher final : public Searcher<D> {
   }
 
   Outline<D> lay_out(std::span<const Box<D>> boxes, const Workers& workers) {
-    choose(boxes);
+    PairCounter none;
+    search({boxes, 0, nullptr, nullptr, workers}, none);  // a tile shows only then whether it is refused
     const Algorithm& algorithm = algorithm_of(choice_);
     Outline<D> outline;
     if (const MakeOutline<D>& make = algorithm.in<D>().outline)
@@ -189,18 +194,19 @@ class AutoSearcher final : public Searcher<D> {
     choice_ = choice_for(boxes);
   }
 
+  /// Sets tests_, by the sample.
+  double tests_on_best_axis(std::span<const Box<D>> boxes) {
+    const int best = sample_.axes_by_overlap()[0];
+    tests_ = static_cast<double>(boxes.size()) * sample_[best].overlap / 2;
+    return tests_;
+  }
+
   AutoReason choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return AutoReason::few;
     if (boxes.size() <= Limits::boxes_of_a_tile) return AutoReason::tile;
-    return choice_by_sample(boxes, Limits::tests_of_a_good_axis);
-  }
-
-  AutoReason choice_by_sample(std::span<const Box<D>> boxes, double tests_of_a_good_axis) {
     sample_.take(boxes, Limits::sampled_boxes);
     const auto count = static_cast<double>(boxes.size());
-    const int best = sample_.axes_by_overlap()[0];
-    tests_ = count * sample_[best].overlap / 2;
-    if (tests_ <= tests_of_a_good_axis) return AutoReason::one_axis;
+    if (tests_on_best_axis(boxes) <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;
@@ -259,7 +265,7 @@ Algorithm automatic() {
   return {
       .name = "auto",
       .summary =
-          "looks at a sample of the boxes and chooses among the others; where boxes move, in each frame",
+          "chooses among the others by the boxes' number and a sample; where boxes move, in each frame",
       .source = "Broadside's measurements",
       .tunables = {core::threads_tunable(), core::update_tunable()},
       .in_2d = core::in_dimension<2, automatic_strategies<2>>(),

@@ -2,9 +2,10 @@
 // an array fitted to the boxes, not a spatial hash.
 //
 // Section III of the paper, without its limits: the outermost cells take in what lies beyond, so no world is
-// declared. A box is stored in the cell that holds its minimum, and again in each further slab that it
-// reaches; the sweep carries it on to the other cells. Each pair is reported once: in the cell that holds the
-// greater of the two minima on every gridded axis.
+// declared. Boxes that fit in a core's cache are searched as a tile (tile_search.hpp). Of more, a box is
+// stored in the cell that holds its minimum, and again in each further slab that it reaches; the sweep
+// carries it on to the other cells. Each pair is reported once: in the cell that holds the greater of the two
+// minima on every gridded axis.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -100,7 +101,7 @@ class GridSearcher final : public Searcher<D> {
     if (is_tile(input.boxes)) {
       if (sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
       if (input.successor != nullptr && boxes <= max_uneven_tile) {
-        // A sample would say no more than the tests of all boxes.
+        // Cells of one size suit so few boxes badly if they are so uneven. Nothing has been written yet.
         input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
         return Statistics{};
       }
@@ -175,8 +176,8 @@ class GridSearcher final : public Searcher<D> {
           boxes.size() > max_uneven_tile ? max_unevenness : std::numeric_limits<double>::infinity();
       return tile_.sort(boxes, cells, left_count, limit);
     };
-    const auto cells = TileCells<D>::choose(TileStats<D>::of(boxes), boxes.size());
-    const std::optional<std::uint64_t> tests = sort(cells);
+    const auto stats = TileStats<D>::of(boxes);
+    const std::optional<std::uint64_t> tests = sort(TileCells<D>::choose(stats, boxes.size()));
     if (!tests) return false;
     const auto are_many = [&](std::uint64_t some) {
       return some > max_tests_in_tile * boxes.size() && tile_.finds_few_pairs();
@@ -184,7 +185,9 @@ class GridSearcher final : public Searcher<D> {
     if (!are_many(*tests)) return true;
     // A few boxes far away may have left most cells empty.
     sample_.take(boxes);
-    const auto by_sample = sort(TileCells<D>::choose(TileStats<D>::of(sample_), boxes.size()));
+    const auto stats_by_sample = TileStats<D>::of(sample_);
+    if (!stats_by_sample.is_narrower_than(stats)) return false;
+    const auto by_sample = sort(TileCells<D>::choose(stats_by_sample, boxes.size()));
     return by_sample && !are_many(*by_sample);
   }
 

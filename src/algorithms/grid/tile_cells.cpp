@@ -10,7 +10,7 @@ namespace {
 
 constexpr float largest = std::numeric_limits<float>::max();
 
-/// So many boxes tell of the others.
+/// The number of boxes that are looked at.
 constexpr std::size_t max_looked_at = 1024;
 
 /// The cost of a box in a row, in comparisons of a box with a vector of others.
@@ -22,12 +22,15 @@ constexpr float at_once = 16;
 constexpr float max_rows = 256;
 constexpr float min_boxes_per_row = 32;
 
+/// Neither 0 nor infinite if `high` > `low`, as a float may be.
+double range_of(float low, float high) { return static_cast<double>(high) - low; }
+
 core::CellAxis cell_axis(float low, float high, float cells) {
-  const float range = high - low;
+  const double range = range_of(low, high);
   // Neither zero nor infinite: the product with an infinite or a zero distance would be NaN.
-  const float per_unit =
-      std::clamp(range > 0 ? cells / range : 1, std::numeric_limits<float>::min(), largest);
-  return {.low = low, .per_unit = per_unit, .last = cells - 1};
+  const double per_unit =
+      std::clamp<double>(range > 0 ? cells / range : 1, std::numeric_limits<float>::min(), largest);
+  return {.low = low, .per_unit = static_cast<float>(per_unit), .last = cells - 1};
 }
 
 }  // namespace
@@ -66,14 +69,22 @@ TileStats<D> TileStats<D>::of(const core::Sample<D>& sample) {
 }
 
 template <int D>
+bool TileStats<D>::is_narrower_than(const TileStats& other) const {
+  for (int axis = 0; axis < D; ++axis) {
+    if (2 * range_of(low[axis], high[axis]) <= range_of(other.low[axis], other.high[axis])) return true;
+  }
+  return false;
+}
+
+template <int D>
 TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) {
   const auto count = static_cast<float>(boxes);
   // The share of an axis that a box takes, which is about the chance that another begins within it.
   std::array<float, D> share;
   TileCells cells;
   for (int axis = 0; axis < D; ++axis) {
-    const float of_range = stats.side[axis] / (stats.high[axis] - stats.low[axis]);
-    share[axis] = of_range < 1 ? of_range : 1;  // also if it is NaN
+    const double range = range_of(stats.low[axis], stats.high[axis]);
+    share[axis] = range > 0 ? static_cast<float>(std::min(1.0, stats.side[axis] / range)) : 1;
     cells.axes[axis] = axis;
   }
   std::sort(cells.axes.begin(), cells.axes.end(),
@@ -87,7 +98,7 @@ TileCells<D> TileCells<D>::choose(const TileStats<D>& stats, std::size_t boxes) 
   best.fill(1);
   float best_cost = cost_of(1, swept);
   const float row_limit = std::min(max_rows, count / min_boxes_per_row);
-  // Rows as wide as so many boxes.
+  // `width`: of a row, in boxes.
   for (float width = 2; swept > at_once && width < 256; width *= 1.25F) {
     std::array<float, across> rows;
     float all_rows = 1;

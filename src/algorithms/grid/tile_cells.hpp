@@ -24,6 +24,9 @@ struct TileStats {
 
   /// Of a sorted sample, without far outliers.
   static TileStats of(const core::Sample<D>& sample);
+
+  /// Whether on some axis minima are in half the range of `other` or less.
+  bool is_narrower_than(const TileStats& other) const;
 };
 
 /// Rows over all axes but the swept one, and buckets of the swept axis in each row. The outermost ones take

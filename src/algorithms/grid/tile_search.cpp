@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t spans_of_a_row = 32;
 
+/// The maximum number of rows of a box beside that of its minimum, on average.
+constexpr std::size_t max_further_rows = 3;
+
 }  // namespace
 
 template <int D>
@@ -27,7 +30,7 @@ std::optional<std::uint64_t> TileSearch<D>::sort(std::span<const Box<D>> boxes, 
     count<false>(boxes, cells);
   } else {
     count<true>(boxes, cells);
-    count_further(boxes, cells);
+    if (!count_further(boxes, cells)) return std::nullopt;
   }
   references_ = boxes.size() + further_.size();
   if (max_unevenness < std::numeric_limits<double>::infinity() && unevenness(buckets) > max_unevenness)
@@ -51,7 +54,9 @@ std::optional<std::uint64_t> TileSearch<D>::sort(std::span<const Box<D>> boxes, 
 }
 
 template <int D>
-bool TileSearch<D>::finds_few_pairs() const {
+bool TileSearch<D>::finds_few_pairs() {
+  // They are those of an earlier search.
+  if (!rows_.has_masks) std::fill_n(run_.arrays().dedup_mask, places(), 0U);
   constexpr std::size_t max_tests_of_one = 256;
   return finds_few(rows_.run, max_tests_of_one, [this](std::size_t place) { return candidate_ends_[place]; });
 }
@@ -96,11 +101,12 @@ void TileSearch<D>::count(std::span<const Box<D>> boxes, const TileCells<D>& cel
   if constexpr (HasRows) reaching_.resize(static_cast<std::size_t>(reaching - reaching_.data()));
 }
 
-/// Lists and counts the further rows of the boxes in reaching_.
+/// Lists and counts the further rows of the boxes in reaching_. False as soon as they are too many.
 template <int D>
-void TileSearch<D>::count_further(std::span<const Box<D>> boxes, const TileCells<D>& cells) {
+bool TileSearch<D>::count_further(std::span<const Box<D>> boxes, const TileCells<D>& cells) {
   const std::uint32_t buckets = cells.buckets.count();
   for (const std::uint32_t i : reaching_) {
+    if (further_.size() > max_further_rows * boxes.size()) return false;
     const Box<D> box = boxes[i];
     std::array<std::uint32_t, D - 1> first;
     std::array<std::uint32_t, D - 1> last;
@@ -125,6 +131,7 @@ void TileSearch<D>::count_further(std::span<const Box<D>> boxes, const TileCells
       }
     }
   }
+  return true;
 }
 
 /// How unevenly the boxes are spread over spans of several buckets: the mean of the squared numbers of boxes

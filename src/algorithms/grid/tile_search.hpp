@@ -24,15 +24,15 @@ template <int D>
 class TileSearch {
  public:
   /// Sorts at most TileCells<D>::max_boxes boxes, of which the first `left_count`, if not 0, are the left
-  /// set. Returns how many tests a sweep makes. Nothing, and no boxes are sorted, if these are too
-  /// uneven: if two of them are within a span of buckets more than `max_unevenness` times as often as two of
-  /// evenly spread ones.
+  /// set. Returns how many tests a sweep makes. Nothing, and no boxes are sorted, if they are in more than
+  /// four rows on average, or too uneven: if two of them are within a span of buckets more than
+  /// `max_unevenness` times as often as two of evenly spread ones.
   std::optional<std::uint64_t> sort(std::span<const Box<D>> boxes, const TileCells<D>& cells,
                                     std::size_t left_count,
                                     double max_unevenness = std::numeric_limits<double>::infinity());
 
   /// Whether few of the tests would find a pair, in a sample of them.
-  bool finds_few_pairs() const;
+  bool finds_few_pairs();
 
   /// The places of the boxes sorted last, to be swept together or in parts.
   std::size_t places() const noexcept { return rows_.run.size; }
@@ -55,7 +55,7 @@ class TileSearch {
 
   template <bool HasRows>
   void count(std::span<const Box<D>> boxes, const TileCells<D>& cells);
-  void count_further(std::span<const Box<D>> boxes, const TileCells<D>& cells);
+  bool count_further(std::span<const Box<D>> boxes, const TileCells<D>& cells);
   double unevenness(std::size_t buckets) const;
   std::size_t place_rows(std::size_t rows, std::size_t buckets);
   template <bool HasMasks>
