@@ -165,9 +165,9 @@ Box3 on_lattice(Box3 box) {
 TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet) {
   constexpr std::size_t count = 8'000;
   Finder<3, double> definition("brute_force");
-  std::size_t handed_over = 0;
   for (const auto& [benign, other] : deceptions) {
     Random random(3);
+    std::size_t handed_over = 0;
     std::vector<DoubleBox3> boxes;
     for (const Box3& box : fooling(benign, other, count, random))
       boxes.push_back(near_double(random, on_lattice(box)));
@@ -186,8 +186,8 @@ TEST(AutoHandOver, FindsEachPairOfDoublesOnceInTheSameOrderOnEachInstructionSet)
         EXPECT_TRUE(pairs == expected) << name << ", " << finder.explanation();
       }
     }
+    EXPECT_GT(handed_over, 0U);
   }
-  EXPECT_GE(handed_over, 2 * deceptions.size());
 }
 
 /// Two trackers of the same boxes, whose events are compared.
