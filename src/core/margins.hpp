@@ -7,6 +7,8 @@
 
 #include "broadside/box.hpp"
 
+#include "kernels/count_kept.hpp"
+
 namespace broadside::core {
 
 /// The margins of WorldOptions, in the number type of the boxes. A null velocity means that there is none.
@@ -34,6 +36,13 @@ struct Margins {
       box.max[axis] = std::max(box.max[axis], box.max[axis] + its_margin + std::max<Real>(way, 0));
     }
     return box;
+  }
+
+  /// The slack that keeps() allows a side, or less: as if it were the longest side of its box. `relative`
+  /// must be of the longest sides.
+  kernels::SideSlack<Real> side_slack() const noexcept {
+    const Real max = has_relative && !has_margin ? std::numeric_limits<Real>::infinity() : margin;
+    return {.factor = max_margins, .per_side = relative, .min = has_relative ? 0 : margin, .max = max};
   }
 
   /// Whether `kept` can stay the enlarged box of a moved box: it contains `box`, and is not far too long for

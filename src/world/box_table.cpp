@@ -2,6 +2,7 @@
 // changed.
 #include "world/box_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,9 +14,20 @@
 #include "core/input_check.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
+#include "kernels/all_present.hpp"
+#include "kernels/count_kept.hpp"
+#include "world/slot_table.hpp"
 
 namespace broadside::world {
 namespace {
+
+/// The number of boxes that are set one by one where some cannot be set together; it doubles from the one to
+/// the other while none can.
+constexpr std::size_t min_singles = 16;
+constexpr std::size_t max_singles = 256;
+
+/// So many marks are cleared in the time that clearing those of a list takes for each of its entries.
+constexpr std::size_t marks_per_list_entry = 16;
 
 /// One of the distances that boxes are enlarged by, as a number of the world's type.
 template <typename Real>
@@ -55,6 +67,14 @@ void BoxTable<D, Real>::refuse_unless_quarantined(const Box<D, Real>& box, std::
   const std::string name = core::message({what, " ", number});
   if (is_absent(box)) throw InvalidInput(index, core::message({name, " is absent; expected a box"}));
   throw InvalidInput(index, core::fault_of(box, name, false));
+}
+
+template <int D, typename Real>
+bool BoxTable<D, Real>::are_present(BoxView<D, Real> boxes) const noexcept {
+  if (boxes.is_array()) return kernels::all_present(std::span(boxes.array(), boxes.size()));
+  unsigned all = 1;
+  for (const Box<D, Real> box : boxes) all &= static_cast<unsigned>(is_present(box));
+  return all != 0;
 }
 
 template <int D, typename Real>
@@ -103,29 +123,54 @@ void BoxTable<D, Real>::set_outside(std::uint32_t slot, const Box<D, Real>& box,
 template <int D, typename Real>
 void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> given,
                             std::span<const Point<D, Real>> velocities) noexcept {
-  if (!enlarges_ && !quarantines_) return set_listed(handles, given);
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::uint32_t slot = handles[i].slot;
-    if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
+  const bool are_in_array = given.is_array() && (enlarges_ || !quarantines_);
+  const std::span<const Box<D, Real>> array(given.array(), are_in_array ? given.size() : 0);
+  std::size_t singles = min_singles;
+  for (std::size_t i = 0; i < given.size();) {
+    if (are_in_array) {
+      const std::size_t count = set_in_a_row(handles.subspan(i), array.subspan(i));
+      i += count;
+      if (count == handles_at_once) continue;
+      singles = count > 0 ? min_singles : std::min(2 * singles, max_singles);
+    }
+    for (const std::size_t end = std::min(i + singles, given.size()); i < end; ++i) {
+      const std::uint32_t slot = handles[i].slot;
+      if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
+    }
   }
 }
 
-/// For valid boxes that are not enlarged: lists them without a branch.
+/// Sets some of the boxes, from the first one on, if their slots are consecutive and they stay within their
+/// enlarged boxes. Returns their number, perhaps 0.
 template <int D, typename Real>
-void BoxTable<D, Real>::set_listed(std::span<const Handle> handles, BoxView<D, Real> given) noexcept {
-  if (given.empty()) return;
-  const std::size_t listed = changed_.size();
-  changed_.resize(listed + given.size());
-  BoxId* next = changed_.data() + listed;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::uint32_t slot = handles[i].slot;
-    if (slot >= boxes_.size()) continue;
-    boxes_[slot] = given[i];
-    *next = BoxId{slot};
-    next += static_cast<std::size_t>(marks_[slot] == 0);
-    marks_[slot] = changed_mark;
+std::size_t BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
+                                            std::span<const Box<D, Real>> given) noexcept {
+  std::size_t count = std::min(given.size(), handles_at_once);
+  const std::uint32_t first = handles[0].slot;
+  if (first + count > boxes_.size() || !are_in_a_row(handles.first(count), first)) return 0;
+  if (enlarges_) {
+    const auto kept = std::span<const Box<D, Real>>(enlarged_).subspan(first);
+    count = kernels::count_kept(kept, given, count, margins_.side_slack());
   }
-  changed_.resize(static_cast<std::size_t>(next - changed_.data()));
+  std::copy(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(count), &boxes_[first]);
+  if (boxes_make_pairs_) mark_changed_in_a_row(first, count);
+  return count;
+}
+
+/// mark_changed() for consecutive slots.
+template <int D, typename Real>
+void BoxTable<D, Real>::mark_changed_in_a_row(std::uint32_t first, std::size_t count) noexcept {
+  std::uint8_t* const marks = &marks_[first];
+  std::uint8_t all = 0;
+  for (std::size_t i = 0; i < count; ++i) all |= marks[i];
+  if (all != 0) {
+    for (std::uint32_t i = 0; i < count; ++i) mark_changed(first + i);
+    return;
+  }
+  std::fill_n(marks, count, changed_mark);
+  const std::size_t listed = changed_.size();
+  changed_.resize(listed + count);
+  for (std::uint32_t i = 0; i < count; ++i) changed_[listed + i] = BoxId{first + i};
 }
 
 template <int D, typename Real>
@@ -152,8 +197,11 @@ void BoxTable<D, Real>::remove(std::uint32_t slot) noexcept {
 
 template <int D, typename Real>
 void BoxTable<D, Real>::settle() noexcept {
-  for (const BoxId id : changed_) marks_[index(id)] = 0;
-  for (const BoxId id : moved_) marks_[index(id)] = 0;
+  if (changed_.size() > marks_.size() / marks_per_list_entry) {
+    std::fill(marks_.begin(), marks_.end(), std::uint8_t{0});
+  } else {
+    for (const BoxId id : changed_) marks_[index(id)] = 0;
+  }
   changed_.clear();
   moved_.clear();
 }

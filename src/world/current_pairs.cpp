@@ -14,37 +14,43 @@ namespace {
 /// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
 
-/// A merge searches for places if the array has this many pairs for each event of the log, or more. Else it
-/// visits every pair.
-constexpr std::size_t part_for_galloping = 8;
-
-/// Merges two sorted ranges without branches: no predictor could foresee which comes next.
-void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair* out) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < begun.size() && j < ended.size()) {
-    const bool ends = key(ended[j]) < key(begun[i]);
-    *out++ = *(ends ? &ended[j] : &begun[i]);
-    i += static_cast<std::size_t>(!ends);
-    j += static_cast<std::size_t>(ends);
-  }
-  std::copy(ended.begin() + static_cast<std::ptrdiff_t>(j), ended.end(),
-            std::copy(begun.begin() + static_cast<std::ptrdiff_t>(i), begun.end(), out));
-}
-
-constexpr auto has_slots_before = [](const HandlePair& a, Pair b) { return slots_of(a) < b; };
+/// If there are this many pairs for each event, or more, it pays to search for the events' places in the
+/// array. Else it pays to visit every pair.
+constexpr std::size_t pairs_per_event = 8;
 
 /// The first place in [from, to) that is not before `pair`: a galloping search, since it is mostly near
 /// `from`.
-const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to, Pair pair) {
+const Pair* first_not_before(const Pair* from, const Pair* to, Pair pair) noexcept {
   std::ptrdiff_t step = 1;
-  const HandlePair* low = from;
-  while (step < to - low && slots_of(low[step]) < pair) {
+  const Pair* low = from;
+  while (step < to - low && low[step] < pair) {
     low += step;
     step *= 2;
   }
-  const HandlePair* const high = step < to - low ? low + step : to;
-  return std::lower_bound(low, high, pair, has_slots_before);
+  const Pair* const high = step < to - low ? low + step : to;
+  return std::lower_bound(low, high, pair);
+}
+
+/// Sorts both lists and removes what is in both, as often as it is. If it throws, only the order has changed.
+void make_net(PairEvents& events, std::vector<Pair>& scratch) {
+  sort_pairs(events.begun, scratch);
+  sort_pairs(events.ended, scratch);
+  auto [begun, begun_end] = std::pair(events.begun.begin(), events.begun.end());
+  auto [ended, ended_end] = std::pair(events.ended.begin(), events.ended.end());
+  auto net_begun = begun;
+  auto net_ended = ended;
+  while (begun != begun_end && ended != ended_end) {
+    if (*begun < *ended) {
+      *net_begun++ = *begun++;
+    } else if (*ended < *begun) {
+      *net_ended++ = *ended++;
+    } else {
+      ++begun;
+      ++ended;
+    }
+  }
+  events.begun.erase(std::copy(begun, begun_end, net_begun), begun_end);
+  events.ended.erase(std::copy(ended, ended_end, net_ended), ended_end);
 }
 
 }  // namespace
@@ -57,7 +63,8 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
   log_ = std::move(other.log_);
   scratch_ = std::move(other.scratch_);
   persisting_ = std::move(other.persisting_);
-  is_merged_ = other.is_merged_.load();
+  handles_ = std::move(other.handles_);
+  has_handles_ = other.has_handles_.load();
   has_persisting_ = other.has_persisting_.load();
   return *this;
 }
@@ -72,7 +79,7 @@ void CurrentPairs::take(PairEvents& events, Generations generations,
     begun_data.reserve(events.begun.size());
     ended_data.reserve(events.ended.size());
   }
-  log(events, generations);
+  keep(events);
   // Nothing below throws.
   const auto replace = [&](std::vector<HandlePair>& handles, std::vector<UserDataPair>& data,
                            std::span<const Pair> pairs) {
@@ -90,31 +97,44 @@ void CurrentPairs::take(PairEvents& events, Generations generations,
   events.clear();
 }
 
-/// Brings size_ and the log up to date, or throws and changes nothing.
-void CurrentPairs::log(const PairEvents& events, Generations generations) {
-  const std::size_t count = events.begun.size() + events.ended.size();
-  const std::size_t old_log = log_.size();
-  const std::size_t old_size = std::exchange(size_, size_ + events.begun.size() - events.ended.size());
-  if (!keeps_ || count == 0) return;
-  try {
-    core::make_room(log_, count);
-    log_.resize(old_log + count);
-    merge_events(events.begun, events.ended, log_.data() + old_log);
-    if (log_.size() > std::max(short_log, pairs_.size() / 2)) merge(generations);
-  } catch (...) {
-    log_.resize(old_log);
-    size_ = old_size;
-    throw;
+/// Brings size_, the array and the log up to date, or throws and changes nothing.
+void CurrentPairs::keep(const PairEvents& events) {
+  const auto& [begun, ended] = events;
+  const std::size_t count = begun.size() + ended.size();
+  if (keeps_ && count > 0) {
+    const bool are_many = count > pairs_.size() / pairs_per_event;
+    const std::size_t logged = log_.begun.size() + log_.ended.size();
+    if (are_many || logged + count > std::max(short_log, pairs_.size() / 2)) merge();
+    if (are_many) {
+      core::make_room(pairs_, begun.size());
+      apply(begun, ended);
+    } else {
+      core::make_room(log_.begun, begun.size());
+      core::make_room(log_.ended, ended.size());
+      log_.begun.insert(log_.begun.end(), begun.begin(), begun.end());
+      log_.ended.insert(log_.ended.end(), ended.begin(), ended.end());
+    }
+    has_handles_ = false;
   }
-  is_merged_ = log_.empty();
+  size_ += begun.size() - ended.size();
 }
 
 std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
-  if (!is_merged_.load(std::memory_order_acquire)) {
+  if (!has_handles_.load(std::memory_order_acquire)) {
     const std::lock_guard lock(reading_);
-    merge(generations);
-    is_merged_.store(true, std::memory_order_release);
+    if (!has_handles_.load(std::memory_order_relaxed)) {
+      merge();
+      handles_.resize(pairs_.size());
+      for (std::size_t i = 0; i < pairs_.size(); ++i) handles_[i] = handles_of(pairs_[i], generations);
+      has_handles_.store(true, std::memory_order_release);
+    }
   }
+  return handles_;
+}
+
+std::span<const Pair> CurrentPairs::slot_pairs() const {
+  const std::lock_guard lock(reading_);
+  merge();
   return pairs_;
 }
 
@@ -134,128 +154,101 @@ std::span<const HandlePair> CurrentPairs::persisting(Generations generations) co
   return persisting_;
 }
 
-void CurrentPairs::merge(Generations generations) const {
+/// Takes the log into the array.
+void CurrentPairs::merge() const {
   if (log_.empty()) return;
-  // Everything that can throw comes first; of that, sorting comes last, since it mixes old and new events.
-  const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
-  const std::size_t needed = is_long ? pairs_.size() + log_.size() : size_;
-  if (pairs_.capacity() < needed) pairs_.reserve(std::max(needed, pairs_.capacity() + pairs_.capacity() / 2));
-  if (!std::is_sorted(log_.begin(), log_.end())) sort_pairs(log_, scratch_);
-  const std::size_t toggled = keep_toggled(generations);
-  if (is_long)
-    toggle(toggled, generations);
-  else
-    insert_begun(drop_ended(toggled), generations);
+  make_net(log_, scratch_);
+  core::make_room(pairs_, log_.begun.size());
+  apply(log_.begun, log_.ended);
   log_.clear();
 }
 
-/// Moves the pairs that the log has an odd number of times to its front, each once; returns how many. Gives
-/// pairs that ended and began again their current handles, since slots may have been reused.
-std::size_t CurrentPairs::keep_toggled(Generations generations) const {
-  std::size_t toggled = 0;
-  for (std::size_t i = 0; i < log_.size();) {
-    const Pair pair = log_[i];
-    const std::size_t first = i;
-    while (i < log_.size() && log_[i] == pair) ++i;
-    if ((i - first) % 2 != 0) {
-      log_[toggled++] = pair;
-      continue;
-    }
-    const auto place = std::lower_bound(pairs_.begin(), pairs_.end(), pair, has_slots_before);
-    if (place != pairs_.end() && slots_of(*place) == pair) *place = handles_of(pair, generations);
-  }
-  return toggled;
+/// Applies sorted events to the array, in which there is room.
+void CurrentPairs::apply(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept {
+  if (begun.size() + ended.size() > pairs_.size() / pairs_per_event) return apply_many(begun, ended);
+  drop(ended);
+  insert(begun);
 }
 
-/// Removes each of the first `count` pairs of the log from the array, or inserts it if it is not there: from
-/// the end on, without branches, as in merge_events(). There is room for all.
-void CurrentPairs::toggle(std::size_t count, Generations generations) const {
+/// Merges from the end on, without branches: no predictor could foresee which pair comes next.
+void CurrentPairs::apply_many(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept {
   std::size_t left = pairs_.size();
-  pairs_.resize(left + count);
-  HandlePair* const begin = pairs_.data();
-  HandlePair* const end = begin + pairs_.size();
-  HandlePair* out = end;  // at least `count` places above the pairs that are left
-  while (left > 0 && count > 0) {
-    const HandlePair toggled = handles_of(log_[count - 1], generations);
-    const HandlePair& held = begin[left - 1];
-    const std::uint64_t of_held = key(slots_of(held));
-    const std::uint64_t of_toggled = key(log_[count - 1]);
-    out[-1] = *(of_held > of_toggled ? &held : &toggled);
-    out -= static_cast<std::ptrdiff_t>(of_held != of_toggled);
-    left -= static_cast<std::size_t>(of_held >= of_toggled);
-    count -= static_cast<std::size_t>(of_toggled >= of_held);
+  std::size_t fresh = begun.size();
+  std::size_t gone = ended.size();
+  pairs_.resize(left + fresh);
+  Pair* const begin = pairs_.data();
+  Pair* const end = begin + pairs_.size();
+  Pair* out = end;  // at least `fresh` places above the pairs that are left
+  while (left > 0) {
+    const Pair held = begin[left - 1];
+    const Pair other = fresh > 0 ? begun[fresh - 1] : Pair{};  // Pair{} is before every pair
+    const bool is_fresh = key(held) < key(other);
+    const bool is_gone = !is_fresh && gone > 0 && ended[gone - 1] == held;
+    out[-1] = is_fresh ? other : held;
+    out -= static_cast<std::ptrdiff_t>(!is_gone);
+    left -= static_cast<std::size_t>(!is_fresh);
+    fresh -= static_cast<std::size_t>(is_fresh);
+    gone -= static_cast<std::size_t>(is_gone);
   }
-  while (count > 0) *--out = handles_of(log_[--count], generations);
-  const HandlePair* const last = std::copy(out, end, begin + left);
+  while (fresh > 0) *--out = begun[--fresh];
+  const Pair* const last = std::copy(out, end, begin);
   pairs_.resize(static_cast<std::size_t>(last - begin));
 }
 
-/// Removes each of the first `count` pairs of the log from the array if it is there. Moves the other pairs,
-/// which have begun, to the front of the log; returns how many there are.
-std::size_t CurrentPairs::drop_ended(std::size_t count) const {
-  HandlePair* const begin = pairs_.data();
-  const HandlePair* const end = begin + pairs_.size();
-  const HandlePair* read = begin;
-  HandlePair* write = begin;
-  const auto keep_up_to = [&](const HandlePair* to) {
-    if (write == read)
-      write += to - read;
-    else
-      write = std::copy(read, to, write);
+void CurrentPairs::drop(std::span<const Pair> ended) const noexcept {
+  Pair* const begin = pairs_.data();
+  const Pair* const end = begin + pairs_.size();
+  const Pair* read = begin;
+  Pair* write = begin;
+  const auto keep_up_to = [&](const Pair* to) {
+    write = write == read ? write + (to - read) : std::copy(read, to, write);
     read = to;
   };
-  std::size_t begun = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (read != end) keep_up_to(first_not_before(read, end, log_[i]));
-    if (read != end && slots_of(*read) == log_[i])
-      ++read;
-    else
-      log_[begun++] = log_[i];
+  for (const Pair pair : ended) {
+    keep_up_to(first_not_before(read, end, pair));
+    read += static_cast<std::ptrdiff_t>(read != end && *read == pair);
   }
   keep_up_to(end);
   pairs_.resize(static_cast<std::size_t>(write - begin));
-  return begun;
 }
 
-/// Inserts the first `count` pairs of the log into the array, from the end on. There is room for them.
-void CurrentPairs::insert_begun(std::size_t count, Generations generations) const {
+/// Inserts from the end on.
+void CurrentPairs::insert(std::span<const Pair> begun) const noexcept {
   std::size_t left = pairs_.size();
-  pairs_.resize(left + count);
-  HandlePair* out = pairs_.data() + pairs_.size();
-  while (count > 0) {
-    const Pair pair = log_[--count];
+  pairs_.resize(left + begun.size());
+  Pair* const begin = pairs_.data();
+  Pair* out = begin + pairs_.size();
+  for (std::size_t i = begun.size(); i-- > 0;) {
+    const Pair pair = begun[i];
     // Gallops from the back, since the place is near it.
     std::size_t step = 1;
     std::size_t high = left;
-    while (step <= high && pair < slots_of(pairs_[high - step])) {
+    while (step <= high && pair < begin[high - step]) {
       high -= step;
       step *= 2;
     }
     const std::size_t low = step <= high ? high - step : 0;
-    const auto place =
-        std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(low),
-                         pairs_.begin() + static_cast<std::ptrdiff_t>(high), pair, has_slots_before);
-    const auto kept = static_cast<std::size_t>(place - pairs_.begin());
-    out = std::copy_backward(pairs_.data() + kept, pairs_.data() + left, out);
+    const auto place = std::lower_bound(begin + low, begin + high, pair);
+    const auto kept = static_cast<std::size_t>(place - begin);
+    out = std::copy_backward(begin + kept, begin + left, out);
     left = kept;
-    *--out = handles_of(pair, generations);
+    *--out = pair;
   }
 }
 
-void CurrentPairs::shrink_to_fit(Generations generations) {
-  merge(generations);
-  is_merged_ = true;
-  scratch_.clear();
-  persisting_.clear();
+void CurrentPairs::shrink_to_fit() {
+  merge();
+  core::give_back(scratch_, handles_, persisting_);
+  has_handles_ = pairs_.empty();
   has_persisting_ = false;
-  core::shrink(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
-               events_.ended_data);
+  log_.shrink_to_fit();
+  core::shrink(pairs_, events_.begun, events_.ended, events_.begun_data, events_.ended_data);
 }
 
 std::size_t CurrentPairs::bytes() const {
   const std::lock_guard lock(reading_);
-  return core::bytes_of(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
-                        events_.ended_data);
+  return log_.bytes() + core::bytes_of(pairs_, scratch_, handles_, persisting_, events_.begun, events_.ended,
+                                       events_.begun_data, events_.ended_data);
 }
 
 void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
@@ -266,11 +259,11 @@ void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const 
     for (const Pair pair : all) handles.push_back(handles_of(pair, generations));
     return handles;
   };
-  pairs_ = handles_of_all(pairs);
+  pairs_.assign(pairs.begin(), pairs.end());
   size_ = size;
   events_ = {handles_of_all(events.begun), handles_of_all(events.ended)};
   log_.clear();
-  is_merged_ = true;
+  has_handles_ = false;
   has_persisting_ = false;
 }
 

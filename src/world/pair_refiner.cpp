@@ -30,10 +30,10 @@ bool say_the_same(const std::uint8_t* flags, const std::uint8_t* marks) noexcept
 
 }  // namespace
 
-void PairRefiner::adopt(std::span<const HandlePair> pairs, std::size_t slots) {
+void PairRefiner::adopt(std::span<const Pair> pairs, std::size_t slots) {
   PairGraph graph;
   graph.reserve(pairs.size(), slots);
-  for (const HandlePair& pair : pairs) graph.insert(slots_of(pair), edge_holds);
+  for (const Pair pair : pairs) graph.insert(pair, edge_holds);
   state_.graph = std::move(graph);
   // Events that a failed update has left are not among the pairs yet. The next update refines them.
 }
@@ -198,8 +198,9 @@ std::size_t PairRefiner::bytes() const noexcept {
          core::bytes_of(state_.asked_slots, state_.fresh, asked_marks_, reviewed_, questions_, sorting_);
 }
 
-std::vector<Pair> PairRefiner::tracked(std::vector<Pair> current) const {
-  return state_.candidates.netted().undone(state_.is_refining ? edges() : std::move(current));
+std::vector<Pair> PairRefiner::tracked(std::span<const Pair> current) const {
+  const std::vector<Pair> held = state_.is_refining ? edges() : std::vector(current.begin(), current.end());
+  return state_.candidates.netted().undone(held);
 }
 
 std::vector<Pair> PairRefiner::edges() const {

@@ -57,7 +57,7 @@ class PairRefiner {
   PairEvents& candidates() noexcept { return state_.candidates; }
 
   /// Before a first predicate: takes the pairs that hold as accepted candidates.
-  void adopt(std::span<const HandlePair> pairs, std::size_t slots);
+  void adopt(std::span<const Pair> pairs, std::size_t slots);
 
   /// Refines from now on, by `predicate`, which it swaps with the previous one. The next update asks it about
   /// all pairs.
@@ -84,7 +84,7 @@ class PairRefiner {
 
   /// The pairs of the tracker's last complete update, sorted. If nothing is refined, they follow from
   /// `current`, the sorted pairs that hold.
-  std::vector<Pair> tracked(std::vector<Pair> current) const;
+  std::vector<Pair> tracked(std::span<const Pair> current) const;
 
   /// All candidates in the graph, and the candidates that hold; sorted.
   std::vector<Pair> edges() const;

@@ -107,7 +107,7 @@ TEST(CurrentPairs, CountsPairsThatItDoesNotKeep) {
   events.ended = {some[0]};
   pairs.take(events, generations, {});
   EXPECT_EQ(pairs.size(), 1u);
-  pairs.shrink_to_fit(generations);
+  pairs.shrink_to_fit();
   EXPECT_EQ(pairs.bytes(), sizeof(HandlePair)) << "one event";
 }
 
