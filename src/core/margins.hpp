@@ -7,13 +7,14 @@
 
 #include "broadside/box.hpp"
 
-#include "kernels/count_kept.hpp"
-
 namespace broadside::core {
 
 /// The margins of WorldOptions, in the number type of the boxes. A null velocity means that there is none.
 template <int D, typename Real>
 struct Margins {
+  /// How many margins a kept box may be longer than its box. A newly enlarged one is longer by two.
+  static constexpr Real max_margins = 6;
+
   Real margin;
   Real relative;
   Real frames;
@@ -38,13 +39,6 @@ struct Margins {
     return box;
   }
 
-  /// The slack that keeps() allows a side, or less: as if it were the longest side of its box. `relative`
-  /// must be of the longest sides.
-  kernels::SideSlack<Real> side_slack() const noexcept {
-    const Real max = has_relative && !has_margin ? std::numeric_limits<Real>::infinity() : margin;
-    return {.factor = max_margins, .per_side = relative, .min = has_relative ? 0 : margin, .max = max};
-  }
-
   /// Whether `kept` can stay the enlarged box of a moved box: it contains `box`, and is not far too long for
   /// it after the box shrank or slowed down. Branchless. False if only one of the two is absent.
   bool keeps(const Box<D, Real>& kept, const Box<D, Real>& box,
@@ -62,9 +56,6 @@ struct Margins {
   }
 
  private:
-  /// How many margins a kept box may be longer than its box. A newly enlarged one is longer by two.
-  static constexpr Real max_margins = 6;
-
   /// Infinite sides are ignored.
   Real margin_of(const Box<D, Real>& box) const noexcept {
     if (!has_relative) return margin;

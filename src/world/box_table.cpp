@@ -3,6 +3,7 @@
 #include "world/box_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -15,16 +16,11 @@
 #include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "kernels/all_present.hpp"
-#include "kernels/count_kept.hpp"
+#include "kernels/enlarged_boxes.hpp"
 #include "world/slot_table.hpp"
 
 namespace broadside::world {
 namespace {
-
-/// The number of boxes that are set one by one where some cannot be set together; it doubles from the one to
-/// the other while none can.
-constexpr std::size_t min_singles = 16;
-constexpr std::size_t max_singles = 256;
 
 /// So many marks are cleared in the time that clearing those of a list takes for each of its entries.
 constexpr std::size_t marks_per_list_entry = 16;
@@ -123,54 +119,75 @@ void BoxTable<D, Real>::set_outside(std::uint32_t slot, const Box<D, Real>& box,
 template <int D, typename Real>
 void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> given,
                             std::span<const Point<D, Real>> velocities) noexcept {
-  const bool are_in_array = given.is_array() && (enlarges_ || !quarantines_);
-  const std::span<const Box<D, Real>> array(given.array(), are_in_array ? given.size() : 0);
-  std::size_t singles = min_singles;
-  for (std::size_t i = 0; i < given.size();) {
-    if (are_in_array) {
-      const std::size_t count = set_in_a_row(handles.subspan(i), array.subspan(i));
-      i += count;
-      if (count == handles_at_once) continue;
-      singles = count > 0 ? min_singles : std::min(2 * singles, max_singles);
-    }
-    for (const std::size_t end = std::min(i + singles, given.size()); i < end; ++i) {
+  const bool may_be_in_a_row = given.is_array() && !quarantines_ && velocities.empty();
+  const std::span<const Box<D, Real>> array(given.array(), may_be_in_a_row ? given.size() : 0);
+  for (std::size_t begin = 0; begin < given.size(); begin += handles_at_once) {
+    const std::size_t count = std::min(handles_at_once, given.size() - begin);
+    if (may_be_in_a_row && set_in_a_row(handles.subspan(begin, count), array.subspan(begin, count))) continue;
+    for (std::size_t i = begin; i < begin + count; ++i) {
       const std::uint32_t slot = handles[i].slot;
       if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
     }
   }
 }
 
-/// Sets some of the boxes, from the first one on, if their slots are consecutive and they stay within their
-/// enlarged boxes. Returns their number, perhaps 0.
+/// Sets a box for each handle, if their slots are consecutive; more boxes may follow. Otherwise returns
+/// false.
 template <int D, typename Real>
-std::size_t BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
-                                            std::span<const Box<D, Real>> given) noexcept {
-  std::size_t count = std::min(given.size(), handles_at_once);
+bool BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
+                                     std::span<const Box<D, Real>> given) noexcept {
   const std::uint32_t first = handles[0].slot;
-  if (first + count > boxes_.size() || !are_in_a_row(handles.first(count), first)) return 0;
-  if (enlarges_) {
-    const auto kept = std::span<const Box<D, Real>>(enlarged_).subspan(first);
-    count = kernels::count_kept(kept, given, count, margins_.side_slack());
-  }
-  std::copy(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(count), &boxes_[first]);
-  if (boxes_make_pairs_) mark_changed_in_a_row(first, count);
-  return count;
+  const std::size_t count = handles.size();
+  if (first + count > boxes_.size() || !are_in_a_row(handles, first)) return false;
+  std::copy(given.begin(), given.end(), &boxes_[first]);
+  if (boxes_make_pairs_) list_in_a_row(first, count);
+  if (!enlarges_) return true;
+  const std::span<Box<D, Real>> kept = std::span(enlarged_).subspan(first);
+  const std::span<const Box<D, Real>> now = std::span(boxes_).subspan(first);
+  const std::size_t stay = kernels::count_kept<D, Real>(kept, now, count, margins_);
+  if (stay == count) return true;
+  std::array<std::uint32_t, handles_at_once> places;
+  const std::size_t rest = count - stay;
+  const std::span<std::uint32_t> left = std::span(places).first(
+      kernels::enlarge_left(kept.subspan(stay, rest), now.subspan(stay, rest), margins_, places.data()));
+  for (std::uint32_t& place : left) place += first + static_cast<std::uint32_t>(stay);
+  if (!boxes_make_pairs_) list(changed_, changed_mark, left);
+  list(moved_, moved_mark, left);
+  return true;
 }
 
-/// mark_changed() for consecutive slots.
+/// Lists consecutive slots as changed.
 template <int D, typename Real>
-void BoxTable<D, Real>::mark_changed_in_a_row(std::uint32_t first, std::size_t count) noexcept {
-  std::uint8_t* const marks = &marks_[first];
-  std::uint8_t all = 0;
-  for (std::size_t i = 0; i < count; ++i) all |= marks[i];
-  if (all != 0) {
-    for (std::uint32_t i = 0; i < count; ++i) mark_changed(first + i);
+void BoxTable<D, Real>::list_in_a_row(std::uint32_t first, std::size_t count) noexcept {
+  const std::span<std::uint8_t> marks = std::span(marks_).subspan(first, count);
+  std::uint8_t any = 0;
+  for (const std::uint8_t mark : marks) any |= mark;
+  if (any == 0) {
+    std::fill(marks.begin(), marks.end(), changed_mark);
+    const std::size_t listed = changed_.size();
+    changed_.resize(listed + count);
+    for (std::size_t i = 0; i < count; ++i) changed_[listed + i] = BoxId(first + i);
     return;
   }
-  std::fill_n(marks, count, changed_mark);
-  const std::size_t listed = changed_.size();
-  changed_.resize(listed + count);
-  for (std::uint32_t i = 0; i < count; ++i) changed_[listed + i] = BoxId{first + i};
+  std::array<std::uint32_t, handles_at_once> slots;
+  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = first + static_cast<std::uint32_t>(i);
+  list(changed_, changed_mark, std::span(slots).first(count));
+}
+
+/// Appends the slots without the mark to a list that has room for them, and marks them.
+template <int D, typename Real>
+void BoxTable<D, Real>::list(std::vector<BoxId>& to, std::uint8_t mark,
+                             std::span<const std::uint32_t> slots) noexcept {
+  const std::size_t listed = to.size();
+  to.resize(listed + slots.size());
+  BoxId* next = to.data() + listed;
+  std::uint8_t* const marks = marks_.data();
+  for (const std::uint32_t slot : slots) {
+    *next = BoxId{slot};
+    next += static_cast<std::size_t>((marks[slot] & mark) == 0);
+    marks[slot] |= mark;
+  }
+  to.resize(static_cast<std::size_t>(next - to.data()));
 }
 
 template <int D, typename Real>

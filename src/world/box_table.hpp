@@ -126,8 +126,9 @@ class BoxTable {
   void refuse_unless_quarantined(const Box<D, Real>& box, std::size_t index, const char* what,
                                  std::size_t number) const;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
-  std::size_t set_in_a_row(std::span<const Handle> handles, std::span<const Box<D, Real>> boxes) noexcept;
-  void mark_changed_in_a_row(std::uint32_t first, std::size_t count) noexcept;
+  bool set_in_a_row(std::span<const Handle> handles, std::span<const Box<D, Real>> given) noexcept;
+  void list_in_a_row(std::uint32_t first, std::size_t count) noexcept;
+  void list(std::vector<BoxId>& to, std::uint8_t mark, std::span<const std::uint32_t> slots) noexcept;
 
   void mark_changed(std::uint32_t slot) noexcept {
     if ((marks_[slot] & changed_mark) != 0) return;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "core/grow.hpp"
@@ -14,21 +16,32 @@ namespace {
 /// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
 
-/// If there are this many pairs for each event, or more, it pays to search for the events' places in the
-/// array. Else it pays to visit every pair.
-constexpr std::size_t pairs_per_event = 8;
+/// If there are fewer pairs for each event of an update, a pass over the array costs less than to log and
+/// sort the events.
+constexpr std::size_t pairs_per_event = 16;
 
-/// The first place in [from, to) that is not before `pair`: a galloping search, since it is mostly near
-/// `from`.
-const Pair* first_not_before(const Pair* from, const Pair* to, Pair pair) noexcept {
-  std::ptrdiff_t step = 1;
-  const Pair* low = from;
-  while (step < to - low && low[step] < pair) {
-    low += step;
-    step *= 2;
+/// Reads the keys of sorted pairs.
+class KeyReader {
+ public:
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+
+  explicit KeyReader(std::span<const Pair> pairs) : pairs_(pairs) { advance(false); }
+
+  /// Goes on to the next pair, or not.
+  void advance(bool goes_on) {
+    place_ += static_cast<std::size_t>(goes_on);
+    next = place_ < pairs_.size() ? key(pairs_[place_]) : none;
   }
-  const Pair* const high = step < to - low ? low + step : to;
-  return std::lower_bound(low, high, pair);
+
+  std::uint64_t next;  ///< none behind the last pair
+
+ private:
+  std::span<const Pair> pairs_;
+  std::size_t place_ = 0;
+};
+
+constexpr Pair pair_of(std::uint64_t its_key) noexcept {
+  return {BoxId(its_key >> 32), BoxId(its_key & 0xffffffffU)};
 }
 
 /// Sorts both lists and removes what is in both, as often as it is. If it throws, only the order has changed.
@@ -59,8 +72,9 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
   keeps_ = other.keeps_;
   size_ = other.size_;
   events_ = std::move(other.events_);
-  pairs_ = std::move(other.pairs_);
+  keys_ = std::move(other.keys_);
   log_ = std::move(other.log_);
+  spare_ = std::move(other.spare_);
   scratch_ = std::move(other.scratch_);
   persisting_ = std::move(other.persisting_);
   handles_ = std::move(other.handles_);
@@ -71,8 +85,15 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
 
 void CurrentPairs::take(PairEvents& events, Generations generations,
                         const SlotColumn<std::uint64_t>& user_data) {
-  auto& [begun, ended, begun_data, ended_data] = events_;
   const bool has_user_data = user_data.is_used();
+  DeliveredEvents smaller;
+  DeliveredEvents* next = &events_;
+  if (watch_.wastes(events.begun.size() + events.ended.size(),
+                    events_.begun.capacity() + events_.ended.capacity())) {
+    next = &smaller;
+    core::give_back(spare_, scratch_);
+  }
+  auto& [begun, ended, begun_data, ended_data] = *next;
   begun.reserve(events.begun.size());
   ended.reserve(events.ended.size());
   if (has_user_data) {
@@ -93,6 +114,7 @@ void CurrentPairs::take(PairEvents& events, Generations generations,
   };
   replace(begun, begun_data, events.begun);
   replace(ended, ended_data, events.ended);
+  if (next == &smaller) events_ = std::move(smaller);
   has_persisting_ = false;
   events.clear();
 }
@@ -102,11 +124,10 @@ void CurrentPairs::keep(const PairEvents& events) {
   const auto& [begun, ended] = events;
   const std::size_t count = begun.size() + ended.size();
   if (keeps_ && count > 0) {
-    const bool are_many = count > pairs_.size() / pairs_per_event;
+    const bool are_many = count > keys_.size() / pairs_per_event;
     const std::size_t logged = log_.begun.size() + log_.ended.size();
-    if (are_many || logged + count > std::max(short_log, pairs_.size() / 2)) merge();
+    if (are_many || logged + count > std::max(short_log, keys_.size() / 2)) merge();
     if (are_many) {
-      core::make_room(pairs_, begun.size());
       apply(begun, ended);
     } else {
       core::make_room(log_.begun, begun.size());
@@ -124,18 +145,20 @@ std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
     const std::lock_guard lock(reading_);
     if (!has_handles_.load(std::memory_order_relaxed)) {
       merge();
-      handles_.resize(pairs_.size());
-      for (std::size_t i = 0; i < pairs_.size(); ++i) handles_[i] = handles_of(pairs_[i], generations);
+      handles_.resize(keys_.size());
+      for (std::size_t i = 0; i < keys_.size(); ++i) handles_[i] = handles_of(pair_of(keys_[i]), generations);
       has_handles_.store(true, std::memory_order_release);
     }
   }
   return handles_;
 }
 
-std::span<const Pair> CurrentPairs::slot_pairs() const {
+std::vector<Pair> CurrentPairs::slot_pairs() const {
   const std::lock_guard lock(reading_);
   merge();
-  return pairs_;
+  std::vector<Pair> pairs(keys_.size());
+  std::transform(keys_.begin(), keys_.end(), pairs.begin(), pair_of);
+  return pairs;
 }
 
 std::span<const HandlePair> CurrentPairs::persisting(Generations generations) const {
@@ -158,97 +181,66 @@ std::span<const HandlePair> CurrentPairs::persisting(Generations generations) co
 void CurrentPairs::merge() const {
   if (log_.empty()) return;
   make_net(log_, scratch_);
-  core::make_room(pairs_, log_.begun.size());
   apply(log_.begun, log_.ended);
   log_.clear();
 }
 
-/// Applies sorted events to the array, in which there is room.
-void CurrentPairs::apply(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept {
-  if (begun.size() + ended.size() > pairs_.size() / pairs_per_event) return apply_many(begun, ended);
-  drop(ended);
-  insert(begun);
-}
-
-/// Merges from the end on, without branches: no predictor could foresee which pair comes next.
-void CurrentPairs::apply_many(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept {
-  std::size_t left = pairs_.size();
-  std::size_t fresh = begun.size();
-  std::size_t gone = ended.size();
-  pairs_.resize(left + fresh);
-  Pair* const begin = pairs_.data();
-  Pair* const end = begin + pairs_.size();
-  Pair* out = end;  // at least `fresh` places above the pairs that are left
-  while (left > 0) {
-    const Pair held = begin[left - 1];
-    const Pair other = fresh > 0 ? begun[fresh - 1] : Pair{};  // Pair{} is before every pair
-    const bool is_fresh = key(held) < key(other);
-    const bool is_gone = !is_fresh && gone > 0 && ended[gone - 1] == held;
-    out[-1] = is_fresh ? other : held;
-    out -= static_cast<std::ptrdiff_t>(!is_gone);
-    left -= static_cast<std::size_t>(!is_fresh);
-    fresh -= static_cast<std::size_t>(is_fresh);
-    gone -= static_cast<std::size_t>(is_gone);
+/// Merges sorted events into the array, or throws and changes nothing. Copies eight pairs at a time and goes
+/// on behind those that come before the next event, without branches: no predictor could foresee where that
+/// is.
+void CurrentPairs::apply(std::span<const Pair> begun, std::span<const Pair> ended) const {
+  constexpr std::ptrdiff_t at_once = 8;
+  const std::size_t needed = keys_.size() + begun.size() + at_once + 1;
+  if (spare_.size() < needed) core::resize_by_eighths(spare_, needed);
+  const std::uint64_t* held = keys_.data();
+  const std::uint64_t* const held_end = held + keys_.size();
+  KeyReader fresh(begun);
+  KeyReader gone(ended);
+  std::uint64_t* out = spare_.data();
+  while (held_end - held >= at_once && std::min(fresh.next, gone.next) != KeyReader::none) {
+    const std::uint64_t next = std::min(fresh.next, gone.next);
+    std::ptrdiff_t count = 0;
+    for (std::ptrdiff_t i = 0; i < at_once; ++i) count += static_cast<std::ptrdiff_t>(held[i] < next);
+    std::memcpy(out, held, at_once * sizeof(*held));
+    out[count] = next;  // overwritten if it does not begin here
+    const bool begins = count < at_once && fresh.next < gone.next;
+    const bool ends = count < at_once && gone.next < fresh.next;
+    held += count + static_cast<std::ptrdiff_t>(ends);
+    out += count + static_cast<std::ptrdiff_t>(begins);
+    fresh.advance(begins);
+    gone.advance(ends);
   }
-  while (fresh > 0) *--out = begun[--fresh];
-  const Pair* const last = std::copy(out, end, begin);
-  pairs_.resize(static_cast<std::size_t>(last - begin));
-}
-
-void CurrentPairs::drop(std::span<const Pair> ended) const noexcept {
-  Pair* const begin = pairs_.data();
-  const Pair* const end = begin + pairs_.size();
-  const Pair* read = begin;
-  Pair* write = begin;
-  const auto keep_up_to = [&](const Pair* to) {
-    write = write == read ? write + (to - read) : std::copy(read, to, write);
-    read = to;
-  };
-  for (const Pair pair : ended) {
-    keep_up_to(first_not_before(read, end, pair));
-    read += static_cast<std::ptrdiff_t>(read != end && *read == pair);
+  if (std::min(fresh.next, gone.next) == KeyReader::none) {
+    out = std::copy(held, held_end, out);
+    held = held_end;
   }
-  keep_up_to(end);
-  pairs_.resize(static_cast<std::size_t>(write - begin));
-}
-
-/// Inserts from the end on.
-void CurrentPairs::insert(std::span<const Pair> begun) const noexcept {
-  std::size_t left = pairs_.size();
-  pairs_.resize(left + begun.size());
-  Pair* const begin = pairs_.data();
-  Pair* out = begin + pairs_.size();
-  for (std::size_t i = begun.size(); i-- > 0;) {
-    const Pair pair = begun[i];
-    // Gallops from the back, since the place is near it.
-    std::size_t step = 1;
-    std::size_t high = left;
-    while (step <= high && pair < begin[high - step]) {
-      high -= step;
-      step *= 2;
-    }
-    const std::size_t low = step <= high ? high - step : 0;
-    const auto place = std::lower_bound(begin + low, begin + high, pair);
-    const auto kept = static_cast<std::size_t>(place - begin);
-    out = std::copy_backward(begin + kept, begin + left, out);
-    left = kept;
-    *--out = pair;
+  while (held != held_end || fresh.next != KeyReader::none) {
+    const std::uint64_t next = held != held_end ? *held : KeyReader::none;
+    const bool begins = fresh.next < next;
+    const bool ends = !begins && gone.next == next;
+    *out = std::min(fresh.next, next);
+    out += static_cast<std::ptrdiff_t>(!ends);
+    held += static_cast<std::ptrdiff_t>(!begins);
+    fresh.advance(begins);
+    gone.advance(ends);
   }
+  spare_.resize(static_cast<std::size_t>(out - spare_.data()));
+  keys_.swap(spare_);
 }
 
 void CurrentPairs::shrink_to_fit() {
   merge();
-  core::give_back(scratch_, handles_, persisting_);
-  has_handles_ = pairs_.empty();
+  core::give_back(scratch_, spare_, handles_, persisting_);
+  has_handles_ = keys_.empty();
   has_persisting_ = false;
   log_.shrink_to_fit();
-  core::shrink(pairs_, events_.begun, events_.ended, events_.begun_data, events_.ended_data);
+  core::shrink(keys_, events_.begun, events_.ended, events_.begun_data, events_.ended_data);
 }
 
 std::size_t CurrentPairs::bytes() const {
   const std::lock_guard lock(reading_);
-  return log_.bytes() + core::bytes_of(pairs_, scratch_, handles_, persisting_, events_.begun, events_.ended,
-                                       events_.begun_data, events_.ended_data);
+  return log_.bytes() + core::bytes_of(keys_, spare_, scratch_, handles_, persisting_, events_.begun,
+                                       events_.ended, events_.begun_data, events_.ended_data);
 }
 
 void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
@@ -259,7 +251,8 @@ void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const 
     for (const Pair pair : all) handles.push_back(handles_of(pair, generations));
     return handles;
   };
-  pairs_.assign(pairs.begin(), pairs.end());
+  keys_.resize(pairs.size());
+  std::transform(pairs.begin(), pairs.end(), keys_.begin(), key);
   size_ = size;
   events_ = {handles_of_all(events.begun), handles_of_all(events.ended)};
   log_.clear();

@@ -17,9 +17,9 @@
 
 namespace broadside::world {
 
-/// The pairs are in a sorted array. An update with many events brings it up to date; events of other updates
-/// wait in a log until there are many, or somebody reads the pairs. The first reader after an update also
-/// gives the pairs their handles; several threads may read at once.
+/// The keys of the pairs are in a sorted array. An update with many events brings it up to date; events of
+/// other updates wait in a log until there are many, or somebody reads the pairs. The first reader after an
+/// update also gives the pairs their handles; several threads may read at once.
 class CurrentPairs {
  public:
   /// Without `keeps` it only counts the pairs.
@@ -47,7 +47,7 @@ class CurrentPairs {
   std::span<const HandlePair> persisting(Generations generations) const;
 
   /// The same pairs as pairs(), without handles.
-  std::span<const Pair> slot_pairs() const;
+  std::vector<Pair> slot_pairs() const;
 
   /// Gives back memory that is not needed. O(pairs).
   void shrink_to_fit();
@@ -69,19 +69,18 @@ class CurrentPairs {
 
   void keep(const PairEvents& events);
   void merge() const;
-  void apply(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept;
-  void apply_many(std::span<const Pair> begun, std::span<const Pair> ended) const noexcept;
-  void drop(std::span<const Pair> ended) const noexcept;
-  void insert(std::span<const Pair> begun) const noexcept;
+  void apply(std::span<const Pair> begun, std::span<const Pair> ended) const;
 
   bool keeps_;
   std::size_t size_ = 0;
   DeliveredEvents events_;
+  BufferWatch watch_;
   mutable std::mutex reading_;
-  mutable std::vector<Pair> pairs_;
+  mutable std::vector<std::uint64_t> keys_;
   mutable PairEvents log_;  // neither list is sorted; a pair may begin and end several times
-  mutable std::vector<Pair> scratch_;
-  mutable std::vector<HandlePair> handles_;  // of the pairs
+  mutable std::vector<std::uint64_t> spare_;  // for the next state of pairs_
+  mutable std::vector<Pair> scratch_;         // to sort the log
+  mutable std::vector<HandlePair> handles_;   // of the pairs
   mutable std::vector<HandlePair> persisting_;
   mutable std::atomic<bool> has_handles_ = true;      // handles_ is up to date
   mutable std::atomic<bool> has_persisting_ = false;  // persisting_ is up to date

@@ -54,6 +54,7 @@ void PairRefiner::ask_again(std::uint32_t slot, std::size_t slots) {
 
 template <int D, typename Real>
 PairEvents& PairRefiner::refine(const BoxTable<D, Real>& boxes, Generations generations) {
+  taken_ = state_.candidates.begun.size() + state_.candidates.ended.size();
   if (!state_.is_refining) return state_.candidates;
   const bool is_retry = !state_.refined.empty();
   take_candidates(generations.size());
@@ -179,6 +180,11 @@ void PairRefiner::settle() noexcept {
   for (const BoxId id : state_.asked_slots) asked_marks_[index(id)] = 0;
   state_.asked_slots.clear();
   state_.asks_about_all = false;
+  const auto& [begun, ended] = state_.candidates;
+  if (watch_.wastes(taken_ + reviewed_.size(), begun.capacity() + ended.capacity() + reviewed_.capacity())) {
+    core::give_back(state_.candidates.begun, state_.candidates.ended, state_.refined.begun,
+                    state_.refined.ended, state_.fresh, reviewed_, questions_, sorting_);
+  }
   if (state_.is_refining && !has_predicate() && !by_boxes_) {
     state_.graph = {};
     state_.is_refining = false;
@@ -198,9 +204,8 @@ std::size_t PairRefiner::bytes() const noexcept {
          core::bytes_of(state_.asked_slots, state_.fresh, asked_marks_, reviewed_, questions_, sorting_);
 }
 
-std::vector<Pair> PairRefiner::tracked(std::span<const Pair> current) const {
-  const std::vector<Pair> held = state_.is_refining ? edges() : std::vector(current.begin(), current.end());
-  return state_.candidates.netted().undone(held);
+std::vector<Pair> PairRefiner::tracked(std::vector<Pair> current) const {
+  return state_.candidates.netted().undone(state_.is_refining ? edges() : std::move(current));
 }
 
 std::vector<Pair> PairRefiner::edges() const {

@@ -84,7 +84,7 @@ class PairRefiner {
 
   /// The pairs of the tracker's last complete update, sorted. If nothing is refined, they follow from
   /// `current`, the sorted pairs that hold.
-  std::vector<Pair> tracked(std::span<const Pair> current) const;
+  std::vector<Pair> tracked(std::vector<Pair> current) const;
 
   /// All candidates in the graph, and the candidates that hold; sorted.
   std::vector<Pair> edges() const;
@@ -123,6 +123,8 @@ class PairRefiner {
   std::vector<ReviewedEdge> reviewed_;
   std::vector<Question> questions_;
   std::vector<Pair> sorting_;
+  std::size_t taken_ = 0;  // candidates' events in this update
+  BufferWatch watch_;
 };
 
 }  // namespace broadside::world
