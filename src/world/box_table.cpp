@@ -119,11 +119,18 @@ void BoxTable<D, Real>::set_outside(std::uint32_t slot, const Box<D, Real>& box,
 template <int D, typename Real>
 void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> given,
                             std::span<const Point<D, Real>> velocities) noexcept {
-  const bool may_be_in_a_row = given.is_array() && !quarantines_ && velocities.empty();
-  const std::span<const Box<D, Real>> array(given.array(), may_be_in_a_row ? given.size() : 0);
+  std::array<Box<D, Real>, handles_at_once> copies;
   for (std::size_t begin = 0; begin < given.size(); begin += handles_at_once) {
     const std::size_t count = std::min(handles_at_once, given.size() - begin);
-    if (may_be_in_a_row && set_in_a_row(handles.subspan(begin, count), array.subspan(begin, count))) continue;
+    if (!quarantines_ && velocities.empty()) {
+      const Box<D, Real>* boxes = copies.data();
+      if (given.is_array())
+        boxes = given.array() + begin;
+      else
+        std::copy_n(given.begin() + static_cast<std::ptrdiff_t>(begin), count, copies.begin());
+      const std::span<const Handle> some = handles.subspan(begin, count);
+      if (set_in_a_row(some, {boxes, count}) || set_scattered(some, {boxes, count})) continue;
+    }
     for (std::size_t i = begin; i < begin + count; ++i) {
       const std::uint32_t slot = handles[i].slot;
       if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
@@ -131,8 +138,7 @@ void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> gi
   }
 }
 
-/// Sets a box for each handle, if their slots are consecutive; more boxes may follow. Otherwise returns
-/// false.
+/// Sets present boxes, if their slots are consecutive. Otherwise returns false and changes nothing.
 template <int D, typename Real>
 bool BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
                                      std::span<const Box<D, Real>> given) noexcept {
@@ -153,6 +159,30 @@ bool BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
   for (std::uint32_t& place : left) place += first + static_cast<std::uint32_t>(stay);
   if (!boxes_make_pairs_) list(changed_, changed_mark, left);
   list(moved_, moved_mark, left);
+  return true;
+}
+
+/// Sets present boxes, if their slots exist and all stay within their enlarged boxes. Otherwise returns false
+/// and changes nothing.
+template <int D, typename Real>
+bool BoxTable<D, Real>::set_scattered(std::span<const Handle> handles,
+                                      std::span<const Box<D, Real>> given) noexcept {
+  const std::size_t count = handles.size();
+  std::array<std::uint32_t, handles_at_once> slots;
+  std::array<Box<D, Real>, handles_at_once + 1> now;
+  std::array<Box<D, Real>, handles_at_once + 1> kept;
+  for (std::size_t i = 0; i < count; ++i) {
+    slots[i] = handles[i].slot;
+    if (slots[i] >= boxes_.size()) return false;
+    now[i] = given[i];
+    if (enlarges_) kept[i] = enlarged_[slots[i]];
+  }
+  if (enlarges_) {
+    now[count] = kept[count] = absent_box<D, Real>();  // count_kept() reads one box more
+    if (kernels::count_kept<D, Real>(kept, now, count, margins_) < count) return false;
+  }
+  for (std::size_t i = 0; i < count; ++i) boxes_[slots[i]] = now[i];
+  if (boxes_make_pairs_) list(changed_, changed_mark, std::span(slots).first(count));
   return true;
 }
 

@@ -127,6 +127,7 @@ class BoxTable {
                                  std::size_t number) const;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
   bool set_in_a_row(std::span<const Handle> handles, std::span<const Box<D, Real>> given) noexcept;
+  bool set_scattered(std::span<const Handle> handles, std::span<const Box<D, Real>> given) noexcept;
   void list_in_a_row(std::uint32_t first, std::size_t count) noexcept;
   void list(std::vector<BoxId>& to, std::uint8_t mark, std::span<const std::uint32_t> slots) noexcept;
 

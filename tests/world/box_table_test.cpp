@@ -95,7 +95,9 @@ TEST(BoxTable, SetsConsecutiveSlotsAsItSetsOne) {
     auto one_by_one = table_of(options, slots);
     std::vector<Handle> handles;
     for (std::uint32_t slot = 0; slot < slots; ++slot) handles.push_back({slot, 0});
+    for (std::uint32_t i = 128; i < 192; ++i) handles[i].slot = 319 - i;  // not in a row
     handles[120].slot = 7;
+    handles[130].slot = 140;
     handles[200].slot = slots + 5;
     for (int frame = 0; frame < 8; ++frame) {
       std::vector<Box2> to;
@@ -104,7 +106,7 @@ TEST(BoxTable, SetsConsecutiveSlotsAsItSetsOne) {
         const float x = static_cast<float>(frame) * (is_fast ? 1.5F : 0.1F);
         to.push_back({{x, 0}, {x + 1, 1}});
       }
-      many.set(handles, to, {});
+      many.set(handles, frame % 2 == 0 ? to : BoxView<2>(to.data(), to.size(), sizeof(Box2)), {});
       for (std::size_t i = 0; i < slots; ++i) {
         if (handles[i].slot < slots) one_by_one.set(handles[i].slot, to[i], nullptr);
       }
