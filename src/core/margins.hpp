@@ -12,6 +12,9 @@ namespace broadside::core {
 /// The margins of WorldOptions, in the number type of the boxes. A null velocity means that there is none.
 template <int D, typename Real>
 struct Margins {
+  /// How many margins a kept box may be longer than its box. A newly enlarged one is longer by two.
+  static constexpr Real max_margins = 6;
+
   Real margin;
   Real relative;
   Real frames;
@@ -53,9 +56,6 @@ struct Margins {
   }
 
  private:
-  /// How many margins a kept box may be longer than its box. A newly enlarged one is longer by two.
-  static constexpr Real max_margins = 6;
-
   /// Infinite sides are ignored.
   Real margin_of(const Box<D, Real>& box) const noexcept {
     if (!has_relative) return margin;

@@ -2,6 +2,8 @@
 // changed.
 #include "world/box_table.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,9 +15,15 @@
 #include "core/input_check.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
+#include "kernels/all_present.hpp"
+#include "kernels/enlarged_boxes.hpp"
+#include "world/slot_table.hpp"
 
 namespace broadside::world {
 namespace {
+
+/// So many marks are cleared in the time that clearing those of a list takes for each of its entries.
+constexpr std::size_t marks_per_list_entry = 16;
 
 /// One of the distances that boxes are enlarged by, as a number of the world's type.
 template <typename Real>
@@ -55,6 +63,14 @@ void BoxTable<D, Real>::refuse_unless_quarantined(const Box<D, Real>& box, std::
   const std::string name = core::message({what, " ", number});
   if (is_absent(box)) throw InvalidInput(index, core::message({name, " is absent; expected a box"}));
   throw InvalidInput(index, core::fault_of(box, name, false));
+}
+
+template <int D, typename Real>
+bool BoxTable<D, Real>::are_present(BoxView<D, Real> boxes) const noexcept {
+  if (boxes.is_array()) return kernels::all_present(std::span(boxes.array(), boxes.size()));
+  unsigned all = 1;
+  for (const Box<D, Real> box : boxes) all &= static_cast<unsigned>(is_present(box));
+  return all != 0;
 }
 
 template <int D, typename Real>
@@ -103,29 +119,105 @@ void BoxTable<D, Real>::set_outside(std::uint32_t slot, const Box<D, Real>& box,
 template <int D, typename Real>
 void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> given,
                             std::span<const Point<D, Real>> velocities) noexcept {
-  if (!enlarges_ && !quarantines_) return set_listed(handles, given);
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::uint32_t slot = handles[i].slot;
-    if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
+  std::array<Box<D, Real>, handles_at_once> copies;
+  for (std::size_t begin = 0; begin < given.size(); begin += handles_at_once) {
+    const std::size_t count = std::min(handles_at_once, given.size() - begin);
+    if (!quarantines_ && velocities.empty()) {
+      const Box<D, Real>* boxes = copies.data();
+      if (given.is_array())
+        boxes = given.array() + begin;
+      else
+        std::copy_n(given.begin() + static_cast<std::ptrdiff_t>(begin), count, copies.begin());
+      const std::span<const Handle> some = handles.subspan(begin, count);
+      if (set_in_a_row(some, {boxes, count}) || set_scattered(some, {boxes, count})) continue;
+    }
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      const std::uint32_t slot = handles[i].slot;
+      if (slot < boxes_.size()) set(slot, given[i], velocities.empty() ? nullptr : &velocities[i]);
+    }
   }
 }
 
-/// For valid boxes that are not enlarged: lists them without a branch.
+/// Sets present boxes, if their slots are consecutive. Otherwise returns false and changes nothing.
 template <int D, typename Real>
-void BoxTable<D, Real>::set_listed(std::span<const Handle> handles, BoxView<D, Real> given) noexcept {
-  if (given.empty()) return;
-  const std::size_t listed = changed_.size();
-  changed_.resize(listed + given.size());
-  BoxId* next = changed_.data() + listed;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::uint32_t slot = handles[i].slot;
-    if (slot >= boxes_.size()) continue;
-    boxes_[slot] = given[i];
-    *next = BoxId{slot};
-    next += static_cast<std::size_t>(marks_[slot] == 0);
-    marks_[slot] = changed_mark;
+bool BoxTable<D, Real>::set_in_a_row(std::span<const Handle> handles,
+                                     std::span<const Box<D, Real>> given) noexcept {
+  const std::uint32_t first = handles[0].slot;
+  const std::size_t count = handles.size();
+  if (first + count > boxes_.size() || !are_in_a_row(handles, first)) return false;
+  std::copy(given.begin(), given.end(), &boxes_[first]);
+  if (boxes_make_pairs_) list_in_a_row(first, count);
+  if (!enlarges_) return true;
+  const std::span<Box<D, Real>> kept = std::span(enlarged_).subspan(first);
+  const std::span<const Box<D, Real>> now = std::span(boxes_).subspan(first);
+  const std::size_t stay = kernels::count_kept<D, Real>(kept, now, count, margins_);
+  if (stay == count) return true;
+  std::array<std::uint32_t, handles_at_once> places;
+  const std::size_t rest = count - stay;
+  const std::span<std::uint32_t> left = std::span(places).first(
+      kernels::enlarge_left(kept.subspan(stay, rest), now.subspan(stay, rest), margins_, places.data()));
+  for (std::uint32_t& place : left) place += first + static_cast<std::uint32_t>(stay);
+  if (!boxes_make_pairs_) list(changed_, changed_mark, left);
+  list(moved_, moved_mark, left);
+  return true;
+}
+
+/// Sets present boxes, if their slots exist and all stay within their enlarged boxes. Otherwise returns false
+/// and changes nothing.
+template <int D, typename Real>
+bool BoxTable<D, Real>::set_scattered(std::span<const Handle> handles,
+                                      std::span<const Box<D, Real>> given) noexcept {
+  const std::size_t count = handles.size();
+  std::array<std::uint32_t, handles_at_once> slots;
+  std::array<Box<D, Real>, handles_at_once + 1> now;
+  std::array<Box<D, Real>, handles_at_once + 1> kept;
+  for (std::size_t i = 0; i < count; ++i) {
+    slots[i] = handles[i].slot;
+    if (slots[i] >= boxes_.size()) return false;
+    now[i] = given[i];
+    if (enlarges_) kept[i] = enlarged_[slots[i]];
   }
-  changed_.resize(static_cast<std::size_t>(next - changed_.data()));
+  if (enlarges_) {
+    now[count] = kept[count] = absent_box<D, Real>();  // count_kept() reads one box more
+    if (kernels::count_kept<D, Real>(kept, now, count, margins_) < count) return false;
+  }
+  for (std::size_t i = 0; i < count; ++i) boxes_[slots[i]] = now[i];
+  if (boxes_make_pairs_) list(changed_, changed_mark, std::span(slots).first(count));
+  return true;
+}
+
+/// Lists consecutive slots as changed.
+template <int D, typename Real>
+void BoxTable<D, Real>::list_in_a_row(std::uint32_t first, std::size_t count) noexcept {
+  const std::span<std::uint8_t> marks = std::span(marks_).subspan(first, count);
+  std::uint8_t any = 0;
+  for (const std::uint8_t mark : marks) any |= mark;
+  if (any == 0) {
+    std::fill(marks.begin(), marks.end(), changed_mark);
+    const std::size_t listed = changed_.size();
+    changed_.resize(listed + count);
+    for (std::size_t i = 0; i < count; ++i) changed_[listed + i] = BoxId(first + i);
+    return;
+  }
+  std::array<std::uint32_t, handles_at_once> slots;
+  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = first + static_cast<std::uint32_t>(i);
+  list(changed_, changed_mark, std::span(slots).first(count));
+}
+
+/// Appends the slots without the mark to a list that has room for them, and marks them.
+template <int D, typename Real>
+void BoxTable<D, Real>::list(std::vector<BoxId>& to, std::uint8_t mark,
+                             std::span<const std::uint32_t> slots) noexcept {
+  const std::size_t listed = to.size();
+  to.resize(listed + slots.size());
+  BoxId* next = to.data() + listed;
+  std::uint8_t* const marks = marks_.data();
+  for (const std::uint32_t slot : slots) {
+    *next = BoxId{slot};
+    next += static_cast<std::size_t>((marks[slot] & mark) == 0);
+    marks[slot] |= mark;
+  }
+  to.resize(static_cast<std::size_t>(next - to.data()));
 }
 
 template <int D, typename Real>
@@ -152,8 +244,11 @@ void BoxTable<D, Real>::remove(std::uint32_t slot) noexcept {
 
 template <int D, typename Real>
 void BoxTable<D, Real>::settle() noexcept {
-  for (const BoxId id : changed_) marks_[index(id)] = 0;
-  for (const BoxId id : moved_) marks_[index(id)] = 0;
+  if (changed_.size() > marks_.size() / marks_per_list_entry) {
+    std::fill(marks_.begin(), marks_.end(), std::uint8_t{0});
+  } else {
+    for (const BoxId id : changed_) marks_[index(id)] = 0;
+  }
   changed_.clear();
   moved_.clear();
 }

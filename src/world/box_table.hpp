@@ -52,6 +52,9 @@ class BoxTable {
     if (!is_present(box)) refuse_unless_quarantined(box, index, what, number);
   }
 
+  /// Whether all boxes are present, and check() accepts them.
+  bool are_present(BoxView<D, Real> boxes) const noexcept;
+
   /// Throws InvalidInput if a coordinate is not finite, std::logic_error if no frames are predicted.
   void check_velocity(const Point<D, Real>& velocity, std::size_t index, const char* whose,
                       std::size_t number) const;
@@ -123,7 +126,10 @@ class BoxTable {
   void refuse_unless_quarantined(const Box<D, Real>& box, std::size_t index, const char* what,
                                  std::size_t number) const;
   void set_outside(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept;
-  void set_listed(std::span<const Handle> handles, BoxView<D, Real> boxes) noexcept;
+  bool set_in_a_row(std::span<const Handle> handles, std::span<const Box<D, Real>> given) noexcept;
+  bool set_scattered(std::span<const Handle> handles, std::span<const Box<D, Real>> given) noexcept;
+  void list_in_a_row(std::uint32_t first, std::size_t count) noexcept;
+  void list(std::vector<BoxId>& to, std::uint8_t mark, std::span<const std::uint32_t> slots) noexcept;
 
   void mark_changed(std::uint32_t slot) noexcept {
     if ((marks_[slot] & changed_mark) != 0) return;

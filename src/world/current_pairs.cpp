@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "core/grow.hpp"
@@ -14,37 +16,54 @@ namespace {
 /// Below this many events in the log, a pass over the array does not pay.
 constexpr std::size_t short_log = 1024;
 
-/// A merge searches for places if the array has this many pairs for each event of the log, or more. Else it
-/// visits every pair.
-constexpr std::size_t part_for_galloping = 8;
+/// If there are fewer pairs for each event of an update, a pass over the array costs less than to log and
+/// sort the events.
+constexpr std::size_t pairs_per_event = 16;
 
-/// Merges two sorted ranges without branches: no predictor could foresee which comes next.
-void merge_events(std::span<const Pair> begun, std::span<const Pair> ended, Pair* out) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < begun.size() && j < ended.size()) {
-    const bool ends = key(ended[j]) < key(begun[i]);
-    *out++ = *(ends ? &ended[j] : &begun[i]);
-    i += static_cast<std::size_t>(!ends);
-    j += static_cast<std::size_t>(ends);
+/// Reads the keys of sorted pairs.
+class KeyReader {
+ public:
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+
+  explicit KeyReader(std::span<const Pair> pairs) : pairs_(pairs) { advance(false); }
+
+  /// Goes on to the next pair, or not.
+  void advance(bool goes_on) {
+    place_ += static_cast<std::size_t>(goes_on);
+    next = place_ < pairs_.size() ? key(pairs_[place_]) : none;
   }
-  std::copy(ended.begin() + static_cast<std::ptrdiff_t>(j), ended.end(),
-            std::copy(begun.begin() + static_cast<std::ptrdiff_t>(i), begun.end(), out));
+
+  std::uint64_t next;  ///< none behind the last pair
+
+ private:
+  std::span<const Pair> pairs_;
+  std::size_t place_ = 0;
+};
+
+constexpr Pair pair_of(std::uint64_t its_key) noexcept {
+  return {BoxId(its_key >> 32), BoxId(its_key & 0xffffffffU)};
 }
 
-constexpr auto has_slots_before = [](const HandlePair& a, Pair b) { return slots_of(a) < b; };
-
-/// The first place in [from, to) that is not before `pair`: a galloping search, since it is mostly near
-/// `from`.
-const HandlePair* first_not_before(const HandlePair* from, const HandlePair* to, Pair pair) {
-  std::ptrdiff_t step = 1;
-  const HandlePair* low = from;
-  while (step < to - low && slots_of(low[step]) < pair) {
-    low += step;
-    step *= 2;
+/// Sorts both lists and removes what is in both, as often as it is. If it throws, only the order has changed.
+void make_net(PairEvents& events, std::vector<Pair>& scratch) {
+  sort_pairs(events.begun, scratch);
+  sort_pairs(events.ended, scratch);
+  auto [begun, begun_end] = std::pair(events.begun.begin(), events.begun.end());
+  auto [ended, ended_end] = std::pair(events.ended.begin(), events.ended.end());
+  auto net_begun = begun;
+  auto net_ended = ended;
+  while (begun != begun_end && ended != ended_end) {
+    if (*begun < *ended) {
+      *net_begun++ = *begun++;
+    } else if (*ended < *begun) {
+      *net_ended++ = *ended++;
+    } else {
+      ++begun;
+      ++ended;
+    }
   }
-  const HandlePair* const high = step < to - low ? low + step : to;
-  return std::lower_bound(low, high, pair, has_slots_before);
+  events.begun.erase(std::copy(begun, begun_end, net_begun), begun_end);
+  events.ended.erase(std::copy(ended, ended_end, net_ended), ended_end);
 }
 
 }  // namespace
@@ -53,26 +72,35 @@ CurrentPairs& CurrentPairs::operator=(CurrentPairs&& other) noexcept {
   keeps_ = other.keeps_;
   size_ = other.size_;
   events_ = std::move(other.events_);
-  pairs_ = std::move(other.pairs_);
+  keys_ = std::move(other.keys_);
   log_ = std::move(other.log_);
+  spare_ = std::move(other.spare_);
   scratch_ = std::move(other.scratch_);
   persisting_ = std::move(other.persisting_);
-  is_merged_ = other.is_merged_.load();
+  handles_ = std::move(other.handles_);
+  has_handles_ = other.has_handles_.load();
   has_persisting_ = other.has_persisting_.load();
   return *this;
 }
 
 void CurrentPairs::take(PairEvents& events, Generations generations,
                         const SlotColumn<std::uint64_t>& user_data) {
-  auto& [begun, ended, begun_data, ended_data] = events_;
   const bool has_user_data = user_data.is_used();
+  DeliveredEvents smaller;
+  DeliveredEvents* next = &events_;
+  if (watch_.wastes(events.begun.size() + events.ended.size(),
+                    events_.begun.capacity() + events_.ended.capacity())) {
+    next = &smaller;
+    core::give_back(spare_, scratch_);
+  }
+  auto& [begun, ended, begun_data, ended_data] = *next;
   begun.reserve(events.begun.size());
   ended.reserve(events.ended.size());
   if (has_user_data) {
     begun_data.reserve(events.begun.size());
     ended_data.reserve(events.ended.size());
   }
-  log(events, generations);
+  keep(events);
   // Nothing below throws.
   const auto replace = [&](std::vector<HandlePair>& handles, std::vector<UserDataPair>& data,
                            std::span<const Pair> pairs) {
@@ -86,36 +114,51 @@ void CurrentPairs::take(PairEvents& events, Generations generations,
   };
   replace(begun, begun_data, events.begun);
   replace(ended, ended_data, events.ended);
+  if (next == &smaller) events_ = std::move(smaller);
   has_persisting_ = false;
   events.clear();
 }
 
-/// Brings size_ and the log up to date, or throws and changes nothing.
-void CurrentPairs::log(const PairEvents& events, Generations generations) {
-  const std::size_t count = events.begun.size() + events.ended.size();
-  const std::size_t old_log = log_.size();
-  const std::size_t old_size = std::exchange(size_, size_ + events.begun.size() - events.ended.size());
-  if (!keeps_ || count == 0) return;
-  try {
-    core::make_room(log_, count);
-    log_.resize(old_log + count);
-    merge_events(events.begun, events.ended, log_.data() + old_log);
-    if (log_.size() > std::max(short_log, pairs_.size() / 2)) merge(generations);
-  } catch (...) {
-    log_.resize(old_log);
-    size_ = old_size;
-    throw;
+/// Brings size_, the array and the log up to date, or throws and changes nothing.
+void CurrentPairs::keep(const PairEvents& events) {
+  const auto& [begun, ended] = events;
+  const std::size_t count = begun.size() + ended.size();
+  if (keeps_ && count > 0) {
+    const bool are_many = count > keys_.size() / pairs_per_event;
+    const std::size_t logged = log_.begun.size() + log_.ended.size();
+    if (are_many || logged + count > std::max(short_log, keys_.size() / 2)) merge();
+    if (are_many) {
+      apply(begun, ended);
+    } else {
+      core::make_room(log_.begun, begun.size());
+      core::make_room(log_.ended, ended.size());
+      log_.begun.insert(log_.begun.end(), begun.begin(), begun.end());
+      log_.ended.insert(log_.ended.end(), ended.begin(), ended.end());
+    }
+    has_handles_ = false;
   }
-  is_merged_ = log_.empty();
+  size_ += begun.size() - ended.size();
 }
 
 std::span<const HandlePair> CurrentPairs::pairs(Generations generations) const {
-  if (!is_merged_.load(std::memory_order_acquire)) {
+  if (!has_handles_.load(std::memory_order_acquire)) {
     const std::lock_guard lock(reading_);
-    merge(generations);
-    is_merged_.store(true, std::memory_order_release);
+    if (!has_handles_.load(std::memory_order_relaxed)) {
+      merge();
+      handles_.resize(keys_.size());
+      for (std::size_t i = 0; i < keys_.size(); ++i) handles_[i] = handles_of(pair_of(keys_[i]), generations);
+      has_handles_.store(true, std::memory_order_release);
+    }
   }
-  return pairs_;
+  return handles_;
+}
+
+std::vector<Pair> CurrentPairs::slot_pairs() const {
+  const std::lock_guard lock(reading_);
+  merge();
+  std::vector<Pair> pairs(keys_.size());
+  std::transform(keys_.begin(), keys_.end(), pairs.begin(), pair_of);
+  return pairs;
 }
 
 std::span<const HandlePair> CurrentPairs::persisting(Generations generations) const {
@@ -134,128 +177,70 @@ std::span<const HandlePair> CurrentPairs::persisting(Generations generations) co
   return persisting_;
 }
 
-void CurrentPairs::merge(Generations generations) const {
+/// Takes the log into the array.
+void CurrentPairs::merge() const {
   if (log_.empty()) return;
-  // Everything that can throw comes first; of that, sorting comes last, since it mixes old and new events.
-  const bool is_long = log_.size() > pairs_.size() / part_for_galloping;
-  const std::size_t needed = is_long ? pairs_.size() + log_.size() : size_;
-  if (pairs_.capacity() < needed) pairs_.reserve(std::max(needed, pairs_.capacity() + pairs_.capacity() / 2));
-  if (!std::is_sorted(log_.begin(), log_.end())) sort_pairs(log_, scratch_);
-  const std::size_t toggled = keep_toggled(generations);
-  if (is_long)
-    toggle(toggled, generations);
-  else
-    insert_begun(drop_ended(toggled), generations);
+  make_net(log_, scratch_);
+  apply(log_.begun, log_.ended);
   log_.clear();
 }
 
-/// Moves the pairs that the log has an odd number of times to its front, each once; returns how many. Gives
-/// pairs that ended and began again their current handles, since slots may have been reused.
-std::size_t CurrentPairs::keep_toggled(Generations generations) const {
-  std::size_t toggled = 0;
-  for (std::size_t i = 0; i < log_.size();) {
-    const Pair pair = log_[i];
-    const std::size_t first = i;
-    while (i < log_.size() && log_[i] == pair) ++i;
-    if ((i - first) % 2 != 0) {
-      log_[toggled++] = pair;
-      continue;
-    }
-    const auto place = std::lower_bound(pairs_.begin(), pairs_.end(), pair, has_slots_before);
-    if (place != pairs_.end() && slots_of(*place) == pair) *place = handles_of(pair, generations);
+/// Merges sorted events into the array, or throws and changes nothing. Copies eight pairs at a time and goes
+/// on behind those that come before the next event, without branches: no predictor could foresee where that
+/// is.
+void CurrentPairs::apply(std::span<const Pair> begun, std::span<const Pair> ended) const {
+  constexpr std::ptrdiff_t at_once = 8;
+  const std::size_t needed = keys_.size() + begun.size() + at_once + 1;
+  if (spare_.size() < needed) core::resize_by_eighths(spare_, needed);
+  const std::uint64_t* held = keys_.data();
+  const std::uint64_t* const held_end = held + keys_.size();
+  KeyReader fresh(begun);
+  KeyReader gone(ended);
+  std::uint64_t* out = spare_.data();
+  while (held_end - held >= at_once && std::min(fresh.next, gone.next) != KeyReader::none) {
+    const std::uint64_t next = std::min(fresh.next, gone.next);
+    std::ptrdiff_t count = 0;
+    for (std::ptrdiff_t i = 0; i < at_once; ++i) count += static_cast<std::ptrdiff_t>(held[i] < next);
+    std::memcpy(out, held, at_once * sizeof(*held));
+    out[count] = next;  // overwritten if it does not begin here
+    const bool begins = count < at_once && fresh.next < gone.next;
+    const bool ends = count < at_once && gone.next < fresh.next;
+    held += count + static_cast<std::ptrdiff_t>(ends);
+    out += count + static_cast<std::ptrdiff_t>(begins);
+    fresh.advance(begins);
+    gone.advance(ends);
   }
-  return toggled;
+  if (std::min(fresh.next, gone.next) == KeyReader::none) {
+    out = std::copy(held, held_end, out);
+    held = held_end;
+  }
+  while (held != held_end || fresh.next != KeyReader::none) {
+    const std::uint64_t next = held != held_end ? *held : KeyReader::none;
+    const bool begins = fresh.next < next;
+    const bool ends = !begins && gone.next == next;
+    *out = std::min(fresh.next, next);
+    out += static_cast<std::ptrdiff_t>(!ends);
+    held += static_cast<std::ptrdiff_t>(!begins);
+    fresh.advance(begins);
+    gone.advance(ends);
+  }
+  spare_.resize(static_cast<std::size_t>(out - spare_.data()));
+  keys_.swap(spare_);
 }
 
-/// Removes each of the first `count` pairs of the log from the array, or inserts it if it is not there: from
-/// the end on, without branches, as in merge_events(). There is room for all.
-void CurrentPairs::toggle(std::size_t count, Generations generations) const {
-  std::size_t left = pairs_.size();
-  pairs_.resize(left + count);
-  HandlePair* const begin = pairs_.data();
-  HandlePair* const end = begin + pairs_.size();
-  HandlePair* out = end;  // at least `count` places above the pairs that are left
-  while (left > 0 && count > 0) {
-    const HandlePair toggled = handles_of(log_[count - 1], generations);
-    const HandlePair& held = begin[left - 1];
-    const std::uint64_t of_held = key(slots_of(held));
-    const std::uint64_t of_toggled = key(log_[count - 1]);
-    out[-1] = *(of_held > of_toggled ? &held : &toggled);
-    out -= static_cast<std::ptrdiff_t>(of_held != of_toggled);
-    left -= static_cast<std::size_t>(of_held >= of_toggled);
-    count -= static_cast<std::size_t>(of_toggled >= of_held);
-  }
-  while (count > 0) *--out = handles_of(log_[--count], generations);
-  const HandlePair* const last = std::copy(out, end, begin + left);
-  pairs_.resize(static_cast<std::size_t>(last - begin));
-}
-
-/// Removes each of the first `count` pairs of the log from the array if it is there. Moves the other pairs,
-/// which have begun, to the front of the log; returns how many there are.
-std::size_t CurrentPairs::drop_ended(std::size_t count) const {
-  HandlePair* const begin = pairs_.data();
-  const HandlePair* const end = begin + pairs_.size();
-  const HandlePair* read = begin;
-  HandlePair* write = begin;
-  const auto keep_up_to = [&](const HandlePair* to) {
-    if (write == read)
-      write += to - read;
-    else
-      write = std::copy(read, to, write);
-    read = to;
-  };
-  std::size_t begun = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (read != end) keep_up_to(first_not_before(read, end, log_[i]));
-    if (read != end && slots_of(*read) == log_[i])
-      ++read;
-    else
-      log_[begun++] = log_[i];
-  }
-  keep_up_to(end);
-  pairs_.resize(static_cast<std::size_t>(write - begin));
-  return begun;
-}
-
-/// Inserts the first `count` pairs of the log into the array, from the end on. There is room for them.
-void CurrentPairs::insert_begun(std::size_t count, Generations generations) const {
-  std::size_t left = pairs_.size();
-  pairs_.resize(left + count);
-  HandlePair* out = pairs_.data() + pairs_.size();
-  while (count > 0) {
-    const Pair pair = log_[--count];
-    // Gallops from the back, since the place is near it.
-    std::size_t step = 1;
-    std::size_t high = left;
-    while (step <= high && pair < slots_of(pairs_[high - step])) {
-      high -= step;
-      step *= 2;
-    }
-    const std::size_t low = step <= high ? high - step : 0;
-    const auto place =
-        std::lower_bound(pairs_.begin() + static_cast<std::ptrdiff_t>(low),
-                         pairs_.begin() + static_cast<std::ptrdiff_t>(high), pair, has_slots_before);
-    const auto kept = static_cast<std::size_t>(place - pairs_.begin());
-    out = std::copy_backward(pairs_.data() + kept, pairs_.data() + left, out);
-    left = kept;
-    *--out = handles_of(pair, generations);
-  }
-}
-
-void CurrentPairs::shrink_to_fit(Generations generations) {
-  merge(generations);
-  is_merged_ = true;
-  scratch_.clear();
-  persisting_.clear();
+void CurrentPairs::shrink_to_fit() {
+  merge();
+  core::give_back(scratch_, spare_, handles_, persisting_);
+  has_handles_ = keys_.empty();
   has_persisting_ = false;
-  core::shrink(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
-               events_.ended_data);
+  log_.shrink_to_fit();
+  core::shrink(keys_, events_.begun, events_.ended, events_.begun_data, events_.ended_data);
 }
 
 std::size_t CurrentPairs::bytes() const {
   const std::lock_guard lock(reading_);
-  return core::bytes_of(pairs_, log_, scratch_, persisting_, events_.begun, events_.ended, events_.begun_data,
-                        events_.ended_data);
+  return log_.bytes() + core::bytes_of(keys_, spare_, scratch_, handles_, persisting_, events_.begun,
+                                       events_.ended, events_.begun_data, events_.ended_data);
 }
 
 void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const PairEvents& events,
@@ -266,11 +251,12 @@ void CurrentPairs::restore(std::span<const Pair> pairs, std::size_t size, const 
     for (const Pair pair : all) handles.push_back(handles_of(pair, generations));
     return handles;
   };
-  pairs_ = handles_of_all(pairs);
+  keys_.resize(pairs.size());
+  std::transform(pairs.begin(), pairs.end(), keys_.begin(), key);
   size_ = size;
   events_ = {handles_of_all(events.begun), handles_of_all(events.ended)};
   log_.clear();
-  is_merged_ = true;
+  has_handles_ = false;
   has_persisting_ = false;
 }
 

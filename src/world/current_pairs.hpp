@@ -17,9 +17,9 @@
 
 namespace broadside::world {
 
-/// The pairs are in a sorted array. A log has the events that the array has not taken in yet: an event
-/// toggles a pair, so a pair counts as changed if the log has it an odd number of times. The first reader
-/// after an update brings the array up to date; several threads may read at once.
+/// The keys of the pairs are in a sorted array. An update with many events brings it up to date; events of
+/// other updates wait in a log until there are many, or somebody reads the pairs. The first reader after an
+/// update also gives the pairs their handles; several threads may read at once.
 class CurrentPairs {
  public:
   /// Without `keeps` it only counts the pairs.
@@ -46,8 +46,11 @@ class CurrentPairs {
   std::span<const HandlePair> pairs(Generations generations) const;
   std::span<const HandlePair> persisting(Generations generations) const;
 
+  /// The same pairs as pairs(), without handles.
+  std::vector<Pair> slot_pairs() const;
+
   /// Gives back memory that is not needed. O(pairs).
-  void shrink_to_fit(Generations generations);
+  void shrink_to_fit();
 
   std::size_t bytes() const;
 
@@ -64,22 +67,22 @@ class CurrentPairs {
     std::vector<UserDataPair> ended_data{};
   };
 
-  void log(const PairEvents& events, Generations generations);
-  void merge(Generations generations) const;
-  std::size_t keep_toggled(Generations generations) const;
-  void toggle(std::size_t count, Generations generations) const;
-  std::size_t drop_ended(std::size_t count) const;
-  void insert_begun(std::size_t count, Generations generations) const;
+  void keep(const PairEvents& events);
+  void merge() const;
+  void apply(std::span<const Pair> begun, std::span<const Pair> ended) const;
 
   bool keeps_;
   std::size_t size_ = 0;
   DeliveredEvents events_;
+  BufferWatch watch_;
   mutable std::mutex reading_;
-  mutable std::vector<HandlePair> pairs_;
-  mutable std::vector<Pair> log_;
-  mutable std::vector<Pair> scratch_;
+  mutable std::vector<std::uint64_t> keys_;
+  mutable PairEvents log_;  // neither list is sorted; a pair may begin and end several times
+  mutable std::vector<std::uint64_t> spare_;  // for the next state of pairs_
+  mutable std::vector<Pair> scratch_;         // to sort the log
+  mutable std::vector<HandlePair> handles_;   // of the pairs
   mutable std::vector<HandlePair> persisting_;
-  mutable std::atomic<bool> is_merged_ = true;        // pairs_ has taken in the log
+  mutable std::atomic<bool> has_handles_ = true;      // handles_ is up to date
   mutable std::atomic<bool> has_persisting_ = false;  // persisting_ is up to date
 };
 

@@ -24,10 +24,12 @@ std::size_t PairGraph::place_of(Pair pair) const noexcept {
 void PairGraph::reserve(std::size_t size, std::size_t boxes) {
   if (size >= none / 2) throw std::bad_alloc();
   if (first_.size() < boxes) first_.resize(boxes, none);
-  const std::size_t extra = size - std::min(size, pairs_.size());
-  core::make_room(pairs_, extra);
-  core::make_room(marks_, extra);
-  core::make_room(links_, extra);
+  const auto make_room = [size](auto& edges) {
+    if (edges.capacity() < size) edges.reserve(size + size / 8);
+  };
+  make_room(pairs_);
+  make_room(marks_);
+  make_room(links_);
   if (table_.size() < 2 * size) rehash(std::bit_ceil(std::max<std::size_t>(2 * size, 16)));
 }
 

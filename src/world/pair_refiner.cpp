@@ -30,10 +30,10 @@ bool say_the_same(const std::uint8_t* flags, const std::uint8_t* marks) noexcept
 
 }  // namespace
 
-void PairRefiner::adopt(std::span<const HandlePair> pairs, std::size_t slots) {
+void PairRefiner::adopt(std::span<const Pair> pairs, std::size_t slots) {
   PairGraph graph;
   graph.reserve(pairs.size(), slots);
-  for (const HandlePair& pair : pairs) graph.insert(slots_of(pair), edge_holds);
+  for (const Pair pair : pairs) graph.insert(pair, edge_holds);
   state_.graph = std::move(graph);
   // Events that a failed update has left are not among the pairs yet. The next update refines them.
 }
@@ -54,6 +54,7 @@ void PairRefiner::ask_again(std::uint32_t slot, std::size_t slots) {
 
 template <int D, typename Real>
 PairEvents& PairRefiner::refine(const BoxTable<D, Real>& boxes, Generations generations) {
+  taken_ = state_.candidates.begun.size() + state_.candidates.ended.size();
   if (!state_.is_refining) return state_.candidates;
   const bool is_retry = !state_.refined.empty();
   take_candidates(generations.size());
@@ -179,6 +180,11 @@ void PairRefiner::settle() noexcept {
   for (const BoxId id : state_.asked_slots) asked_marks_[index(id)] = 0;
   state_.asked_slots.clear();
   state_.asks_about_all = false;
+  const auto& [begun, ended] = state_.candidates;
+  if (watch_.wastes(taken_ + reviewed_.size(), begun.capacity() + ended.capacity() + reviewed_.capacity())) {
+    core::give_back(state_.candidates.begun, state_.candidates.ended, state_.refined.begun,
+                    state_.refined.ended, state_.fresh, reviewed_, questions_, sorting_);
+  }
   if (state_.is_refining && !has_predicate() && !by_boxes_) {
     state_.graph = {};
     state_.is_refining = false;

@@ -57,7 +57,7 @@ class PairRefiner {
   PairEvents& candidates() noexcept { return state_.candidates; }
 
   /// Before a first predicate: takes the pairs that hold as accepted candidates.
-  void adopt(std::span<const HandlePair> pairs, std::size_t slots);
+  void adopt(std::span<const Pair> pairs, std::size_t slots);
 
   /// Refines from now on, by `predicate`, which it swaps with the previous one. The next update asks it about
   /// all pairs.
@@ -123,6 +123,8 @@ class PairRefiner {
   std::vector<ReviewedEdge> reviewed_;
   std::vector<Question> questions_;
   std::vector<Pair> sorting_;
+  std::size_t taken_ = 0;  // candidates' events in this update
+  BufferWatch watch_;
 };
 
 }  // namespace broadside::world

@@ -22,6 +22,34 @@ constexpr std::size_t min_released_slots = 4096;
 }  // namespace
 
 template <int D, typename Real>
+bool SlotTable<D, Real>::are_live(std::span<const Handle> handles) const noexcept {
+  while (!handles.empty()) {
+    const std::span<const Handle> some = handles.first(std::min(handles.size(), handles_at_once));
+    handles = handles.subspan(some.size());
+    if (are_live_in_a_row(some)) continue;
+    for (const Handle handle : some) {
+      if (!is_live(handle)) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether the handles are live and their slots consecutive. Without branches, so that it becomes vector
+/// instructions.
+template <int D, typename Real>
+bool SlotTable<D, Real>::are_live_in_a_row(std::span<const Handle> handles) const noexcept {
+  const std::uint32_t first = handles[0].slot;
+  if (first + handles.size() > size() || !are_in_a_row(handles, first)) return false;
+  const std::uint32_t* const generations = &generations_[first];
+  std::uint32_t differing = 0;
+  for (std::size_t i = 0; i < handles.size(); ++i) differing |= handles[i].generation ^ generations[i];
+  const SlotState* const states = &states_[first];
+  for (std::size_t i = 0; i < handles.size(); ++i)
+    differing |= static_cast<std::uint8_t>(states[i]) ^ static_cast<std::uint8_t>(SlotState::live);
+  return differing == 0;
+}
+
+template <int D, typename Real>
 std::uint32_t SlotTable<D, Real>::readable_slot(Handle handle) const {
   if (handle.slot < size() && generations_[handle.slot] == handle.generation) {
     const SlotState state = states_[handle.slot];

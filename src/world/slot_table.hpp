@@ -38,6 +38,17 @@ inline HandlePair handles_of(Pair pair, Generations generations) noexcept {
           {index(pair.second), generations[index(pair.second)]}};
 }
 
+/// The number of handles of a long list that are looked at together.
+inline constexpr std::size_t handles_at_once = 64;
+
+/// Whether the handles are of consecutive slots from `first` on.
+inline bool are_in_a_row(std::span<const Handle> handles, std::uint32_t first) noexcept {
+  std::uint32_t differing = 0;
+  for (std::size_t i = 0; i < handles.size(); ++i)
+    differing |= handles[i].slot ^ (first + static_cast<std::uint32_t>(i));
+  return differing == 0;
+}
+
 /// A box that was removed and can still be read.
 template <int D, typename Real>
 struct RemovedBox {
@@ -75,6 +86,9 @@ class SlotTable {
     return handle.slot < generations_.size() && generations_[handle.slot] == handle.generation &&
            states_[handle.slot] == SlotState::live;
   }
+
+  /// Whether all boxes are in the world.
+  bool are_live(std::span<const Handle> handles) const noexcept;
 
   /// Whether the slot may be part of a pair that holds, or of a pair that has ended and is not reported yet.
   bool is_paired(std::uint32_t slot) const noexcept {
@@ -144,6 +158,8 @@ class SlotTable {
                std::vector<SlotState> states, std::vector<Removed> removed, std::vector<Removed> reported);
 
  private:
+  bool are_live_in_a_row(std::span<const Handle> handles) const noexcept;
+
   std::vector<std::uint32_t> generations_;
   std::vector<std::uint32_t> places_;  // in removed_ or reported_
   std::vector<SlotState> states_;

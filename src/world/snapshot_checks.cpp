@@ -136,8 +136,7 @@ void DecodedSnapshot<D, Real>::check_pairs(const Pairs& tracked) const {
                           std::to_string(told.size()) + ", which its boxes make");
   }
   if (parts->current.keeps()) {
-    expect(slots_of(parts->current.pairs(parts->slots.generations())) == told,
-           "its pairs are not those of its boxes");
+    expect(parts->current.slot_pairs() == told, "its pairs are not those of its boxes");
   }
   const Events last = parts->current.events();
   expect_led_to(told, {slots_of(last.begun), slots_of(last.ended)},

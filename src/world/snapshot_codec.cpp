@@ -98,7 +98,7 @@ template <int D, typename Real>
 void SnapshotCodec<D, Real>::encode(const Parts& parts, const Tracker& tracker,
                                     detail::Output<std::byte>& bytes) {
   using namespace snapshot;
-  const std::span<const HandlePair> current = parts.current.pairs(parts.slots.generations());
+  const std::vector<Pair> current = parts.current.slot_pairs();
   const RefinerState& refiner = parts.refiner.state();
   ByteWriter out(bytes);
   out.reserve(parts.slots.size() * (Serializer<Box<D, Real>>::bytes + 32) + current.size() * 8 + 1024);
@@ -128,7 +128,7 @@ void SnapshotCodec<D, Real>::encode(const Parts& parts, const Tracker& tracker,
   put_list<Pair>(out, sorted(parts.ignored.pairs()));
   put_list(out, parts.ignored.changed());
   put_last_frame(out, tracker.last_frame(), parts.frame());
-  put_pairs(out, current);
+  put_list<Pair>(out, current);
   put_pairs(out, parts.current.events().begun);
   put_pairs(out, parts.current.events().ended);
   put_refiner(out, refiner, parts.refiner.edges());

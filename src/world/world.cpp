@@ -96,10 +96,12 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
   world::WorldParts<D, Real>& parts = state_->parts;
   check_lengths(handles.size(), "handles", boxes.size(), "boxes");
   if (!velocities.empty()) check_lengths(velocities.size(), "velocities", boxes.size(), "boxes");
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (!parts.slots.is_live(handles[i])) parts.slots.refuse(handles[i], "move");
-    parts.boxes.check(boxes[i], i, "target box", i);
-    if (!velocities.empty()) parts.boxes.check_velocity(velocities[i], i, "of target box", i);
+  if (!velocities.empty() || !parts.slots.are_live(handles) || !parts.boxes.are_present(boxes)) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      parts.slots.live_slot(handles[i], "move");
+      parts.boxes.check(boxes[i], i, "target box", i);
+      if (!velocities.empty()) parts.boxes.check_velocity(velocities[i], i, "of target box", i);
+    }
   }
   parts.boxes.reserve_changes(boxes.size());
   parts.boxes.set(handles, boxes, velocities);
@@ -171,7 +173,7 @@ void World<D, Real>::set_predicate(PairPredicate predicate) {
           "a predicate was set after the first update of a world that keeps no pairs; expected it before, or "
           "WorldOptions::keep_pairs");
     }
-    parts.refiner.adopt(pairs(), parts.slots.size());
+    parts.refiner.adopt(parts.current.slot_pairs(), parts.slots.size());
   }
   parts.refiner.swap_predicate(predicate);
 }

@@ -100,7 +100,7 @@ template <int D, typename Real>
 void WorldState<D, Real>::release() {
   wants_release = false;
   if (parts.has_updated) tracker.renew(parts.frame());
-  parts.current.shrink_to_fit(parts.slots.generations());
+  parts.current.shrink_to_fit();
   query_index.drop();
   joiner.reset();
   parts.slots.shrink_to_fit();
@@ -189,7 +189,7 @@ void WorldState<D, Real>::restore(std::span<const std::byte> bytes) {
   else if (parts.refiner.is_refining())
     known = parts.refiner.tracked({});
   else if (parts.current.keeps())
-    known = parts.refiner.tracked(slots_of(parts.current.pairs(parts.slots.generations())));
+    known = parts.refiner.tracked(parts.current.slot_pairs());
   led.lead_to(decoded.last_frame, std::move(known),
               [&decoded](const std::vector<Pair>& pairs) { decoded.check_pairs(pairs); });
   // Nothing below throws.

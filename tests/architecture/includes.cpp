@@ -47,13 +47,13 @@ const std::vector<Rule>& rules() {
       {"src/core/", core},
       {"src/kernels/",
        standard +
-           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(moved_box|cell_axis|large_array)\.hpp")" +
+           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(moved_box|cell_axis|large_array|margins)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
       {"src/find/", find},
       {"src/track/", track},
-      {"src/world/", track + R"(|"world/[a-z_/]+\.hpp")"},
+      {"src/world/", track + R"(|"world/[a-z_/]+\.hpp"|"kernels/(all_present|enlarged_boxes)\.hpp")"},
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
       {"tools/paper/listings/",
        library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},

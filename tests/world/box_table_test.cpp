@@ -85,6 +85,53 @@ TEST(BoxTable, SetsManyBoxesAsItSetsOne) {
   }
 }
 
+/// Moves of 300 boxes: most slots in a row, a slot twice, one that does not exist; most boxes move little.
+TEST(BoxTable, SetsConsecutiveSlotsAsItSetsOne) {
+  constexpr std::uint32_t slots = 300;
+  for (const WorldOptions& options :
+       {WorldOptions{}, WorldOptions{.margin = 1}, WorldOptions{.margin = 1, .events = WorldEvents::enlarged},
+        WorldOptions{.relative_margin = 0.5}, WorldOptions{.bad_input = BadInput::quarantine}}) {
+    auto many = table_of(options, slots);
+    auto one_by_one = table_of(options, slots);
+    std::vector<Handle> handles;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) handles.push_back({slot, 0});
+    for (std::uint32_t i = 128; i < 192; ++i) handles[i].slot = 319 - i;  // not in a row
+    handles[120].slot = 7;
+    handles[130].slot = 140;
+    handles[200].slot = slots + 5;
+    for (int frame = 0; frame < 8; ++frame) {
+      std::vector<Box2> to;
+      for (std::uint32_t i = 0; i < slots; ++i) {
+        const bool is_fast = i % 50 == 3 || (i > 200 && i % 2 == 0);
+        const float x = static_cast<float>(frame) * (is_fast ? 1.5F : 0.1F);
+        to.push_back({{x, 0}, {x + 1, 1}});
+      }
+      many.set(handles, frame % 2 == 0 ? to : BoxView<2>(to.data(), to.size(), sizeof(Box2)), {});
+      for (std::size_t i = 0; i < slots; ++i) {
+        if (handles[i].slot < slots) one_by_one.set(handles[i].slot, to[i], nullptr);
+      }
+      ASSERT_EQ(listed(many.changed()), listed(one_by_one.changed()));
+      ASSERT_EQ(listed(many.moved()), listed(one_by_one.moved()));
+      ASSERT_TRUE(std::ranges::equal(many.boxes(), one_by_one.boxes()));
+      ASSERT_TRUE(std::ranges::equal(many.shown(), one_by_one.shown()));
+      if (frame % 3 != 0) continue;  // else frames add to the lists
+      many.settle();
+      one_by_one.settle();
+      for (std::uint32_t slot = 0; slot < slots; ++slot) ASSERT_FALSE(many.is_changed(slot));
+    }
+  }
+}
+
+TEST(BoxTable, SeesTheBoxThatIsNotPresent) {
+  const auto table = table_of({}, 1);
+  std::vector<Box2> boxes(100, unit);
+  EXPECT_TRUE(table.are_present(boxes));
+  EXPECT_TRUE(table.are_present({boxes.data(), boxes.size(), sizeof(Box2)}));
+  boxes[77] = absent_box<2>();
+  EXPECT_FALSE(table.are_present(boxes));
+  EXPECT_FALSE(table.are_present({boxes.data(), boxes.size(), sizeof(Box2)}));
+}
+
 TEST(BoxTable, TakesAnInvalidBoxForAnAbsentOneWhereItQuarantines) {
   const Box2 wrong{{1, 0}, {0, 1}};
   EXPECT_THROW(table_of({}, 1).check(wrong, 0, "box", 0), InvalidInput);

@@ -97,6 +97,23 @@ TEST_F(CurrentPairsTest, GivesEventsTheHandlesAndUserDataOfTheirBoxes) {
   EXPECT_EQ(events.ended[0], (HandlePair{{1, 1}, {2, 1}}));
 }
 
+TEST(CurrentPairs, GivesBackTheMemoryOfABurstOfEvents) {
+  constexpr std::uint32_t boxes = 10'000;
+  const std::vector<std::uint32_t> generations(boxes + 1);
+  CurrentPairs pairs(true);
+  PairEvents events;
+  for (std::uint32_t i = 0; i < boxes; ++i) events.begun.push_back({BoxId{i}, BoxId{i + 1}});
+  pairs.take(events, generations, {});
+  const std::size_t at_first = pairs.bytes();
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    (i % 2 == 0 ? events.ended : events.begun).assign(1, {BoxId{7}, BoxId{8}});
+    pairs.take(events, generations, {});
+    ASSERT_EQ(pairs.events().begun.size(), i % 2);
+  }
+  EXPECT_LT(pairs.bytes(), at_first / 2);
+  EXPECT_EQ(pairs.pairs(generations).size(), boxes);
+}
+
 TEST(CurrentPairs, CountsPairsThatItDoesNotKeep) {
   CurrentPairs pairs(false);
   const std::vector<std::uint32_t> generations(3);
@@ -107,7 +124,7 @@ TEST(CurrentPairs, CountsPairsThatItDoesNotKeep) {
   events.ended = {some[0]};
   pairs.take(events, generations, {});
   EXPECT_EQ(pairs.size(), 1u);
-  pairs.shrink_to_fit(generations);
+  pairs.shrink_to_fit();
   EXPECT_EQ(pairs.bytes(), sizeof(HandlePair)) << "one event";
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -44,6 +45,25 @@ TEST(SlotTable, KeepsARemovedBoxReadableForAnUpdateAndThenUsesItsSlotAgain) {
   EXPECT_THROW(slots.readable_slot(first), InvalidHandle);
   EXPECT_EQ(add(slots), (Handle{0, 1}));
   EXPECT_EQ(slots.removed_box(second.slot), nullptr);
+}
+
+TEST(SlotTable, SeesTheHandleThatIsNotLiveInALongList) {
+  SlotTable<2, float> slots(0);
+  std::vector<Handle> handles;
+  for (int i = 0; i < 200; ++i) handles.push_back(add(slots));
+  EXPECT_TRUE(slots.are_live(handles));
+  EXPECT_TRUE(slots.are_live({}));
+  for (const Handle wrong : {Handle{5, 1}, Handle{200, 0}, Handle{}}) {
+    for (std::size_t place = 0; place < handles.size(); ++place) {
+      const Handle right = std::exchange(handles[place], wrong);
+      ASSERT_FALSE(slots.are_live(handles)) << place;
+      handles[place] = right;
+    }
+  }
+  std::swap(handles[3], handles[150]);
+  EXPECT_TRUE(slots.are_live(handles)) << "in any order";
+  remove(slots, {100, 0});
+  EXPECT_FALSE(slots.are_live(handles));
 }
 
 TEST(SlotTable, HandsOutTheLowestFreeSlot) {
