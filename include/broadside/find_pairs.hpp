@@ -78,6 +78,29 @@ void refuse_argument() {
       "or of a std::span<const Pair>, and then options such as {.algorithm = \"grid\"}");
 }
 
+/// The number of boxes in ranges that find_pairs() takes. It refuses others.
+template <typename... Boxes>
+std::size_t box_count(const Boxes&... boxes) {
+  if constexpr ((BoxRange<Boxes> && ...))
+    return (ViewOf<Boxes>(boxes).size() + ...);
+  else
+    return 0;
+}
+
+/// Returns the pairs that find(sink) finds among `boxes` boxes. Reserves memory for most scenes' pairs: a
+/// vector that grows writes to twice as many new pages. The pages that get no pairs take no memory.
+template <typename Find>
+std::vector<Pair> collect_pairs(std::size_t boxes, const Find& find) {
+  constexpr std::size_t pairs_per_box = 3;
+  constexpr std::size_t max_reserved = std::size_t{1} << 25;
+  const std::size_t expected = pairs_per_box * boxes;
+  std::vector<Pair> pairs;
+  PairCollector collector(pairs, expected < max_reserved ? expected : max_reserved);
+  find(static_cast<PairSink&>(collector));
+  if (pairs.size() < pairs.capacity() / 2) pairs.shrink_to_fit();
+  return pairs;
+}
+
 /// Any argument but the options.
 template <typename T>
 concept NoOptions = !std::is_same_v<std::remove_cvref_t<T>, FindOptions>;
@@ -107,9 +130,8 @@ void find_pairs(const Boxes& boxes, Target&& pairs, const FindOptions& options =
 /// Returns the same pairs in a vector.
 template <typename Boxes>
 [[nodiscard]] std::vector<Pair> find_pairs(const Boxes& boxes, const FindOptions& options = {}) {
-  std::vector<Pair> pairs;
-  find_pairs(boxes, PairCollector(pairs), options);
-  return pairs;
+  return detail::collect_pairs(detail::box_count(boxes),
+                               [&](PairSink& pairs) { find_pairs(boxes, pairs, options); });
 }
 
 /// Writes each pair of a box of `left` and an overlapping box of `right` once, and flushes. A pair's `first`
@@ -133,9 +155,8 @@ void find_pairs(const Left& left, const Right& right, Target&& pairs, const Find
 template <typename Left, detail::OtherBoxes Right>
 [[nodiscard]] std::vector<Pair> find_pairs(const Left& left, const Right& right,
                                            const FindOptions& options = {}) {
-  std::vector<Pair> pairs;
-  find_pairs(left, right, PairCollector(pairs), options);
-  return pairs;
+  return detail::collect_pairs(detail::box_count(left, right),
+                               [&](PairSink& pairs) { find_pairs(left, right, pairs, options); });
 }
 
 /// Copies the boxes of things, in order: `box_of` is a function of a thing or a pointer to a member. For

@@ -23,7 +23,9 @@ BROADSIDE_PUBLIC void prefer_large_pages(void* begin, std::size_t bytes) noexcep
 /// Appends every pair to the caller's vector, which must outlive the sink.
 class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
  public:
-  explicit PairCollector(std::vector<Pair>& pairs) : pairs_(&pairs) {}
+  /// With the first pair, the vector gets a capacity of at least `expected`.
+  explicit PairCollector(std::vector<Pair>& pairs, std::size_t expected = 0)
+      : pairs_(&pairs), expected_(expected) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
@@ -35,13 +37,15 @@ class BROADSIDE_CALLERS_VECTOR PairCollector final : public PairSink {
   void grow(std::size_t size) {
     std::vector<Pair> larger;
     const std::size_t doubled = 2 * pairs_->capacity();
-    larger.reserve(size > doubled ? size : doubled);
+    const std::size_t enough = size > doubled ? size : doubled;
+    larger.reserve(enough > expected_ ? enough : expected_);
     detail::prefer_large_pages(larger.data(), larger.capacity() * sizeof(Pair));
     larger.insert(larger.end(), pairs_->data(), pairs_->data() + pairs_->size());
     pairs_->swap(larger);
   }
 
   std::vector<Pair>* pairs_;
+  std::size_t expected_;
 };
 
 /// Counts pairs without storing them. The count is complete when the search has returned.

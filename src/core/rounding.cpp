@@ -27,7 +27,7 @@ constexpr double compared_share = 0.75;
 constexpr std::size_t min_compared = 64;
 
 /// The offset of a sample.
-std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
+std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash_key(hash) >> 32); }
 
 /// Fits one axis to the finite minima of some boxes.
 LinearRounding fit_axis(std::vector<double>& minima) {
@@ -139,16 +139,22 @@ std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) 
 
 template <int D>
 std::uint64_t hash_of(std::span<const Box<D, double>> boxes, std::size_t first_place) {
-  // A weak hash is enough, and several threads can compute parts of a sum.
-  constexpr std::uint64_t golden = 0x9e3779b97f4a7c15U;
+  // Several threads or lanes can compute parts of a sum: Black et al., "UMAC" (1999), the hash NH.
   std::uint64_t hash = 0;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    // -0.0 and 0.0 are the same.
-    const std::uint64_t bits = core::bit_cast<std::uint64_t>(boxes[i].max[0] + 0.0);
-    const std::uint64_t mixed = (bits ^ (bits >> 32) ^ (first_place + i)) * golden;
-    hash += mixed ^ (mixed >> 32);
+  std::uint64_t key = hash_key(first_place * 2 * D);
+  for (const Box<D, double>& box : boxes) {
+    for (const std::array<double, D>& corner : {box.min, box.max}) {
+      for (const double coordinate : corner) {
+        const std::uint64_t bits =
+            core::bit_cast<std::uint64_t>(coordinate + 0.0);  // -0.0 and 0.0 are the same
+        const auto low = static_cast<std::uint32_t>(bits + key);
+        const auto high = static_cast<std::uint32_t>((bits >> 32) + (key >> 32));
+        hash += std::uint64_t{low} * high;
+        key += hash_key(1);
+      }
+    }
   }
-  return hash * golden;
+  return hash;
 }
 
 template <int D>

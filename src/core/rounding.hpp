@@ -35,6 +35,7 @@ class LinearRounding {
 
   double origin() const { return origin_; }
   double scale() const { return scale_; }
+  double inverse_scale() const { return inverse_scale_; }
 
  private:
   double origin_ = 0;
@@ -80,6 +81,9 @@ bool is_lossless(const std::array<LinearRounding, D>& fit, std::span<const Box<D
   }
   return true;
 }
+
+/// The key of coordinate `place` of an array in a hash of its boxes.
+constexpr std::uint64_t hash_key(std::size_t place) { return place * std::uint64_t{0x9e3779b97f4a7c15U}; }
 
 /// A hash of all boxes and their order. The hash of an array is the sum of the hashes of its parts, each with
 /// the place of its first box.

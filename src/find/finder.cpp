@@ -96,9 +96,10 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
           {filters.right_filters.size(), " right filters for a search in one set; expected none"}));
     check_filters(filters.filters, view.size(), "");
     const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
-    const std::size_t absent = check(boxes);
+    const bool are_rounded = search_.round(boxes, workers);
+    const std::size_t absent = check(boxes, are_rounded);
     return deliver(environment, pairs, [&](PairSink& sink) {
-      return search_.find(boxes, {filters, workers, nullptr, absent}, sink);
+      return search_.find(boxes, {filters, workers, nullptr, absent, are_rounded}, sink);
     });
   }
 
@@ -144,8 +145,8 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     return gathered;
   }
 
-  std::size_t check(std::span<const Box<D, Real>> boxes) {
-    const std::size_t absent = search_.check_and_count_absent(boxes, workers, bad_input);
+  std::size_t check(std::span<const Box<D, Real>> boxes, bool are_present) {
+    const std::size_t absent = are_present ? 0 : search_.check_and_count_absent(boxes, workers, bad_input);
     quarantined_.clear();
     if (absent > 0) list_invalid(boxes, 0);
     return absent;

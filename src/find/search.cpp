@@ -128,6 +128,14 @@ std::string Search<D, Real>::explanation() const {
 }
 
 template <int D, typename Real>
+bool Search<D, Real>::round(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+  if constexpr (std::is_same_v<Real, float>)
+    return false;
+  else
+    return doubles_.round(boxes, 0, workers);
+}
+
+template <int D, typename Real>
 std::optional<Statistics> Search<D, Real>::find(std::span<const Box<D, Real>> boxes,
                                                 const SearchOptions<D>& options, PairSink& pairs) {
   const core::PairSet* const ignored = core::PairSet::of(options.filters.ignored);
@@ -199,10 +207,12 @@ std::optional<Statistics> Search<D, Real>::search_present(std::span<const Box<D,
   const auto search_floats = [&](const SearchInput<D>& input, PairSink& sink) {
     return search_in_groups(input, filters, sink);
   };
-  if constexpr (std::is_same_v<Real, float>)
+  if constexpr (std::is_same_v<Real, float>) {
     return search_floats({boxes, left_count, nullptr, options.successor, options.workers}, pairs);
-  else
+  } else {
+    if (!options.are_rounded) doubles_.round(boxes, left_count, options.workers);
     return doubles_.search(boxes, left_count, options.successor, options.workers, pairs, search_floats);
+  }
 }
 
 /// Searches boxes of floats that are all present, in groups if there are filters.

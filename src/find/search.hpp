@@ -41,6 +41,8 @@ struct SearchOptions {
 
   /// The number of boxes that are not present, if it is known.
   std::optional<std::size_t> absent{};
+
+  bool are_rounded = false;  ///< whether Search::round() returned true for the boxes
 };
 
 /// Finds pairs of boxes, some of which may be absent. Boxes that are not present form no pairs. There is one
@@ -55,6 +57,10 @@ class Search {
   /// workers, each checks a range, and the exception of the first range with an invalid box is thrown.
   static std::size_t check_and_count_absent(std::span<const Box<D, Real>> boxes, const Workers& workers,
                                             BadInput bad_input, const char* which = "");
+
+  /// Rounds boxes of doubles for find(), and checks them in the same pass. Returns false for floats, or if
+  /// some boxes are not present.
+  bool round(std::span<const Box<D, Real>> boxes, const Workers& workers);
 
   /// Every pair of one set.
   std::optional<Statistics> find(std::span<const Box<D, Real>> boxes, const SearchOptions<D>& options,

@@ -21,7 +21,7 @@ const std::vector<Rule>& rules() {
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
   const std::string algorithm = core + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/[a-z_]+\.hpp")";
   const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
-                           R"(|"kernels/(overlap_flags|observed_tests|last_test)\.hpp")";
+                           R"(|"kernels/(overlap_flags|observed_tests|last_test|round_boxes)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
   const std::string bindings = library + R"(|"bindings/c/broadside\.h")";
   // Two of the library's inline functions, which need nothing else of it.
@@ -47,7 +47,7 @@ const std::vector<Rule>& rules() {
       {"src/core/", core},
       {"src/kernels/",
        standard +
-           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(moved_box|cell_axis|large_array|margins)\.hpp")" +
+           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(moved_box|cell_axis|large_array|margins|rounding)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},

@@ -39,6 +39,24 @@ TEST(FindPairs, FindsNothingAmongNoBoxesAndInOneBox) {
   EXPECT_TRUE(find_pairs(std::vector<Box2>{{{0, 0}, {1, 1}}}, {.algorithm = "brute_force"}).empty());
 }
 
+TEST(FindPairs, ReturnsAtMostTwiceTheMemoryOfItsPairs) {
+  const auto row = [](float step) {
+    std::vector<Box2> boxes;
+    for (int i = 0; i < 3000; ++i) {
+      const float x = step * static_cast<float>(i % 30);
+      const float y = static_cast<float>(i / 30) * 2;
+      boxes.push_back({{x, y}, {x + 1, y + 1}});
+    }
+    return boxes;
+  };
+  for (const float step : {0.1F, 0.4F, 0.9F, 2.0F}) {
+    const std::vector<Pair> pairs = find_pairs(row(step));
+    EXPECT_EQ(pairs.empty(), step > 1);
+    EXPECT_LE(pairs.capacity(), 2 * pairs.size() + 1) << step;
+    EXPECT_LE(find_pairs(row(step), row(step)).capacity(), 2 * find_pairs(row(step), row(step)).size() + 1);
+  }
+}
+
 TEST(FindPairs, WritesToASinkAndFlushesIt) {
   const std::vector<Box2> boxes(100, Box2{{0, 0}, {1, 1}});
   PairCounter counter;
