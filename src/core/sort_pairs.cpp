@@ -84,6 +84,48 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   return (first.steps() + second.steps()) % 2 != 0;
 }
 
+/// Sorts a moderate number of pairs into `scratch`: one pass puts them into buckets by the highest bits of
+/// the first id, about two buckets a pair, and an insertion sort puts each bucket in order. Returns false,
+/// with nothing done, if a bucket would have too many pairs for that.
+bool bucket_sort(std::span<const Pair> pairs, std::span<Pair> scratch) {
+  constexpr int max_bucket_bits = 14;
+  constexpr std::uint16_t max_in_bucket = 16;
+  std::uint32_t greatest = 0;
+  for (const Pair pair : pairs) greatest = std::max(greatest, index(pair.first));
+  const int bits = std::min({static_cast<int>(std::bit_width(2 * pairs.size() - 1)),
+                             static_cast<int>(std::bit_width(greatest)), max_bucket_bits});
+  const int shift = static_cast<int>(std::bit_width(greatest)) - bits;
+  std::array<std::uint16_t, std::size_t{1} << max_bucket_bits> all_counts;
+  const std::span<std::uint16_t> counts = std::span(all_counts).first(std::size_t{1} << bits);
+  std::fill(counts.begin(), counts.end(), std::uint16_t{0});
+  for (const Pair pair : pairs) ++counts[index(pair.first) >> shift];
+  std::uint16_t sum = 0;
+  std::uint16_t most = 0;
+  for (std::uint16_t& count : counts) {
+    most = std::max(most, count);
+    sum = static_cast<std::uint16_t>(sum + std::exchange(count, sum));
+  }
+  if (most > max_in_bucket) return false;
+  for (const Pair pair : pairs) scratch[counts[index(pair.first) >> shift]++] = pair;
+  std::uint64_t last = 0;
+  for (std::size_t i = 0; i < scratch.size(); ++i) {
+    const Pair pair = scratch[i];
+    if (key(pair) >= last) {
+      last = key(pair);
+      continue;
+    }
+    std::size_t to = i;
+    for (; to > 0 && key(pair) < key(scratch[to - 1]); --to) scratch[to] = scratch[to - 1];
+    scratch[to] = pair;
+  }
+  return true;
+}
+
+/// The numbers of pairs for bucket_sort(): fewer are sorted by comparison, and of more its buckets have too
+/// many.
+constexpr std::size_t min_bucket_sorted = 24;
+constexpr std::size_t max_bucket_sorted = std::size_t{1} << 15;
+
 /// Partitions the pairs until each part is small enough to be sorted without a checkpoint.
 void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
   constexpr std::size_t sorted_at_once = std::size_t{1} << 16;
@@ -122,6 +164,15 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint) { core::sort_part(pairs, checkpoint); }
 
 bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
+  if (pairs.size() >= core::min_bucket_sorted && pairs.size() <= core::max_bucket_sorted) {
+    std::array<Pair, max_compared_pairs> small;
+    const bool is_small = pairs.size() <= small.size();
+    const std::span<Pair> sorted = (is_small ? std::span<Pair>(small) : scratch).first(pairs.size());
+    if (core::bucket_sort(pairs, sorted)) {
+      if (is_small) std::copy(sorted.begin(), sorted.end(), pairs.begin());
+      return !is_small;
+    }
+  }
   // Counts of 2^32 or more would not fit, and never occur.
   if (pairs.size() > max_compared_pairs && pairs.size() <= 0xffffffffU)
     return core::radix_sort(pairs, scratch);

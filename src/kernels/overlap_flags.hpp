@@ -14,4 +14,9 @@ namespace broadside::kernels {
 template <int D, typename Real>
 void set_overlap_flags(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, std::uint8_t* flags);
 
+/// Writes the pairs whose boxes do not overlap, or are not both present, to `apart`, in order. Returns their
+/// number. `apart` must have room for all pairs.
+template <int D, typename Real>
+std::size_t select_apart(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, Pair* apart);
+
 }  // namespace broadside::kernels
