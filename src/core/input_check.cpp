@@ -58,12 +58,14 @@ template <int D, typename Real>
 bool is_whole(const Frame<D, Real>& frame, std::size_t known) {
   if (known == 0 || frame.boxes.size() != known || frame.changed.size() != known) return false;
   std::uint32_t differing = 0;
-  for (std::uint32_t i = 0; i < known; ++i) differing |= index(frame.changed[i]) ^ i;
+  for (std::size_t i = 0; i < known; ++i)
+    differing |= index(frame.changed[i]) ^ static_cast<std::uint32_t>(i);
   return differing == 0;
 }
 
 template <int D, typename Real>
-void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all, BadInput bad_input) {
+void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all, BadInput bad_input,
+                 bool lists_all) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), known);
   check_count(boxes.size());
@@ -72,7 +74,6 @@ void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all
                                 " boxes; expected one for each box, or none"}));
   }
   std::size_t first = checks_all ? 0 : std::min(known, boxes.size());
-  const bool lists_all = is_whole(frame, known);
   if (lists_all) first = 0;
   for (const BoxId id : lists_all ? std::span<const BoxId>() : frame.changed) {
     if (index(id) >= size) {
@@ -96,10 +97,10 @@ template bool is_whole(const Frame<2>&, std::size_t);
 template bool is_whole(const Frame<3>&, std::size_t);
 template bool is_whole(const Frame<2, double>&, std::size_t);
 template bool is_whole(const Frame<3, double>&, std::size_t);
-template void check_frame(const Frame<2>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<3>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<2, double>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<3, double>&, std::size_t, bool, BadInput);
+template void check_frame(const Frame<2>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<3>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<2, double>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<3, double>&, std::size_t, bool, BadInput, bool);
 template void check_box(const Box<2>&, std::size_t, const char*);
 template void check_box(const Box<3>&, std::size_t, const char*);
 template void check_box(const DoubleBox2&, std::size_t, const char*);

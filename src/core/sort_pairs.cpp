@@ -84,47 +84,44 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   return (first.steps() + second.steps()) % 2 != 0;
 }
 
-/// Sorts a moderate number of pairs into `scratch`: one pass puts them into buckets by the highest bits of
-/// the first id, about two buckets a pair, and an insertion sort puts each bucket in order. Returns false,
-/// with nothing done, if a bucket would have too many pairs for that.
-bool bucket_sort(std::span<const Pair> pairs, std::span<Pair> scratch) {
-  constexpr int max_bucket_bits = 14;
-  constexpr std::uint16_t max_in_bucket = 16;
+/// The numbers of pairs for bucket_sort(). Fewer are sorted by comparison; more by a radix sort, since an
+/// insertion sort of many buckets costs more in branches that no predictor foresees.
+constexpr std::size_t min_bucket_sorted = 24;
+constexpr std::size_t max_bucket_sorted = detail::max_compared_pairs;
+
+/// Sorts a few pairs into `sorted`: one pass puts them into buckets by the highest bits of the first id, at
+/// least two buckets a pair, and an insertion sort puts each bucket in order. Returns false if a bucket has
+/// too many pairs for that.
+bool bucket_sort(std::span<const Pair> pairs, std::span<Pair> sorted) {
+  constexpr int bucket_bits = 8;
+  constexpr std::uint8_t max_in_bucket = 16;
+  static_assert(max_bucket_sorted <= std::size_t{1} << (bucket_bits - 1));
   std::uint32_t greatest = 0;
   for (const Pair pair : pairs) greatest = std::max(greatest, index(pair.first));
-  const int bits = std::min({static_cast<int>(std::bit_width(2 * pairs.size() - 1)),
-                             static_cast<int>(std::bit_width(greatest)), max_bucket_bits});
-  const int shift = static_cast<int>(std::bit_width(greatest)) - bits;
-  std::array<std::uint16_t, std::size_t{1} << max_bucket_bits> all_counts;
-  const std::span<std::uint16_t> counts = std::span(all_counts).first(std::size_t{1} << bits);
-  std::fill(counts.begin(), counts.end(), std::uint16_t{0});
+  const int shift = std::max(0, static_cast<int>(std::bit_width(greatest)) - bucket_bits);
+  std::array<std::uint8_t, std::size_t{1} << bucket_bits> counts{};
   for (const Pair pair : pairs) ++counts[index(pair.first) >> shift];
-  std::uint16_t sum = 0;
-  std::uint16_t most = 0;
-  for (std::uint16_t& count : counts) {
+  std::uint8_t sum = 0;
+  std::uint8_t most = 0;
+  for (std::uint8_t& count : counts) {
     most = std::max(most, count);
-    sum = static_cast<std::uint16_t>(sum + std::exchange(count, sum));
+    sum = static_cast<std::uint8_t>(sum + std::exchange(count, sum));
   }
   if (most > max_in_bucket) return false;
-  for (const Pair pair : pairs) scratch[counts[index(pair.first) >> shift]++] = pair;
+  for (const Pair pair : pairs) sorted[counts[index(pair.first) >> shift]++] = pair;
   std::uint64_t last = 0;
-  for (std::size_t i = 0; i < scratch.size(); ++i) {
-    const Pair pair = scratch[i];
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const Pair pair = sorted[i];
     if (key(pair) >= last) {
       last = key(pair);
       continue;
     }
     std::size_t to = i;
-    for (; to > 0 && key(pair) < key(scratch[to - 1]); --to) scratch[to] = scratch[to - 1];
-    scratch[to] = pair;
+    for (; to > 0 && key(pair) < key(sorted[to - 1]); --to) sorted[to] = sorted[to - 1];
+    sorted[to] = pair;
   }
   return true;
 }
-
-/// The numbers of pairs for bucket_sort(): fewer are sorted by comparison, and of more its buckets have too
-/// many.
-constexpr std::size_t min_bucket_sorted = 24;
-constexpr std::size_t max_bucket_sorted = std::size_t{1} << 15;
 
 /// Partitions the pairs until each part is small enough to be sorted without a checkpoint.
 void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
@@ -165,12 +162,10 @@ void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint) { core::sort_part
 
 bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
   if (pairs.size() >= core::min_bucket_sorted && pairs.size() <= core::max_bucket_sorted) {
-    std::array<Pair, max_compared_pairs> small;
-    const bool is_small = pairs.size() <= small.size();
-    const std::span<Pair> sorted = (is_small ? std::span<Pair>(small) : scratch).first(pairs.size());
-    if (core::bucket_sort(pairs, sorted)) {
-      if (is_small) std::copy(sorted.begin(), sorted.end(), pairs.begin());
-      return !is_small;
+    std::array<Pair, core::max_bucket_sorted> sorted;
+    if (core::bucket_sort(pairs, std::span(sorted).first(pairs.size()))) {
+      std::copy_n(sorted.begin(), pairs.size(), pairs.begin());
+      return false;
     }
   }
   // Counts of 2^32 or more would not fit, and never occur.

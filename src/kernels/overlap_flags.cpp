@@ -162,6 +162,31 @@ void flag_overlaps(std::span<const Box<D, Real>> boxes, std::span<const Pair> pa
       });
 }
 
+/// Nearly all flags stay as they are, so that a branch pays.
+template <int D, typename Real>
+std::size_t renew_flags(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, std::uint8_t* flags,
+                        std::uint32_t* changed) {
+  std::size_t count = 0;
+  const auto change = [&](std::size_t i) {
+    flags[i] ^= 1;
+    changed[count++] = static_cast<std::uint32_t>(i);
+  };
+  for_two_pairs(
+      boxes, pairs,
+      [&](std::size_t i) {
+        const unsigned before = flags[i] | static_cast<unsigned>(flags[i + 1]) << 1;
+        const unsigned differ = two_overlap(boxes, &pairs[i]) ^ before;
+        if (HWY_LIKELY(differ == 0)) return;
+        if ((differ & 1) != 0) change(i);
+        if (differ > 1) change(i + 1);
+      },
+      [&](std::size_t i) {
+        const unsigned is = both_overlap(boxes[index(pairs[i].first)], boxes[index(pairs[i].second)]);
+        if (is != flags[i]) change(i);
+      });
+  return count;
+}
+
 /// Branchless: which pairs part cannot be predicted.
 template <int D, typename Real>
 std::size_t select_apart(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, Pair* apart) {
@@ -190,6 +215,10 @@ constexpr auto& apart_2 = select_apart<2, float>;
 constexpr auto& apart_3 = select_apart<3, float>;
 constexpr auto& double_apart_2 = select_apart<2, double>;
 constexpr auto& double_apart_3 = select_apart<3, double>;
+constexpr auto& renew_2 = renew_flags<2, float>;
+constexpr auto& renew_3 = renew_flags<3, float>;
+constexpr auto& double_renew_2 = renew_flags<2, double>;
+constexpr auto& double_renew_3 = renew_flags<3, double>;
 constexpr auto& flags_2 = flag_overlaps<2, float>;
 constexpr auto& flags_3 = flag_overlaps<3, float>;
 constexpr auto& double_flags_2 = flag_overlaps<2, double>;
@@ -205,6 +234,10 @@ HWY_EXPORT(apart_2);
 HWY_EXPORT(apart_3);
 HWY_EXPORT(double_apart_2);
 HWY_EXPORT(double_apart_3);
+HWY_EXPORT(renew_2);
+HWY_EXPORT(renew_3);
+HWY_EXPORT(double_renew_2);
+HWY_EXPORT(double_renew_3);
 HWY_EXPORT(flags_2);
 HWY_EXPORT(flags_3);
 HWY_EXPORT(double_flags_2);
@@ -242,6 +275,27 @@ std::size_t select_apart(std::span<const Box<2, double>> boxes, std::span<const 
 template <>
 std::size_t select_apart(std::span<const Box<3, double>> boxes, std::span<const Pair> pairs, Pair* apart) {
   return HWY_DYNAMIC_DISPATCH(double_apart_3)(boxes, pairs, apart);
+}
+
+template <>
+std::size_t renew_overlap_flags(std::span<const Box<2, float>> boxes, std::span<const Pair> pairs,
+                                std::uint8_t* flags, std::uint32_t* changed) {
+  return HWY_DYNAMIC_DISPATCH(renew_2)(boxes, pairs, flags, changed);
+}
+template <>
+std::size_t renew_overlap_flags(std::span<const Box<3, float>> boxes, std::span<const Pair> pairs,
+                                std::uint8_t* flags, std::uint32_t* changed) {
+  return HWY_DYNAMIC_DISPATCH(renew_3)(boxes, pairs, flags, changed);
+}
+template <>
+std::size_t renew_overlap_flags(std::span<const Box<2, double>> boxes, std::span<const Pair> pairs,
+                                std::uint8_t* flags, std::uint32_t* changed) {
+  return HWY_DYNAMIC_DISPATCH(double_renew_2)(boxes, pairs, flags, changed);
+}
+template <>
+std::size_t renew_overlap_flags(std::span<const Box<3, double>> boxes, std::span<const Pair> pairs,
+                                std::uint8_t* flags, std::uint32_t* changed) {
+  return HWY_DYNAMIC_DISPATCH(double_renew_3)(boxes, pairs, flags, changed);
 }
 
 }  // namespace broadside::kernels

@@ -86,6 +86,12 @@ std::optional<Statistics> FindAnew<D, Real>::update(const Change<D, Real>& chang
 }
 
 template <int D, typename Real>
+void FindAnew<D, Real>::report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun,
+                               PairSink& ended) {
+  report_differences<D, Real>(change, found, pairs_, parallel_, begun, ended);
+}
+
+template <int D, typename Real>
 std::optional<Statistics> FindAnew<D, Real>::find(std::span<const Box<D, Real>> boxes,
                                                   std::span<const Filter> filters, const Workers& workers,
                                                   std::size_t max_pairs, std::vector<Pair>& pairs) {

@@ -24,10 +24,11 @@ template <int D, typename Real>
 class FrameStates {
  public:
   /// Takes the next frame. `takes_all`: every box counts as changed. `lists_once`: no box is listed twice,
-  /// and each is valid or absent.
-  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, core::Parallel& parallel) {
+  /// and each is valid or absent. `lists_all`: core::is_whole() holds.
+  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, bool lists_all,
+            core::Parallel& parallel) {
     const bool had_filters = !filters_before_.empty();
-    is_whole_ = !takes_all && frame.filters.empty() != had_filters && core::is_whole(frame, known_);
+    is_whole_ = !takes_all && lists_all && frame.filters.empty() != had_filters;
     if (is_whole_) return take_whole(frame, parallel);
     if (std::exchange(now_is_old_, false)) now_ = before_;
     const std::size_t size = std::max(frame.boxes.size(), known_);

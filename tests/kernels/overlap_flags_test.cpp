@@ -1,6 +1,7 @@
 // Which pairs overlap, on every instruction set, against the definition.
 #include "kernels/overlap_flags.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -39,6 +40,19 @@ void check(const std::vector<Box<D, Real>>& boxes) {
     apart.resize(select_apart(std::span<const Box<D, Real>>(boxes),
                               std::span(std::as_const(pairs)).first(count), apart.data()));
     ASSERT_EQ(apart, expected);
+    // Flags of which every third is wrong.
+    std::vector<std::uint8_t> renewed(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count));
+    std::vector<std::uint32_t> wrong;
+    for (std::size_t i = 0; i < count; i += 3) {
+      renewed[i] ^= 1;
+      wrong.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<std::uint32_t> changed(count);
+    changed.resize(renew_overlap_flags(std::span<const Box<D, Real>>(boxes),
+                                       std::span(std::as_const(pairs)).first(count), renewed.data(),
+                                       changed.data()));
+    ASSERT_EQ(changed, wrong);
+    ASSERT_TRUE(std::equal(renewed.begin(), renewed.end(), flags.begin()));
   }
 }
 
