@@ -8,6 +8,7 @@
 #include "core/float_environment.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
+#include "kernels/all_present.hpp"
 
 namespace broadside::core {
 
@@ -38,6 +39,7 @@ void check_box(const Box<D, Real>& box, std::size_t index, const char* which) {
 template <int D, typename Real>
 std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from, BadInput bad_input,
                         const char* which) {
+  if (kernels::all_present(boxes.subspan(from))) return 0;
   std::size_t absent = 0;
   for (std::size_t i = from; i < boxes.size(); ++i) {
     if (is_present(boxes[i])) continue;
@@ -53,7 +55,17 @@ void check_count(std::size_t count) {
 }
 
 template <int D, typename Real>
-void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all, BadInput bad_input) {
+bool is_whole(const Frame<D, Real>& frame, std::size_t known) {
+  if (known == 0 || frame.boxes.size() != known || frame.changed.size() != known) return false;
+  std::uint32_t differing = 0;
+  for (std::size_t i = 0; i < known; ++i)
+    differing |= index(frame.changed[i]) ^ static_cast<std::uint32_t>(i);
+  return differing == 0;
+}
+
+template <int D, typename Real>
+void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all, BadInput bad_input,
+                 bool lists_all) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   const std::size_t size = std::max(boxes.size(), known);
   check_count(boxes.size());
@@ -62,7 +74,8 @@ void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all
                                 " boxes; expected one for each box, or none"}));
   }
   std::size_t first = checks_all ? 0 : std::min(known, boxes.size());
-  for (const BoxId id : frame.changed) {
+  if (lists_all) first = 0;
+  for (const BoxId id : lists_all ? std::span<const BoxId>() : frame.changed) {
     if (index(id) >= size) {
       throw InvalidFrame(message({"changed box ", index(id), " of a frame of ", boxes.size(),
                                   " boxes; expected an index in this or the previous frame"}));
@@ -80,10 +93,14 @@ template std::string fault_of(const Box<2>&, const std::string&, bool);
 template std::string fault_of(const Box<3>&, const std::string&, bool);
 template std::string fault_of(const DoubleBox2&, const std::string&, bool);
 template std::string fault_of(const DoubleBox3&, const std::string&, bool);
-template void check_frame(const Frame<2>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<3>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<2, double>&, std::size_t, bool, BadInput);
-template void check_frame(const Frame<3, double>&, std::size_t, bool, BadInput);
+template bool is_whole(const Frame<2>&, std::size_t);
+template bool is_whole(const Frame<3>&, std::size_t);
+template bool is_whole(const Frame<2, double>&, std::size_t);
+template bool is_whole(const Frame<3, double>&, std::size_t);
+template void check_frame(const Frame<2>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<3>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<2, double>&, std::size_t, bool, BadInput, bool);
+template void check_frame(const Frame<3, double>&, std::size_t, bool, BadInput, bool);
 template void check_box(const Box<2>&, std::size_t, const char*);
 template void check_box(const Box<3>&, std::size_t, const char*);
 template void check_box(const DoubleBox2&, std::size_t, const char*);

@@ -40,11 +40,16 @@ std::size_t check_boxes(std::span<const Box<D, Real>> boxes, std::size_t from = 
 /// Throws InvalidFrame if there are more boxes than ids.
 void check_count(std::size_t count);
 
+/// Whether a frame that follows one of `known` boxes has as many, and lists each as changed in ascending
+/// order: the usual list where all boxes move.
+template <int D, typename Real>
+bool is_whole(const Frame<D, Real>& frame, std::size_t known);
+
 /// Checks a frame that follows one of `known` boxes. Throws InvalidFrame, or InvalidInput for a box. Checks
 /// the listed boxes and the new ones from index `known` on, or every box if `checks_all`. The exception names
-/// the first invalid box, whatever the order of the list.
+/// the first invalid box, whatever the order of the list. `lists_all`: is_whole() holds.
 template <int D, typename Real>
 void check_frame(const Frame<D, Real>& frame, std::size_t known, bool checks_all,
-                 BadInput bad_input = BadInput::reject);
+                 BadInput bad_input = BadInput::reject, bool lists_all = false);
 
 }  // namespace broadside::core

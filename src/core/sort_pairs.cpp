@@ -84,6 +84,45 @@ bool radix_sort(std::span<Pair> pairs, std::span<Pair> scratch) {
   return (first.steps() + second.steps()) % 2 != 0;
 }
 
+/// The numbers of pairs for bucket_sort(). Fewer are sorted by comparison; more by a radix sort, since an
+/// insertion sort of many buckets costs more in branches that no predictor foresees.
+constexpr std::size_t min_bucket_sorted = 24;
+constexpr std::size_t max_bucket_sorted = detail::max_compared_pairs;
+
+/// Sorts a few pairs into `sorted`: one pass puts them into buckets by the highest bits of the first id, at
+/// least two buckets a pair, and an insertion sort puts each bucket in order. Returns false if a bucket has
+/// too many pairs for that.
+bool bucket_sort(std::span<const Pair> pairs, std::span<Pair> sorted) {
+  constexpr int bucket_bits = 8;
+  constexpr std::uint8_t max_in_bucket = 16;
+  static_assert(max_bucket_sorted <= std::size_t{1} << (bucket_bits - 1));
+  std::uint32_t greatest = 0;
+  for (const Pair pair : pairs) greatest = std::max(greatest, index(pair.first));
+  const int shift = std::max(0, static_cast<int>(std::bit_width(greatest)) - bucket_bits);
+  std::array<std::uint8_t, std::size_t{1} << bucket_bits> counts{};
+  for (const Pair pair : pairs) ++counts[index(pair.first) >> shift];
+  std::uint8_t sum = 0;
+  std::uint8_t most = 0;
+  for (std::uint8_t& count : counts) {
+    most = std::max(most, count);
+    sum = static_cast<std::uint8_t>(sum + std::exchange(count, sum));
+  }
+  if (most > max_in_bucket) return false;
+  for (const Pair pair : pairs) sorted[counts[index(pair.first) >> shift]++] = pair;
+  std::uint64_t last = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const Pair pair = sorted[i];
+    if (key(pair) >= last) {
+      last = key(pair);
+      continue;
+    }
+    std::size_t to = i;
+    for (; to > 0 && key(pair) < key(sorted[to - 1]); --to) sorted[to] = sorted[to - 1];
+    sorted[to] = pair;
+  }
+  return true;
+}
+
 /// Partitions the pairs until each part is small enough to be sorted without a checkpoint.
 void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
   constexpr std::size_t sorted_at_once = std::size_t{1} << 16;
@@ -122,6 +161,13 @@ void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
 void sort_pairs(std::span<Pair> pairs, Checkpoint& checkpoint) { core::sort_part(pairs, checkpoint); }
 
 bool detail::sort_pairs(std::span<Pair> pairs, std::span<Pair> scratch) {
+  if (pairs.size() >= core::min_bucket_sorted && pairs.size() <= core::max_bucket_sorted) {
+    std::array<Pair, core::max_bucket_sorted> sorted;
+    if (core::bucket_sort(pairs, std::span(sorted).first(pairs.size()))) {
+      std::copy_n(sorted.begin(), pairs.size(), pairs.begin());
+      return false;
+    }
+  }
   // Counts of 2^32 or more would not fit, and never occur.
   if (pairs.size() > max_compared_pairs && pairs.size() <= 0xffffffffU)
     return core::radix_sort(pairs, scratch);

@@ -17,6 +17,12 @@
 
 namespace broadside::track {
 
+/// Where the events of a frame are written.
+struct EventSinks {
+  PairSink& begun;
+  PairSink& ended;
+};
+
 /// A Verlet list (L. Verlet, Phys. Rev. 159, 1967; "fat" boxes in physics engines). An enlarged box changes
 /// only when its box leaves it; a FollowOrFind then updates the pairs of enlarged boxes, the candidates. The
 /// events are those of the boxes themselves.
@@ -30,11 +36,12 @@ class CandidateList {
   /// Margins that suit a sample of the changed boxes; nothing if these moved too far or not at all.
   static std::optional<core::Margins<D, Real>> margins_for(const Change<D, Real>& change);
 
-  /// Enlarges all boxes of a frame whose events have been reported, and finds the candidates. Returns the
-  /// number of tests. Throws LimitPassed, and whatever else ends a search. `changes_pairs` is set as soon as
-  /// `pairs` no longer knows the boxes themselves.
+  /// Enlarges all boxes of a frame, and finds the candidates. If `events` is not null, `pairs` must know the
+  /// pairs of the frame before, and the frame's events are written too; this takes no search for the pairs of
+  /// the boxes themselves. Returns the number of tests. Throws LimitPassed, and whatever else ends a search.
+  /// Afterwards `pairs` must forget the boxes that it knows.
   std::uint64_t start(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
-                      FollowOrFind<D, Real>& pairs, bool& changes_pairs);
+                      FollowOrFind<D, Real>& pairs, const EventSinks* events);
 
   /// Writes the events of a frame. Throws LimitPassed before anything is written.
   Statistics update(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs, PairSink& begun,
@@ -50,34 +57,54 @@ class CandidateList {
   std::size_t candidate_count() const noexcept { return candidates_.size(); }
 
   void release() noexcept {
-    core::give_back(before_, now_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
+    core::give_back(before_, now_, flags_, candidates_, holds_, toggled_, begun_, ended_, sorting_, places_);
   }
 
   std::size_t bytes() const noexcept {
-    return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, held_, begun_, ended_, spare_);
+    return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, begun_, ended_, sorting_,
+                          places_) +
+           core::bytes_of(toggled_);
   }
 
  private:
   std::size_t max_candidates() const noexcept;
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
   void enlarge_anew(const Change<D, Real>& change);
+  void find_left(const Change<D, Real>& change);
+  void grow_margins();
+  void review(const Change<D, Real>& change);
   void change_candidates(PairSink& ended);
+  std::size_t place_of(Pair pair, std::size_t from, std::size_t end) const noexcept;
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void test_candidates(std::span<const Box<D, Real>> boxes, const Workers& workers);
 
+  /// A sweep over all boxes, a share of them in each frame.
+  struct Sweep {
+    core::Margins<D, Real> largest{};  ///< the first margins
+    double share = 1;                  ///< of these
+    bool may_shrink = true;
+    std::size_t next = 0;  ///< box
+    std::size_t left = 0;  ///< boxes that left their enlarged boxes in this sweep
+  };
+
   core::Margins<D, Real> margins_{};
+  Sweep sweep_;
+  bool is_sorted_ = false;
+  bool is_followed_ = false;         // whether the FollowOrFind has started, as it does once a box leaves
+  std::optional<Statistics> found_;  // of the search for the first candidates
   EnlargedFrame last_;
   std::vector<Box<D, Real>> before_;  // enlarged boxes of the frame before
   std::vector<Box<D, Real>> now_;
   std::vector<BoxId> left_;          // boxes that left their enlarged boxes, or whose filter changed
   std::vector<std::uint8_t> flags_;  // for each box, 1 if it is in left_; all 0 between updates
-  std::vector<Pair> candidates_;     // sorted
+  std::vector<Pair> candidates_;     // sorted from the second frame on
   std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap
-  std::vector<std::uint8_t> held_;   // likewise, in the frame before
-  std::size_t holding_ = 0;          // candidates that hold
-  std::vector<Pair> begun_;          // candidates that began
+  std::vector<std::vector<std::uint32_t>> toggled_;  // by range: the candidates that began or ceased to hold
+  std::size_t holding_ = 0;                          // candidates that hold
+  std::vector<Pair> begun_;                          // candidates that began
   std::vector<Pair> ended_;
-  std::vector<Pair> spare_;
+  std::vector<Pair> sorting_;
+  std::vector<std::size_t> places_;  // among the candidates, of those that began
   core::Parallel parallel_;
 };
 

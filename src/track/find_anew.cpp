@@ -2,8 +2,7 @@
 #include "track/find_anew.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <utility>
 
 #include "broadside/sinks.hpp"
@@ -26,55 +25,48 @@ bool has_changed_filter(const Change<D, Real>& change) {
          });
 }
 
-/// Calls `report` for each pair with a changed box; if `by_boxes`, leaves out those that overlap in `boxes`.
-template <int D, typename Real, typename Report>
-void for_differing(const Change<D, Real>& change, std::span<const Pair> pairs,
-                   std::span<const Box<D, Real>> boxes, bool by_boxes, Report report) {
-  constexpr std::size_t at_once = 256;
-  std::array<Pair, at_once> differing;
-  std::array<std::uint8_t, at_once> goes_on;
-  for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
-    const std::span<const Pair> some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
-    kernels::set_overlap_flags(boxes, some, goes_on.data());
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const unsigned is_changed = change.flags[index(some[i].first)] | change.flags[index(some[i].second)];
-      differing[count] = some[i];
-      count += is_changed & ((goes_on[i] & static_cast<unsigned>(by_boxes)) ^ 1U);
+/// Calls write(some pairs, sink) for all pairs, `sink` having room for as many, and commits what it wrote.
+template <typename Write>
+void for_pairs(std::span<const Pair> pairs, core::Parallel& parallel, PairSink& sink, Write write) {
+  const std::size_t all_parts = (pairs.size() + pairs_at_once - 1) / pairs_at_once;
+  parallel.search(all_parts, sink, [&](core::Range parts, std::size_t, PairSink& events) {
+    const std::size_t end = std::min(parts.end * pairs_at_once, pairs.size());
+    for (std::size_t begin = parts.begin * pairs_at_once; begin < end; begin += PairSink::max_room) {
+      const auto some = pairs.subspan(begin, std::min(PairSink::max_room, end - begin));
+      events.commit(write(some, events.room(some.size())));
     }
-    for (const Pair pair : std::span(differing).first(count)) report(pair);
-  }
+    return Statistics{};
+  });
 }
 
 /// Writes the pairs that began and ended. `found` are all pairs that hold now, and `kept` all that held in
 /// the frame before.
 ///
-/// No pair is looked up in the other list: its boxes tell whether it was a pair in the other frame, and two
-/// boxes at rest need no test. Most pairs persist, so that is tested first.
+/// No pair is looked up in the other list: its boxes tell whether it was a pair in the other frame, unless
+/// filters have changed.
 template <int D, typename Real>
 void report_differences(const Change<D, Real>& change, std::span<const Pair> found,
                         std::span<const Pair> kept, core::Parallel& parallel, PairSink& begun,
                         PairSink& ended) {
-  const bool by_boxes = !has_changed_filter(change);
   parallel.start(change.workers, (found.size() + kept.size()) / pairs_per_box);
-  const auto report = [&](std::span<const Pair> pairs, std::span<const Box<D, Real>> other_frame,
-                          PairSink& sink, auto is_event) {
-    const std::size_t all_parts = (pairs.size() + pairs_at_once - 1) / pairs_at_once;
-    parallel.search(all_parts, sink, [&](core::Range parts, std::size_t, PairSink& events) {
-      const std::size_t begin = parts.begin * pairs_at_once;
-      const std::size_t end = std::min(parts.end * pairs_at_once, pairs.size());
-      for_differing<D, Real>(change, pairs.subspan(begin, end - begin), other_frame, by_boxes,
-                             [&](Pair pair) {
-                               if (is_event(pair)) events.add(pair.first, pair.second);
-                             });
-      return Statistics{};
+  if (!has_changed_filter(change)) {
+    for_pairs(found, parallel, begun, [&](std::span<const Pair> some, Pair* events) {
+      return kernels::select_apart(change.before, some, events);
     });
-  };
-  report(found, change.before, begun, [&change](Pair pair) {
-    return !change.held(pair.first, pair.second) && change.holds(pair.first, pair.second);
+    for_pairs(kept, parallel, ended, [&](std::span<const Pair> some, Pair* events) {
+      return kernels::select_apart(change.now, some, events);
+    });
+    return;
+  }
+  for_pairs(found, parallel, begun, [&](std::span<const Pair> some, Pair* events) {
+    return std::copy_if(some.begin(), some.end(), events,
+                        [&](Pair pair) { return !change.held(pair.first, pair.second); }) -
+           events;
   });
-  report(kept, change.now, ended, [&change](Pair pair) {
-    return !change.holds(pair.first, pair.second) && change.held(pair.first, pair.second);
+  for_pairs(kept, parallel, ended, [&](std::span<const Pair> some, Pair* events) {
+    return std::copy_if(some.begin(), some.end(), events,
+                        [&](Pair pair) { return !change.holds(pair.first, pair.second); }) -
+           events;
   });
 }
 
@@ -91,6 +83,12 @@ std::optional<Statistics> FindAnew<D, Real>::update(const Change<D, Real>& chang
   std::swap(pairs_, found_);
   has_pairs_ = true;
   return statistics;
+}
+
+template <int D, typename Real>
+void FindAnew<D, Real>::report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun,
+                               PairSink& ended) {
+  report_differences<D, Real>(change, found, pairs_, parallel_, begun, ended);
 }
 
 template <int D, typename Real>

@@ -39,6 +39,19 @@ class FindAnew {
   std::optional<Statistics> update(const Change<D, Real>& change, std::size_t max_pairs, PairSink& begun,
                                    PairSink& ended);
 
+  /// Whether the pairs of the last frame are known.
+  bool knows_pairs() const noexcept { return has_pairs_; }
+
+  /// Writes the events of a change whose pairs were found in another way. The pairs of the frame before must
+  /// be known.
+  void report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun, PairSink& ended);
+
+  /// Exchanges an empty list for one whose memory has been used, if that is longer.
+  void lend_memory(std::vector<Pair>& pairs) noexcept {
+    if (found_.capacity() > pairs.capacity()) found_.swap(pairs);
+    pairs.clear();
+  }
+
   /// Writes all pairs. Throws LimitPassed if the search makes far more tests than justified.
   std::optional<Statistics> find_within_limits(std::span<const Box<D, Real>> boxes,
                                                std::span<const Filter> filters, const Workers& workers,

@@ -54,6 +54,18 @@ class FollowOrFind {
     return find_anew_->find_within_limits(boxes, filters, workers, pairs);
   }
 
+  /// Whether the last update found all pairs anew, so that report() can be called.
+  bool knows_pairs() const noexcept { return find_anew_ && find_anew_->knows_pairs(); }
+
+  /// As FindAnew::report().
+  void report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun, PairSink& ended) {
+    changed_ = change.changed.size();
+    find_anew_->report(change, found, begun, ended);
+  }
+
+  /// As FindAnew::lend_memory().
+  void lend_memory(std::vector<Pair>& pairs) noexcept { find_anew_->lend_memory(pairs); }
+
   /// Prepares to follow these boxes from the next update on. Call it after find_within_limits(), with the
   /// number of pairs that it found and its statistics.
   void start_at(std::span<const Box<D, Real>> boxes, std::size_t pairs,

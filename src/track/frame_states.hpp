@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "broadside/error.hpp"
@@ -14,6 +15,7 @@
 #include "core/grow.hpp"
 #include "core/input_check.hpp"
 #include "core/parallel.hpp"
+#include "kernels/all_present.hpp"
 
 namespace broadside::track {
 
@@ -22,10 +24,14 @@ template <int D, typename Real>
 class FrameStates {
  public:
   /// Takes the next frame. `takes_all`: every box counts as changed. `lists_once`: no box is listed twice,
-  /// and each is valid or absent.
-  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, core::Parallel& parallel) {
-    const std::size_t size = std::max(frame.boxes.size(), known_);
+  /// and each is valid or absent. `lists_all`: core::is_whole() holds.
+  void take(const Frame<D, Real>& frame, bool takes_all, bool lists_once, bool lists_all,
+            core::Parallel& parallel) {
     const bool had_filters = !filters_before_.empty();
+    is_whole_ = !takes_all && lists_all && frame.filters.empty() != had_filters;
+    if (is_whole_) return take_whole(frame, parallel);
+    if (std::exchange(now_is_old_, false)) now_ = before_;
+    const std::size_t size = std::max(frame.boxes.size(), known_);
     core::resize_by_eighths(before_, size, absent_box<D, Real>());
     core::resize_by_eighths(now_, size, absent_box<D, Real>());
     if (!frame.filters.empty() || had_filters) {
@@ -94,6 +100,7 @@ class FrameStates {
       quarantined_.insert(quarantined_.end(), invalid_.begin(), invalid_.end());
       std::sort(quarantined_.begin(), quarantined_.end());
     }
+    if (is_whole_) return keep_whole();
     const auto keep_changed = [this](core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i) {
         before_[index(changed_[i])] = now_[index(changed_[i])];
@@ -133,9 +140,36 @@ class FrameStates {
   }
 
  private:
+  /// Takes a frame that lists every box: array by array, without a look at the list.
+  void take_whole(const Frame<D, Real>& frame, core::Parallel& parallel) {
+    changed_.assign(frame.changed.begin(), frame.changed.end());
+    invalid_.clear();
+    std::fill(flags_.begin(), flags_.end(), std::uint8_t{1});
+    parallel.for_ranges(known_, [&](core::Range range, std::size_t) {
+      std::copy(&frame.boxes[range.begin], &frame.boxes[range.begin] + range.size(), &now_[range.begin]);
+    });
+    std::copy(frame.filters.begin(), frame.filters.end(), filters_now_.begin());
+    if (kernels::all_present(std::span<const Box<D, Real>>(now_))) return;
+    for (std::size_t i = 0; i < known_; ++i) {
+      if (!core::is_invalid(now_[i])) continue;
+      now_[i] = absent_box<D, Real>();
+      invalid_.push_back(BoxId(i));
+    }
+  }
+
+  /// Exchanges the two states instead of copying one. The next frame that is not whole copies it.
+  void keep_whole() noexcept {
+    before_.swap(now_);
+    now_is_old_ = true;
+    std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
+    std::copy_n(filters_now_.begin(), filters_before_.size(), filters_before_.begin());
+  }
+
   std::vector<Box<D, Real>> before_;
   std::size_t known_ = 0;  // an update that failed may have left before_ longer
   std::vector<Box<D, Real>> now_;
+  bool is_whole_ = false;               // whether the frame lists every box in ascending order
+  bool now_is_old_ = false;             // whether now_ has the state before that in before_
   std::vector<Filter> filters_before_;  // both empty until there are filters
   std::vector<Filter> filters_now_;     // keep() does not shorten it: an index may use it
   std::vector<BoxId> changed_;

@@ -67,12 +67,13 @@ class BROADSIDE_HIDDEN Tracker<D, Real>::State {
   State(track::TrackerPlan<D> plan, std::size_t threads)
       : workers{.threads = threads}, updater(std::move(plan)) {}
 
-  /// Takes a frame. `lists_once`: each changed box is listed once, and is valid or absent.
-  std::optional<Statistics> update(const Frame<D, Real>& frame, bool lists_once, PairSink& begun_sink,
-                                   PairSink& ended_sink) {
+  /// Takes a frame. `lists_once`: each changed box is listed once, and is valid or absent. `lists_all`:
+  /// core::is_whole() holds.
+  std::optional<Statistics> update(const Frame<D, Real>& frame, bool lists_once, bool lists_all,
+                                   PairSink& begun_sink, PairSink& ended_sink) {
     const bool rebuild = std::exchange(is_dirty, true);  // until the end of this update
     parallel.start(workers, frame.changed.size() / changes_per_box);
-    frames.take(frame, rebuild, lists_once, parallel);
+    frames.take(frame, rebuild, lists_once, lists_all, parallel);
     ignored.take(frame.ignored, frame.ignored_changed, rebuild);
     find_events(frames.change(rebuild, workers));
     deliver(begun_sink, ended_sink);
@@ -169,15 +170,16 @@ template <int D, typename Real>
 std::optional<Statistics> Tracker<D, Real>::update(const Frame<D, Real>& frame, PairSink& begun,
                                                    PairSink& ended) {
   const core::DefaultEnvironment environment;
-  core::check_frame(frame, state_->frames.size(), state_->is_dirty, state_->bad_input);
-  return state_->update(frame, false, begun, ended);
+  const bool lists_all = core::is_whole(frame, state_->frames.size());
+  core::check_frame(frame, state_->frames.size(), state_->is_dirty, state_->bad_input, lists_all);
+  return state_->update(frame, false, lists_all, begun, ended);
 }
 
 template <int D, typename Real>
 std::optional<Statistics> Tracker<D, Real>::update_checked(const Frame<D, Real>& frame, PairSink& begun,
                                                            PairSink& ended) {
   const core::DefaultEnvironment environment;
-  return state_->update(frame, true, begun, ended);
+  return state_->update(frame, true, core::is_whole(frame, state_->frames.size()), begun, ended);
 }
 
 template <int D, typename Real>

@@ -36,10 +36,13 @@ class Updater {
     was_enlarged_ =
         boxes_ == KnownBoxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
     if (was_enlarged_) return statistics_;
+    const bool may_enlarge = may_enlarge_ && !change.rebuild;
+    const bool knows_pairs = pairs_.knows_pairs();
+    const EventSinks events{begun, ended};
+    if (may_enlarge && knows_pairs && tries(change) && enlarge(change, &events)) return statistics_;
     update_exactly(change, begun, ended);
-    if (may_enlarge_ && !change.rebuild && !pairs_.has_compared_all() &&
-        policy_.tries(change.now.size(), change.changed.size()))
-      enlarge(change);
+    if (statistics_) statistics_->tests += std::exchange(tests_in_vain_, 0);
+    if (may_enlarge && !knows_pairs && !pairs_.has_compared_all() && tries(change)) enlarge(change, nullptr);
     return statistics_;
   }
 
@@ -102,34 +105,39 @@ class Updater {
     statistics_ = pairs_.update(exact, begun, ended);
   }
 
-  /// Enlarges the boxes after a frame that was handled in another way, if they moved little enough.
-  void enlarge(const Change<D, Real>& change) {
+  bool tries(const Change<D, Real>& change) {
+    return policy_.tries(change.now.size(), change.changed.size());
+  }
+
+  /// Enlarges the boxes if they moved little enough. If `events` is null, the frame was handled in another
+  /// way; else its events are written, or the result is false.
+  bool enlarge(const Change<D, Real>& change, const EventSinks* events) {
     const auto margins = CandidateList<D, Real>::margins_for(change);
-    if (!margins) return;
-    Statistics statistics = statistics_.value_or(Statistics{});
-    bool changes_pairs = false;
-    const auto give_up = [&] {
-      if (changes_pairs) boxes_ = KnownBoxes::ending;
-      stop_enlarging();
-    };
+    if (!margins) return false;
+    Statistics statistics = events == nullptr ? statistics_.value_or(Statistics{}) : Statistics{};
     try {
-      statistics.tests += candidates_.start(change, *margins, pairs_, changes_pairs);
+      statistics.tests += candidates_.start(change, *margins, pairs_, events);
+      pairs_.forget();
       boxes_ = KnownBoxes::enlarged;
       policy_.started();
+      statistics_ = statistics;
+      return true;
     } catch (const LimitPassed&) {
       statistics.tests += candidates_.candidate_count();  // those found so far
       policy_.limit_passed();
-      give_up();
     } catch (const std::bad_alloc&) {
-      // The frame's own events are complete.
       policy_.out_of_memory();
-      give_up();
     } catch (...) {  // thrown by a checkpoint or an executor
       policy_.interrupted();
-      give_up();
+      stop_enlarging();
       throw;
     }
-    statistics_ = statistics;
+    stop_enlarging();
+    if (events == nullptr)
+      statistics_ = statistics;
+    else
+      tests_in_vain_ = statistics.tests;
+    return false;
   }
 
   /// From the next frame on, pairs are those of the boxes themselves.
@@ -151,7 +159,8 @@ class Updater {
   FollowOrFind<D, Real> pairs_;
   CandidateList<D, Real> candidates_;
   KnownBoxes boxes_ = KnownBoxes::exact;
-  bool was_enlarged_ = false;  // whether the last update tested candidates
+  std::uint64_t tests_in_vain_ = 0;  // of a search for candidates that passed a limit
+  bool was_enlarged_ = false;        // whether the last update tested candidates
   std::optional<Statistics> statistics_;
 };
 

@@ -30,7 +30,7 @@ std::vector<Pair> sorted_unique(std::vector<Pair> pairs) {
 }
 
 /// The counts about which its ways change: none, one, the most that are compared, and more.
-constexpr std::size_t counts[] = {0, 1, 2, 511, 512, 513, 1024, 5000};
+constexpr std::size_t counts[] = {0, 1, 2, 23, 24, 127, 128, 129, 1024, 5000};
 
 TEST(SortUnique, SortsPairsOfIdsOfEveryMagnitude) {
   std::vector<Pair> scratch;

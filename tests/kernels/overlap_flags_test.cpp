@@ -1,7 +1,11 @@
 // Which pairs overlap, on every instruction set, against the definition.
 #include "kernels/overlap_flags.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,6 +29,30 @@ void check(const std::vector<Box<D, Real>>& boxes) {
     ASSERT_EQ(flags[i] == 1, is_present(a) && is_present(b) && overlap(a, b))
         << index(pairs[i].first) << " " << index(pairs[i].second);
     ASSERT_LE(flags[i], 1);
+  }
+  // Any number of pairs, since the last one of an odd number is tested by itself.
+  for (std::size_t count = pairs.size() - 3; count <= pairs.size(); ++count) {
+    std::vector<Pair> expected;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (flags[i] == 0) expected.push_back(pairs[i]);
+    }
+    std::vector<Pair> apart(count);
+    apart.resize(select_apart(std::span<const Box<D, Real>>(boxes),
+                              std::span(std::as_const(pairs)).first(count), apart.data()));
+    ASSERT_EQ(apart, expected);
+    // Flags of which every third is wrong.
+    std::vector<std::uint8_t> renewed(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count));
+    std::vector<std::uint32_t> wrong;
+    for (std::size_t i = 0; i < count; i += 3) {
+      renewed[i] ^= 1;
+      wrong.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<std::uint32_t> changed(count);
+    changed.resize(renew_overlap_flags(std::span<const Box<D, Real>>(boxes),
+                                       std::span(std::as_const(pairs)).first(count), renewed.data(),
+                                       changed.data()));
+    ASSERT_EQ(changed, wrong);
+    ASSERT_TRUE(std::equal(renewed.begin(), renewed.end(), flags.begin()));
   }
 }
 

@@ -207,6 +207,41 @@ TEST(Change, ShowsWhatItsListsSayInEveryFrame) {
   EXPECT_EQ(follower.changed(), 0u) << "the flags of a failed frame are gone";
 }
 
+TEST(Change, ShowsTheSameWhetherOrNotAFrameListsEveryBoxInOrder) {
+  auto owned = std::make_unique<CheckingFollower>();
+  const CheckingFollower& follower = *owned;
+  Tracker<2> tracker(std::move(owned));
+  tracker.set_bad_input(BadInput::quarantine);
+  std::vector<Box2> boxes = {at(0), at(5), at(5), at(9)};
+  std::vector<Filter> filters(4);
+  const Ids in_order = {BoxId{0}, BoxId{1}, BoxId{2}, BoxId{3}};
+  const Ids out_of_order = {BoxId{3}, BoxId{1}, BoxId{2}, BoxId{0}};
+  EXPECT_EQ(update(tracker, {boxes, {}, filters}), (PairEvents{{pair(1, 2)}, {}}));
+  Box2 inverted = at(5);
+  std::swap(inverted.min, inverted.max);
+  for (const Ids& all : {in_order, out_of_order, in_order, in_order}) {
+    boxes = {at(0), inverted, at(9), at(0)};
+    EXPECT_EQ(update(tracker, {boxes, all, filters}), (PairEvents{{pair(0, 3)}, {pair(1, 2)}}));
+    EXPECT_EQ(Ids(tracker.quarantined().begin(), tracker.quarantined().end()), (Ids{BoxId{1}}));
+    filters[0].mask = 0;
+    EXPECT_EQ(update(tracker, {boxes, all, filters}), (PairEvents{{}, {pair(0, 3)}}));
+    boxes[1] = at(9);  // the others must be those of the frame before, whichever array had them
+    EXPECT_EQ(update(tracker, {boxes, Ids{BoxId{1}}, filters}), (PairEvents{{pair(1, 2)}, {}}));
+    EXPECT_TRUE(tracker.quarantined().empty());
+    boxes[0] = at(9);
+    filters[0] = {};
+    FailingSink failing;
+    EXPECT_THROW(tracker.update({boxes, all, filters}, failing, failing), std::runtime_error);
+    boxes = {at(0), at(5), at(5), at(9)};
+    EXPECT_EQ(update(tracker, {boxes, all, filters}), PairEvents());
+    EXPECT_TRUE(follower.rebuilt());
+    const Frame<2> last = tracker.last_frame();
+    EXPECT_TRUE(std::equal(last.boxes.begin(), last.boxes.end(), boxes.begin(), boxes.end()));
+    EXPECT_EQ(update(tracker, {boxes, all, filters}), PairEvents());
+    EXPECT_FALSE(follower.rebuilt());
+  }
+}
+
 TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
   auto owned = std::make_unique<CheckingFollower>();
   const CheckingFollower& follower = *owned;

@@ -32,6 +32,7 @@ const std::vector<MotionBenchmark>& parts() {
       {"recorded", "recorded scenes and a pile at rest, 5,000 bodies, against the engine's own broad phase",
        recorded},
       {"worlds", "World with its moves, exact and enlarged events, over its tracker alone", worlds},
+      {"frames", "a tracker over the search alone where all boxes move, and its worst frames", frames},
   };
   return list;
 }
@@ -54,6 +55,9 @@ int run(int count, char** arguments) {
   program.add_option("--traces", options.traces, "Files in motion, for the part worlds: instead of scenes")
       ->delimiter(',')
       ->check(CLI::ExistingFile);
+  program.add_option("--kinds", options.kinds, "Motions, for the part frames")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"straight", "tremble", "alike", "churn"}));
   program.add_option("--dimension", options.dimensions, "2, 3 or 2,3")
       ->delimiter(',')
       ->check(CLI::Range(2, 3));

@@ -15,7 +15,8 @@ namespace broadside::bench {
 struct MotionBenchmarkOptions {
   std::string algorithms{};  ///< a selection for Catalogue::select
   std::vector<std::string> scenes{};
-  std::vector<std::string> traces{};  ///< files
+  std::vector<std::string> traces{};              ///< files
+  std::vector<std::string> kinds = {"straight"};  ///< of motion, for the part frames
   std::vector<int> dimensions = {2, 3};
   std::size_t boxes = 0;
   std::vector<double> moving{};
@@ -67,6 +68,9 @@ void recorded(const MotionBenchmarkOptions& options);
 /// Worlds with and without enlarged boxes, over their tracker alone and over an engine's broad phase; in
 /// scenes or in files.
 void worlds(const MotionBenchmarkOptions& options);
+
+/// A tracker over the search alone, in motions that go on alike, and its worst frame over the median.
+void frames(const MotionBenchmarkOptions& options);
 
 /// Prints the scene, its boxes and the machine.
 void print_heading(const std::string& what, int dimension, std::size_t boxes, const Turns& turns);
