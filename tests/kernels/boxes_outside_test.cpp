@@ -13,7 +13,7 @@ namespace broadside::kernels {
 namespace {
 
 template <int D, typename Real>
-void check_every_place() {
+void check_outside_at_every_place() {
   Box<D, Real> inner;
   inner.min.fill(1);
   inner.max.fill(2);
@@ -49,8 +49,8 @@ void check_every_place() {
 
 TEST(BoxesOutside, AreSeenAtEveryPlaceAndAxis) {
   on_each_instruction_set([]<int D>() {
-    check_every_place<D, float>();
-    check_every_place<D, double>();
+    check_outside_at_every_place<D, float>();
+    check_outside_at_every_place<D, double>();
   });
 }
 
