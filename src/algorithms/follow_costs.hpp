@@ -4,7 +4,7 @@
 // shows the result: auto over the better of following and finding anew, with 0.1 to 100 % of the boxes moving
 // (and a line per algorithm with --algorithms). Measured with 10,000 to 100,000 boxes, uniform, mixed and
 // clustered. Finding anew is no slower once this share of the boxes moves: 0.45 for brute force, 0.3 (2D) and
-// 0.2 (3D) for trees and cells, about 500 / (4000 + tests) for a sweep.
+// 0.2 (3D) for trees, 0.25 for cells, about 500 / (4000 + tests) for a sweep.
 #pragma once
 
 #include "broadside/algorithm.hpp"
@@ -20,7 +20,7 @@ inline constexpr std::size_t boxes_for_brute_force = 320;
 
 /// Also the cost of auto's searches.
 template <int D>
-inline constexpr FindCosts grid_finding = {.box = D == 2 ? 40.0 : 65.0};
+inline constexpr FindCosts grid_finding = {.box = D == 2 ? 32.0 : 62.0};
 template <int D>
 inline constexpr FollowCosts grid_following = {.start = D == 2 ? 15 : 18,
                                                .mover = D == 2 ? 110 : 140,

@@ -22,7 +22,7 @@ const std::vector<Rule>& rules() {
   const std::string algorithm = core + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/[a-z_]+\.hpp")";
   const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
                            R"(|"kernels/(overlap_flags|observed_tests|last_test|round_boxes)\.hpp")";
-  const std::string track = find + R"(|"track/[a-z_]+\.hpp")";
+  const std::string track = find + R"(|"track/[a-z_]+\.hpp"|"kernels/(all_present|boxes_outside)\.hpp")";
   const std::string bindings = library + R"(|"bindings/c/broadside\.h")";
   // Two of the library's inline functions, which need nothing else of it.
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
@@ -44,6 +44,7 @@ const std::vector<Rule>& rules() {
       {"src/core/thread_pool", core + R"(|<unistd\.h>)"},
       {"src/core/large_array", core + R"(|<sys/mman\.h>|<unistd\.h>)"},
       {"src/core/float_environment", core + R"(|<[a-z]+intrin\.h>)"},
+      {"src/core/input_check", core + R"(|"kernels/all_present\.hpp")"},
       {"src/core/", core},
       {"src/kernels/",
        standard +
@@ -53,7 +54,7 @@ const std::vector<Rule>& rules() {
       {"src/algorithms/", algorithm},
       {"src/find/", find},
       {"src/track/", track},
-      {"src/world/", track + R"(|"world/[a-z_/]+\.hpp"|"kernels/(all_present|enlarged_boxes)\.hpp")"},
+      {"src/world/", track + R"(|"world/[a-z_/]+\.hpp"|"kernels/enlarged_boxes\.hpp")"},
       {"src/debug/", core + R"(|"debug/[a-z_]+\.hpp"|"algorithms/registry\.hpp")"},
       {"tools/paper/listings/",
        library + R"(|"paper/listings/[a-z_0-9]+\.hpp"|"kernels/observed_tests\.hpp")"},
