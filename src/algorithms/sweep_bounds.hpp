@@ -61,8 +61,10 @@ bool finds_few(const kernels::Run<D>& run, std::size_t max_tests_of_one, const E
     for (std::size_t other = at + 1; other < end; other += stride) {
       // Without a branch, which would be unpredictable.
       bool overlaps = (run.dedup_mask[at] & run.dedup_mask[other]) == 0;
-      for (int axis = 0; axis < D; ++axis)
-        overlaps &= (run.min[axis][other] <= run.max[axis][at]) & (run.min[axis][at] <= run.max[axis][other]);
+      for (int axis = 0; axis < D; ++axis) {
+        overlaps &= run.min[axis][other] <= run.max[axis][at];
+        overlaps &= run.min[axis][at] <= run.max[axis][other];
+      }
       own_tests += stride;
       own_hits += overlaps ? stride : 0;
     }

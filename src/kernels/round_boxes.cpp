@@ -87,7 +87,7 @@ class BoxRounder {
   }
 
   /// Rounds `count` boxes, a multiple of `lanes`, from place `first` on.
-  template <bool looks_for_loss>
+  template <bool LooksForLoss>
   HWY_INLINE void round_some(std::size_t first, std::size_t count) {
     const Doubles d;
     const Words words;
@@ -111,7 +111,7 @@ class BoxRounder {
         const auto is_ordered = hn::VecFromMask(d, hn::Le(value, hn::LoadU(d, from + k + D)));
         wrong = hn::Or(
             wrong, hn::AndNot(hn::BitCast(words, is_ordered), hn::Load(words, is_min_.values.data() + k)));
-        if constexpr (looks_for_loss) {
+        if constexpr (LooksForLoss) {
           const Vector inverse = hn::Load(d, inverse_scale_.values.data() + k);
           const Vector back = hn::Add(origin, hn::Mul(hn::PromoteTo(d, rounded), inverse));
           lost = hn::Or(lost, hn::BitCast(words, hn::VecFromMask(d, hn::Ne(back, value))));
