@@ -41,7 +41,7 @@ namespace {
 constexpr std::size_t max_uneven_tile = 4096;
 
 /// The unevenness up to which they are, with more boxes.
-constexpr double max_unevenness = 5;
+constexpr double max_unevenness_of_a_tile = 5;
 
 /// Places of a tile that a thread sweeps at a time.
 constexpr std::size_t places_at_once = 64;
@@ -173,7 +173,7 @@ class GridSearcher final : public Searcher<D> {
     const auto sort = [&](const TileCells<D>& cells) {
       tile_cells_ = cells;
       const double limit =
-          boxes.size() > max_uneven_tile ? max_unevenness : std::numeric_limits<double>::infinity();
+          boxes.size() > max_uneven_tile ? max_unevenness_of_a_tile : std::numeric_limits<double>::infinity();
       return tile_.sort(boxes, cells, left_count, limit);
     };
     const auto stats = TileStats<D>::of(boxes);

@@ -8,7 +8,7 @@
 namespace broadside::algorithm {
 namespace {
 
-constexpr float largest = std::numeric_limits<float>::max();
+constexpr float max_float = std::numeric_limits<float>::max();
 
 /// The number of boxes that are looked at.
 constexpr std::size_t max_looked_at = 1024;
@@ -29,7 +29,7 @@ core::CellAxis cell_axis(float low, float high, float cells) {
   const double range = range_of(low, high);
   // Neither zero nor infinite: the product with an infinite or a zero distance would be NaN.
   const double per_unit =
-      std::clamp<double>(range > 0 ? cells / range : 1, std::numeric_limits<float>::min(), largest);
+      std::clamp<double>(range > 0 ? cells / range : 1, std::numeric_limits<float>::min(), max_float);
   return {.low = low, .per_unit = static_cast<float>(per_unit), .last = cells - 1};
 }
 
@@ -38,8 +38,8 @@ core::CellAxis cell_axis(float low, float high, float cells) {
 template <int D>
 TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
   TileStats stats;
-  stats.low.fill(largest);
-  stats.high.fill(-largest);
+  stats.low.fill(max_float);
+  stats.high.fill(-max_float);
   stats.side.fill(0);
   const std::size_t count = std::min(boxes.size(), max_looked_at);
   for (std::size_t i = 0; i < count; ++i) {
@@ -48,12 +48,12 @@ TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
       const float min = box.min[axis];
       const float side = box.max[axis] - min;
       // What is infinite does not count.
-      stats.low[axis] = min < stats.low[axis] && min >= -largest ? min : stats.low[axis];
-      stats.high[axis] = min > stats.high[axis] && min <= largest ? min : stats.high[axis];
-      stats.side[axis] += side <= largest ? side : 0;
+      stats.low[axis] = min < stats.low[axis] && min >= -max_float ? min : stats.low[axis];
+      stats.high[axis] = min > stats.high[axis] && min <= max_float ? min : stats.high[axis];
+      stats.side[axis] += side <= max_float ? side : 0;
     }
   }
-  for (float& side : stats.side) side = std::min(side / static_cast<float>(count), largest);
+  for (float& side : stats.side) side = std::min(side / static_cast<float>(count), max_float);
   return stats;
 }
 
@@ -63,7 +63,7 @@ TileStats<D> TileStats<D>::of(const core::Sample<D>& sample) {
   for (int axis = 0; axis < D; ++axis) {
     stats.low[axis] = sample[axis].low;
     stats.high[axis] = sample[axis].high;
-    stats.side[axis] = static_cast<float>(std::min<double>(sample[axis].mean_extent, largest));
+    stats.side[axis] = static_cast<float>(std::min<double>(sample[axis].mean_extent, max_float));
   }
   return stats;
 }
