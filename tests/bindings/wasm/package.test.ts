@@ -30,7 +30,7 @@ const example = "import { load } from \"broadside\";\n" +
  */
 const limits: readonly (readonly [string, string, number])[] = [
   ["index.js", "broadside-2d.js", 170_000], ["index.js", "broadside-3d.js", 175_000],
-  ["pairs.js", "broadside-pairs-2d.js", 140_000], ["pairs.js", "broadside-pairs-3d.js", 145_000],
+  ["pairs.js", "broadside-pairs-2d.js", 147_000], ["pairs.js", "broadside-pairs-3d.js", 150_000],
 ];
 
 for (const [entry, module, most] of limits) {
