@@ -42,7 +42,7 @@ const minWaste: Record<string, { waste: number; times: number }> = {
   one_point: { waste: 1000, times: 100 },
   sorted_line: { waste: 400, times: 100 },
   teleporting: { waste: 15, times: 5 },
-  one_huge_among_many: { waste: 150, times: 10 },
+  one_huge_among_many: { waste: 150, times: 7 },
   falling_for_ever: { waste: 80, times: 8 },
   clustered: { waste: 40, times: 2 },
   pile_at_rest: { waste: 5, times: 100 },
