@@ -10,7 +10,7 @@
 namespace broadside::core {
 namespace {
 
-/// The float whose sort_key() is `key`.
+/// The inverse of sort_key().
 float float_of(std::uint32_t key) {
   return core::bit_cast<float>(key ^ (key >> 31 != 0 ? 0x80000000U : 0xffffffffU));
 }

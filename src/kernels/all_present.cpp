@@ -4,10 +4,11 @@
 #include "kernels/all_present.hpp"
 
 #include <cstddef>
-#include <cstdint>
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "kernels/box_coordinates.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
@@ -28,20 +29,12 @@ HWY_INLINE bool are_present(const Boxes& boxes) {
 using Four = hn::FixedTag<float, 4>;
 using Vector = hn::Vec<Four>;
 
-/// Four coordinates of a box, from number `first` on.
-template <int D>
-HWY_INLINE Vector coordinates(const Box<D>& box, std::size_t first) {
-  const hn::FixedTag<std::uint8_t, 16> bytes;
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(&box);
-  return hn::BitCast(Four(), hn::LoadU(bytes, begin + first * sizeof(float)));
-}
-
 HWY_INLINE bool are_present(std::span<const Box<2>, 8> boxes) {
   const Four four;
   auto all = hn::FirstN(four, 4);
   for (std::size_t i = 0; i < boxes.size(); i += 2) {
-    const Vector first = coordinates(boxes[i], 0);
-    const Vector second = coordinates(boxes[i + 1], 0);
+    const Vector first = load_coordinates(four, &boxes[i], 0);
+    const Vector second = load_coordinates(four, &boxes[i + 1], 0);
     all = hn::And(
         all, hn::Le(hn::ConcatLowerLower(four, second, first), hn::ConcatUpperUpper(four, second, first)));
   }
@@ -53,7 +46,8 @@ HWY_INLINE bool are_present(std::span<const Box<3>, 8> boxes) {
   const Four four;
   auto all = hn::FirstN(four, 4);
   for (const Box<3>& box : boxes)
-    all = hn::And(all, hn::Le(coordinates(box, 0), hn::Shuffle0321(coordinates(box, 2))));
+    all = hn::And(all,
+                  hn::Le(load_coordinates(four, &box, 0), hn::Shuffle0321(load_coordinates(four, &box, 2))));
   return hn::AllTrue(four, hn::Or(all, hn::Eq(hn::Iota(four, 0.0F), hn::Set(four, 3.0F))));
 }
 

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/box_coordinates.hpp"
 #include "kernels/compress.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,14 +54,11 @@ HWY_INLINE unsigned four_outside(const Box<D>* boxes, const Box<D>* enlarged) {
   constexpr std::size_t coordinates = at_once * 2 * D;
   constexpr std::size_t lanes = HWY_MAX_BYTES >= 32 ? 8 : 4;
   const hn::FixedTag<float, lanes> floats;
-  const hn::FixedTag<std::uint8_t, lanes * sizeof(float)> bytes;
-  const auto* const box_bytes = reinterpret_cast<const std::uint8_t*>(boxes);
-  const auto* const enlarged_bytes = reinterpret_cast<const std::uint8_t*>(enlarged);
   std::uint32_t below = 0;
   std::uint32_t above = 0;
   for (std::size_t i = 0; i < coordinates; i += lanes) {
-    const auto box = hn::BitCast(floats, hn::LoadU(bytes, box_bytes + i * sizeof(float)));
-    const auto limit = hn::BitCast(floats, hn::LoadU(bytes, enlarged_bytes + i * sizeof(float)));
+    const auto box = load_coordinates(floats, boxes, i);
+    const auto limit = load_coordinates(floats, enlarged, i);
     below |= bits_of(floats, hn::Lt(box, limit)) << i;
     above |= bits_of(floats, hn::Lt(limit, box)) << i;
   }

@@ -13,6 +13,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/box_coordinates.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
@@ -64,14 +66,6 @@ struct MarginRange {
   Real max;
 };
 
-/// A vector of the coordinates of boxes, from number `first` on.
-template <typename Tag, int D, typename Real>
-HWY_INLINE hn::Vec<Tag> coordinates(Tag tag, const Box<D, Real>* boxes, std::size_t first) {
-  const hn::Repartition<std::uint8_t, Tag> bytes;
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(boxes);
-  return hn::BitCast(tag, hn::LoadU(bytes, begin + first * sizeof(Real)));
-}
-
 /// Tests as many boxes as a vector has lanes, as they are in memory: their coordinates fill 2 * D vectors, in
 /// which minima and maxima alternate. So nothing is gathered or shuffled.
 template <int D, typename Real>
@@ -88,12 +82,12 @@ class KeptTest {
     auto all = hn::FirstN(tag, lanes);
     for (std::size_t at = 0; at < 2 * D * lanes; at += lanes) {
       const auto is_minimum = hn::Ne(hn::Load(tag, &are_minima[at]), hn::Zero(tag));
-      const auto outer = coordinates(tag, kept, at);
-      const auto inner = coordinates(tag, boxes, at);
+      const auto outer = load_coordinates(tag, kept, at);
+      const auto inner = load_coordinates(tag, boxes, at);
       const auto contains =
           hn::Le(hn::IfThenElse(is_minimum, outer, inner), hn::IfThenElse(is_minimum, inner, outer));
-      const auto side = hn::Sub(coordinates(tag, boxes, at + D), inner);
-      const auto kept_side = hn::Sub(coordinates(tag, kept, at + D), outer);
+      const auto side = hn::Sub(load_coordinates(tag, boxes, at + D), inner);
+      const auto kept_side = hn::Sub(load_coordinates(tag, kept, at + D), outer);
       const auto slack = hn::Mul(hn::Set(tag, core::Margins<D, Real>::max_margins), range_.of(tag, side));
       const auto fits = hn::And(hn::Le(kept_side, hn::Add(side, slack)), hn::Ge(side, hn::Zero(tag)));
       all = hn::And(all, hn::And(contains, hn::Or(fits, hn::Not(is_minimum))));
@@ -136,11 +130,11 @@ struct Bounds {
 };
 
 HWY_INLINE Bounds bounds_of(const Box<2>& box) {
-  const Vector bounds = coordinates(Four(), &box, 0);
+  const Vector bounds = load_coordinates(Four(), &box, 0);
   return {bounds, hn::Shuffle1032(bounds)};
 }
 HWY_INLINE Bounds bounds_of(const Box<3>& box) {
-  return {coordinates(Four(), &box, 0), hn::Shuffle0321(coordinates(Four(), &box, 2))};
+  return {load_coordinates(Four(), &box, 0), hn::Shuffle0321(load_coordinates(Four(), &box, 2))};
 }
 
 /// Not through the box's arrays, since a vector is longer than these.

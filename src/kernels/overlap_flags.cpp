@@ -13,6 +13,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/box_coordinates.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
@@ -41,18 +43,10 @@ HWY_INLINE bool both_overlap(const Box<D, Real>& a, const Box<D, Real>& b) {
 using Four = hn::FixedTag<float, 4>;
 using Vector = hn::Vec<Four>;
 
-/// Four coordinates of a box, from number `first` on.
-template <int D>
-HWY_INLINE Vector load(const Box<D>& box, std::size_t first) {
-  const hn::FixedTag<std::uint8_t, 16> bytes;
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(&box);
-  return hn::BitCast(Four(), hn::LoadU(bytes, begin + first * sizeof(float)));
-}
-
 HWY_INLINE bool both_overlap(const Box<2>& a, const Box<2>& b) {
   const Four four;
-  const Vector a_bounds = load(a, 0);
-  const Vector b_bounds = load(b, 0);
+  const Vector a_bounds = load_coordinates(four, &a, 0);
+  const Vector b_bounds = load_coordinates(four, &b, 0);
   const Vector minima = hn::ConcatLowerLower(four, b_bounds, a_bounds);
   const auto overlaps = hn::Le(minima, hn::ConcatUpperUpper(four, a_bounds, b_bounds));
   const auto are_present = hn::Le(minima, hn::ConcatUpperUpper(four, b_bounds, a_bounds));
@@ -62,10 +56,10 @@ HWY_INLINE bool both_overlap(const Box<2>& a, const Box<2>& b) {
 /// Ignores the fourth lane: its numbers are not of one axis.
 HWY_INLINE bool both_overlap(const Box<3>& a, const Box<3>& b) {
   const Four four;
-  const Vector a_min = load(a, 0);
-  const Vector b_min = load(b, 0);
-  const Vector a_max = hn::Shuffle0321(load(a, 2));
-  const Vector b_max = hn::Shuffle0321(load(b, 2));
+  const Vector a_min = load_coordinates(four, &a, 0);
+  const Vector b_min = load_coordinates(four, &b, 0);
+  const Vector a_max = hn::Shuffle0321(load_coordinates(four, &a, 2));
+  const Vector b_max = hn::Shuffle0321(load_coordinates(four, &b, 2));
   const auto overlaps = hn::And(hn::Le(a_min, b_max), hn::Le(b_min, a_max));
   const auto are_present = hn::And(hn::Le(a_min, a_max), hn::Le(b_min, b_max));
   const auto fourth = hn::Eq(hn::Iota(four, 0.0F), hn::Set(four, 3.0F));
@@ -113,7 +107,8 @@ using Eight = hn::FixedTag<float, 8>;
 template <int D>
 HWY_INLINE hn::Vec<Eight> load_two(std::span<const Box<D>> boxes, BoxId of_first, BoxId of_second,
                                    std::size_t first) {
-  return hn::Combine(Eight(), load(boxes[index(of_second)], first), load(boxes[index(of_first)], first));
+  return hn::Combine(Eight(), load_coordinates(Four(), &boxes[index(of_second)], first),
+                     load_coordinates(Four(), &boxes[index(of_first)], first));
 }
 
 /// One bit for each four lanes, set if the mask holds for all of them or is `ignored` there.

@@ -21,8 +21,8 @@ template <int D, typename Real>
 std::size_t renew_overlap_flags(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs,
                                 std::uint8_t* flags, std::uint32_t* changed);
 
-/// Writes the pairs whose boxes do not overlap, or are not both present, to `apart`, in order. Returns their
-/// number. `apart` must have room for all pairs.
+/// Copies to `apart`, in order, each pair of boxes that do not overlap or are not both present. Returns the
+/// number of these pairs. `apart` must have room for all pairs.
 template <int D, typename Real>
 std::size_t select_apart(std::span<const Box<D, Real>> boxes, std::span<const Pair> pairs, Pair* apart);
 

@@ -1,17 +1,13 @@
-// CandidateList: chooses margins, and keeps and tests the pairs of enlarged boxes.
+// CandidateList: keeps and tests the pairs of enlarged boxes.
 #include "track/candidate_list.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <tuple>
 #include <utility>
 
 #include "broadside/sinks.hpp"
 
-#include "core/sample.hpp"
 #include "core/sort_pairs.hpp"
 #include "kernels/boxes_outside.hpp"
 #include "kernels/overlap_flags.hpp"
@@ -20,147 +16,28 @@
 namespace broadside::track {
 namespace {
 
+// Thresholds: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
+
 /// The maximum number of candidates, per pair that holds and per box. If there would be more, boxes are no
 /// longer enlarged.
 constexpr std::size_t max_candidates_per_pair = 4;
 constexpr std::size_t max_candidates_per_box = 16;
 
-// Thresholds: docs/lab-notes.md, "Enlarged boxes within trackers", has the measurements.
-
-/// Boxes are enlarged up to this displacement in a frame, as a fraction of their shortest side.
-constexpr double max_displacement = 0.0125;
-
-/// A margin divided by the displacement in a frame: about the minimum number of frames for which boxes stay
-/// within it. Then the limits of a margin, as fractions of a box's shortest side: a large margin makes far
-/// more candidates than pairs.
-constexpr double frames_within_margin = 48;
-constexpr double min_margin = 0.01;
-constexpr double max_margin = 0.2;
-
 /// The number of candidates that are tested before what changed is noted.
 constexpr std::size_t tested_at_once = 512;
 
-/// How many displacements are sampled, and the fraction of them that the margins should cover.
-constexpr std::size_t sampled_displacements = 64;
-constexpr double covered = 0.75;
-
-/// The maximum margin follows this quantile of the covered boxes' displacements, so that a few large boxes do
-/// not decide for all others. The factor after it allows for the boxes beyond the quantile.
-constexpr double covered_by_greatest = 0.9;
-constexpr double added_to_greatest = 1.25;
-
-/// The upper limit of the maximum margin divided by a displacement. If boxes hardly move, the quotient of two
-/// numbers near 0 may be anything.
-constexpr double max_frames_within_greatest = 1e6;
-
-/// All boxes are enlarged in one frame, but boxes that move alike must not leave their enlarged boxes in one
-/// frame. So a box first gets a share of its margin, from this one to the whole, by its id.
-constexpr double min_share_of_margin = 0.125;
-
-/// The number of frames in which a share of the boxes is looked at each, so that all are. Then the margins
-/// are divided by `shrinking` if less than one in `calm_part` of the boxes left their enlarged boxes: smaller
-/// margins make fewer candidates. They grow by the same factor, and never shrink again, once more than one in
-/// `restless_part` leaves in a frame.
-constexpr std::size_t frames_of_sweep = 64;
-constexpr std::size_t calm_part = 64;
-constexpr std::size_t restless_part = 32;
-constexpr double shrinking = 4;
-
-/// Steps of the golden ratio fill [0, 1) evenly, however many there are.
-double share_of_margin(std::size_t i) {
-  const auto step = static_cast<std::uint32_t>(i * 0x9e3779b9U);
-  return min_share_of_margin + (1 - min_share_of_margin) * 0x1p-32 * step;
-}
-
-template <int D, typename Real>
-core::Margins<D, Real> scaled(core::Margins<D, Real> margins, double factor) {
-  margins.margin *= static_cast<Real>(factor);
-  margins.relative *= static_cast<Real>(factor);
-  return margins;
-}
-
-/// Whether an enlarged box is longer by at most an eighth of the box's shortest side. A smaller margin would
-/// save few candidates.
-template <int D, typename Real>
-bool is_little_larger(const Box<D, Real>& enlarged, const Box<D, Real>& box) {
-  constexpr Real little = 0.125;
-  Real side = std::numeric_limits<Real>::infinity();
-  Real longer = 0;
-  for (int axis = 0; axis < D; ++axis) {
-    const Real length = box.max[axis] - box.min[axis];
-    side = std::min(side, length);
-    longer = std::max(longer, enlarged.max[axis] - enlarged.min[axis] - length);
-  }
-  return longer <= little * side;
-}
-
-/// How far a box moved in a frame.
-template <typename Real>
-struct Displacement {
-  Real relative;  ///< over the shortest side; infinite for absent boxes and for moving boxes with a side of 0
-  Real absolute;
-};
-
-template <int D, typename Real>
-Displacement<Real> displacement_of(const Box<D, Real>& before, const Box<D, Real>& now) {
-  Real displacement = 0;
-  Real side = std::numeric_limits<Real>::infinity();
-  for (int axis = 0; axis < D; ++axis) {
-    displacement = std::max({displacement, std::abs(now.min[axis] - before.min[axis]),
-                             std::abs(now.max[axis] - before.max[axis])});
-    side = std::min(side, now.max[axis] - now.min[axis]);
-  }
-  const Real relative = displacement / side;
-  return {relative >= 0 ? relative : std::numeric_limits<Real>::infinity(), displacement};
-}
-
 }  // namespace
-
-/// A margin is a fraction of a box's shortest side; with a fraction of the longest side, thin boxes would
-/// meet many more boxes. It is also limited in proportion to the boxes' motion, so that large boxes at rest
-/// do not meet all small boxes around them. Both values come from the same boxes: different boxes could
-/// exceed two independent quantiles, which would cover few boxes together.
-template <int D, typename Real>
-auto CandidateList<D, Real>::margins_for(const Change<D, Real>& change)
-    -> std::optional<core::Margins<D, Real>> {
-  std::array<Displacement<Real>, sampled_displacements> sampled;
-  for (std::size_t i = 0; i < sampled.size(); ++i) {
-    const std::size_t place = index(change.changed[core::sampled_place(i, change.changed.size())]);
-    sampled[i] = displacement_of<D, Real>(change.before[place], change.now[place]);
-  }
-  const auto last = sampled.begin() + static_cast<std::ptrdiff_t>(covered * (sampled.size() - 1));
-  std::nth_element(sampled.begin(), last, sampled.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.relative, a.absolute) < std::tie(b.relative, b.absolute);
-  });
-  const Real displacement = last->relative;
-  if (!(displacement <= static_cast<Real>(max_displacement))) return std::nullopt;
-  const auto greatest =
-      sampled.begin() +
-      static_cast<std::ptrdiff_t>(covered_by_greatest * static_cast<double>(last - sampled.begin()));
-  std::nth_element(sampled.begin(), greatest, last + 1,
-                   [](const auto& a, const auto& b) { return a.absolute < b.absolute; });
-  // No margins if the listed boxes did not move.
-  if (!(greatest->absolute > 0)) return std::nullopt;
-  const Real relative = std::clamp(static_cast<Real>(frames_within_margin) * displacement,
-                                   static_cast<Real>(min_margin), static_cast<Real>(max_margin));
-  const Real frames = std::min(static_cast<Real>(added_to_greatest) * relative / displacement,
-                               static_cast<Real>(max_frames_within_greatest));
-  return core::Margins<D, Real>{
-      .margin = greatest->absolute * frames, .relative = relative, .frames = 0, .is_of_shortest = true};
-}
 
 template <int D, typename Real>
 std::uint64_t CandidateList<D, Real>::start(const Change<D, Real>& change,
                                             const core::Margins<D, Real>& margins,
                                             FollowOrFind<D, Real>& pairs, const EventSinks* events) {
   const std::size_t size = change.now.size();
-  margins_ = margins;
-  sweep_ = {.largest = margins};
+  margins_ = StaggeredMargins<D, Real>(margins);
   is_sorted_ = false;
   is_followed_ = false;
   now_.resize(size);
-  for (std::size_t i = 0; i < size; ++i)
-    now_[i] = scaled(margins_, share_of_margin(i)).enlarged(change.now[i], nullptr);
+  for (std::size_t i = 0; i < size; ++i) now_[i] = margins_.enlarged_at_first(i, change.now[i]);
   pairs.lend_memory(candidates_);
   CandidateCollector<D, Real> collector(candidates_, max_candidates_per_box * size, max_candidates_per_pair,
                                         change.now);
@@ -257,10 +134,9 @@ void CandidateList<D, Real>::enlarge_anew(const Change<D, Real>& change) {
   flags_.resize(size);
   find_left(change);
   for (const BoxId id : left_) flags_[index(id)] = 1;
-  sweep_.left += left_.size();
-  if (left_.size() > size / restless_part) grow_margins();
+  margins_.note_left(left_.size(), size);
   review(change);
-  for (const BoxId id : left_) now_[index(id)] = margins_.enlarged(change.now[index(id)], nullptr);
+  for (const BoxId id : left_) now_[index(id)] = margins().enlarged(change.now[index(id)], nullptr);
 }
 
 /// Sets left_.
@@ -274,7 +150,7 @@ void CandidateList<D, Real>::find_left(const Change<D, Real>& change) {
   } else {
     for (const BoxId id : change.changed) {
       const std::size_t i = index(id);
-      const bool stays = margins_.keeps(now_[i], change.now[i], nullptr) &&
+      const bool stays = margins().keeps(now_[i], change.now[i], nullptr) &&
                          !(has_filters && change.filters_before[i] != change.filters_now[i]);
       left_[count] = id;
       count += static_cast<std::size_t>(!stays);
@@ -283,35 +159,15 @@ void CandidateList<D, Real>::find_left(const Change<D, Real>& change) {
   left_.resize(count);
 }
 
-/// For the boxes that are enlarged from now on.
-template <int D, typename Real>
-void CandidateList<D, Real>::grow_margins() {
-  if (sweep_.share >= 1) return;
-  sweep_.may_shrink = false;
-  sweep_.share = std::min(1.0, shrinking * sweep_.share);
-  margins_ = scaled(sweep_.largest, sweep_.share);
-}
-
-/// Adds to left_ those of a share of the boxes whose enlarged boxes are far too large, as after boxes or
-/// margins shrank. Shrinks the margins after a sweep over all boxes in which hardly any left.
+/// Adds to left_ the boxes of a share of all whose enlarged boxes are much too large for them, since the
+/// boxes or the margins shrank.
 template <int D, typename Real>
 void CandidateList<D, Real>::review(const Change<D, Real>& change) {
-  const std::size_t size = change.now.size();
-  const std::size_t end = std::min(size, sweep_.next + size / frames_of_sweep + 1);
-  for (; sweep_.next < end; ++sweep_.next) {
-    const std::size_t i = sweep_.next;
-    const Box<D, Real>& box = change.now[i];
-    if (flags_[i] != 0 || margins_.keeps(now_[i], box, nullptr) || is_little_larger(now_[i], box)) continue;
+  margins_.review(change.now.size(), [&](std::size_t i) {
+    if (flags_[i] != 0 || !margins_.are_much_too_large(now_[i], change.now[i])) return;
     flags_[i] = 1;
     left_.push_back(BoxId(i));
-  }
-  if (sweep_.next < size) return;
-  sweep_.next = 0;
-  const std::size_t left = std::exchange(sweep_.left, 0);
-  if (left >= size / calm_part || !sweep_.may_shrink) return;
-  const double least = min_margin / static_cast<double>(sweep_.largest.relative);
-  sweep_.share = std::min(sweep_.share, std::max(sweep_.share / shrinking, least));
-  margins_ = scaled(sweep_.largest, sweep_.share);
+  });
 }
 
 /// Removes the candidates that ended, with an event if they held, and inserts those that began. Both are few:

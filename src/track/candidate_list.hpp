@@ -13,6 +13,7 @@
 #include "core/margins.hpp"
 #include "core/parallel.hpp"
 #include "track/follow_or_find.hpp"
+#include "track/staggered_margins.hpp"
 #include "track/update_policy.hpp"
 
 namespace broadside::track {
@@ -33,9 +34,6 @@ struct EventSinks {
 template <int D, typename Real>
 class CandidateList {
  public:
-  /// Margins that suit a sample of the changed boxes; nothing if these moved too far or not at all.
-  static std::optional<core::Margins<D, Real>> margins_for(const Change<D, Real>& change);
-
   /// Enlarges all boxes of a frame, and finds the candidates. If `events` is not null, `pairs` must know the
   /// pairs of the frame before, and the frame's events are written too; this takes no search for the pairs of
   /// the boxes themselves. Returns the number of tests. Throws LimitPassed, and whatever else ends a search.
@@ -53,7 +51,7 @@ class CandidateList {
   /// Whether there are too many candidates for the pairs that are left.
   bool exceeds_limit() const noexcept { return candidates_.size() > max_candidates(); }
 
-  const core::Margins<D, Real>& margins() const noexcept { return margins_; }
+  const core::Margins<D, Real>& margins() const noexcept { return margins_.now(); }
   std::size_t candidate_count() const noexcept { return candidates_.size(); }
 
   void release() noexcept {
@@ -71,24 +69,13 @@ class CandidateList {
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
   void enlarge_anew(const Change<D, Real>& change);
   void find_left(const Change<D, Real>& change);
-  void grow_margins();
   void review(const Change<D, Real>& change);
   void change_candidates(PairSink& ended);
   std::size_t place_of(Pair pair, std::size_t from, std::size_t end) const noexcept;
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void test_candidates(std::span<const Box<D, Real>> boxes, const Workers& workers);
 
-  /// A sweep over all boxes, a share of them in each frame.
-  struct Sweep {
-    core::Margins<D, Real> largest{};  ///< the first margins
-    double share = 1;                  ///< of these
-    bool may_shrink = true;
-    std::size_t next = 0;  ///< box
-    std::size_t left = 0;  ///< boxes that left their enlarged boxes in this sweep
-  };
-
-  core::Margins<D, Real> margins_{};
-  Sweep sweep_;
+  StaggeredMargins<D, Real> margins_;
   bool is_sorted_ = false;
   bool is_followed_ = false;         // whether the FollowOrFind has started, as it does once a box leaves
   std::optional<Statistics> found_;  // of the search for the first candidates

@@ -42,11 +42,10 @@ class FindAnew {
   /// Whether the pairs of the last frame are known.
   bool knows_pairs() const noexcept { return has_pairs_; }
 
-  /// Writes the events of a change whose pairs were found in another way. The pairs of the frame before must
-  /// be known.
+  /// Writes the events of a change from `found`, all pairs that hold after it. knows_pairs() must be true.
   void report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun, PairSink& ended);
 
-  /// Exchanges an empty list for one whose memory has been used, if that is longer.
+  /// Gives this object's spare list to the caller if it has more capacity: its pages are in use already.
   void lend_memory(std::vector<Pair>& pairs) noexcept {
     if (found_.capacity() > pairs.capacity()) found_.swap(pairs);
     pairs.clear();

@@ -142,7 +142,9 @@ class FrameStates {
  private:
   /// Takes a frame that lists every box: array by array, without a look at the list.
   void take_whole(const Frame<D, Real>& frame, core::Parallel& parallel) {
-    changed_.assign(frame.changed.begin(), frame.changed.end());
+    // Not a copy: another thread may have written to the list since it was checked.
+    changed_.resize(known_);
+    for (std::size_t i = 0; i < known_; ++i) changed_[i] = BoxId(i);
     invalid_.clear();
     std::fill(flags_.begin(), flags_.end(), std::uint8_t{1});
     parallel.for_ranges(known_, [&](core::Range range, std::size_t) {

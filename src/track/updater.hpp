@@ -15,6 +15,7 @@
 #include "track/candidate_limit.hpp"
 #include "track/candidate_list.hpp"
 #include "track/follow_or_find.hpp"
+#include "track/staggered_margins.hpp"
 #include "track/update_policy.hpp"
 
 namespace broadside::track {
@@ -112,7 +113,7 @@ class Updater {
   /// Enlarges the boxes if they moved little enough. If `events` is null, the frame was handled in another
   /// way; else its events are written, or the result is false.
   bool enlarge(const Change<D, Real>& change, const EventSinks* events) {
-    const auto margins = CandidateList<D, Real>::margins_for(change);
+    const auto margins = StaggeredMargins<D, Real>::suiting(change);
     if (!margins) return false;
     Statistics statistics = events == nullptr ? statistics_.value_or(Statistics{}) : Statistics{};
     try {

@@ -41,7 +41,7 @@ TileCells<D> with_rows(TileCells<D> cells, float rows) {
 TEST(TileSearch, FindsThePairsOfTheDefinitionInAnyRows) {
   on_each_instruction_set([]<int D>() {
     Rng rng(1);
-    TileSearch<D> search;  // whose memory is used again
+    TileSearch<D> search;  // one for all, since it keeps its memory
     for (const std::size_t count : {1, 2, 50, 700, 300}) {
       const std::vector<Box<D>> boxes = random_boxes<D>(rng, count, {.places = 200, .max_extent = 12});
       for (const float rows : {1.0F, 2.0F, 5.0F, 16.0F}) {

@@ -40,7 +40,7 @@ void check(const std::vector<Box<D, Real>>& boxes) {
     apart.resize(select_apart(std::span<const Box<D, Real>>(boxes),
                               std::span(std::as_const(pairs)).first(count), apart.data()));
     ASSERT_EQ(apart, expected);
-    // Flags of which every third is wrong.
+    // Every third flag is wrong.
     std::vector<std::uint8_t> renewed(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(count));
     std::vector<std::uint32_t> wrong;
     for (std::size_t i = 0; i < count; i += 3) {

@@ -159,7 +159,7 @@ void approach_a_wall(const std::string& spec, std::size_t threads, bool at_once)
   }
   EXPECT_GT(most.enlarged, 10U);
   EXPECT_LT(most.enlarged, 105U);
-  // A quadtree whose boxes touch the wall tests 170 a box, whether or not they are enlarged.
+  // Where boxes touch the wall, `quadtree` makes 170 tests a box, enlarged or not.
   EXPECT_LT(most.tests, 2 * first.tests + 192 * wall.boxes.size());
   EXPECT_LT(most.allocated, allowed_bytes(threads > 1 ? 3000 : 1500));
   EXPECT_LT(most.bytes, first.bytes + 1500 * wall.boxes.size());
@@ -226,7 +226,7 @@ struct Moved {
   }
   std::optional<core::Margins<2, Real>> margins() const {
     const std::vector<std::uint8_t> flags(now.size(), 1);
-    return track::CandidateList<2, Real>::margins_for({before, now, changed, flags});
+    return track::StaggeredMargins<2, Real>::suiting({before, now, changed, flags});
   }
   Real margin_of(const core::Margins<2, Real>& margins, Real side) const {
     return -margins.enlarged({{0, 0}, {side, side}}, nullptr).min[0];

@@ -23,7 +23,7 @@ namespace broadside::algorithm {
 template <int D>
 class TileSearch {
  public:
-  /// Sorts at most TileCells<D>::max_boxes boxes, of which the first `left_count`, if not 0, are the left
+  /// Sorts at most TileCells<D>::max_boxes boxes. If `left_count` is not 0, the boxes before it are the left
   /// set. Returns how many tests a sweep makes. Nothing, and no boxes are sorted, if they are in more than
   /// four rows on average, or too uneven: if two of them are within a span of buckets more than
   /// `max_unevenness` times as often as two of evenly spread ones.

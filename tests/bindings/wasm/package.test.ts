@@ -26,7 +26,8 @@ const example = "import { load } from \"broadside\";\n" +
   "console.log([...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6])].join());\n";
 
 /**
- * A visitor who needs one dimension downloads an entry and its module. These limits keep them from growing unnoticed.
+ * A page that needs one dimension loads an entry and the module of that dimension. With these limits, a test fails if
+ * they grow.
  */
 const limits: readonly (readonly [string, string, number])[] = [
   ["index.js", "broadside-2d.js", 170_000], ["index.js", "broadside-3d.js", 175_000],
