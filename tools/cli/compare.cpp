@@ -50,10 +50,14 @@ struct CompareArguments {
   bool has_details = false;
 };
 
+/// Whether the user says what to compare, instead of taking the quick or the long comparison.
+bool names_cases(const CompareArguments& arguments) {
+  return !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
+         !arguments.frames.empty() || arguments.motion.any();
+}
+
 std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
-  const bool own_plan = !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
-                        !arguments.frames.empty() || arguments.motion.any();
-  if (own_plan) {
+  if (names_cases(arguments)) {
     if (arguments.is_long)
       throw Unusable(
           "--long is a plan of its own; expected it without --scenes, -n, --moving, --frames, "
@@ -135,7 +139,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   check_applies(verb, arguments, options.find, catalogue);
   options.plan = plan_of(arguments, options.find);
   options.seed = arguments.seed.value_or(options.seed);
-  if (arguments.is_long) options.effort = lab::long_effort();
+  if (!names_cases(arguments)) options.effort = arguments.is_long ? lab::long_effort() : lab::quick_effort();
   options.measure_options.cold = arguments.is_cold;
   if (arguments.budget) options.effort.budget_seconds = options.effort.history_seconds = *arguments.budget;
   if (!arguments.check.empty()) options.effort.definition_boxes = definition_boxes(arguments.check);
@@ -187,7 +191,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   CLI::App* const verb = program.add_subcommand(
       "compare",
       "Compares algorithms on scenes, every result verified. Without options: the quick comparison, which "
-      "takes about four and a half minutes.");
+      "takes about a minute and a half.");
   add_scenes(*verb, "scenes", arguments->scenes,
              "Names, specs such as power_law:exponent=2, or files, - for standard input (default: every "
              "generated scene)");

@@ -16,25 +16,36 @@ constexpr std::size_t default_boxes = 10'000;
 constexpr std::size_t standard_frames = 20;
 constexpr double default_moving = 0.1;
 
-/// A part of a plan: all combinations, in each dimension that the scene has.
+const std::vector<std::size_t> own_count = {0};  // of a scene with its own number of boxes
+
+/// A part of a plan: all combinations, in those of the dimensions that the scene has.
 struct PlanPart {
   std::vector<std::string> scenes;
-  std::vector<std::size_t> boxes;  // 0: the scene's own number
+  std::vector<std::size_t> boxes;
   std::vector<double> moving = {0};
   std::size_t frames = 0;
+  std::vector<int> dimensions = {2, 3};
 };
 
+/// Sizes from a small game to a large simulation, densities of 1, 4 and 30 neighbours, and more than a third
+/// real or recorded boxes.
 std::vector<PlanPart> quick_parts() {
   return {
-      {{"uniform"}, {1'000, 10'000, 100'000}},
-      {{"power_law", "mixed", "clustered", "one_line", "lattice", "thin", "terdiman"}, {10'000}},
-      {{"one_point"}, {2'000}},
-      {{"uniform"}, {10'000}, {0.01, 1}, 10},
-      {{"uniform"}, {100'000}, {0.1}, 5},
-      {{"churn"}, {1'000}, {0}, 20},
-      {{"pile"}, {2'000}, {0}, 10},
-      {{"box2d_rain", "box2d_pyramid", "bullet_free_fall"}, {1'000}, {0}, 30},
-      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
+      {{"uniform"}, {100, 1'000, 10'000, 100'000}},
+      {{"uniform"}, {300}, {0}, 0, {2}},
+      {{"uniform"}, {3'000}, {0}, 0, {3}},
+      {{"uniform:neighbours=1"}, {10'000}, {0}, 0, {3}},
+      {{"uniform:neighbours=30"}, {10'000}, {0}, 0, {2}},
+      {{"clustered"}, {10'000}, {0}, 0, {2}},
+      {{"power_law"}, {10'000}, {0}, 0, {3}},
+      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"},
+       own_count},
+      {{"uniform"}, {10'000}, {0.1}, 10, {2}},
+      {{"uniform"}, {1'000}, {1}, 20, {3}},
+      {{"box2d_rain", "box2d_tumbler", "box2d_pyramid", "bullet_free_fall", "bullet_moving_gravity"},
+       {1'000},
+       {0},
+       30},
   };
 }
 
@@ -47,7 +58,8 @@ std::vector<PlanPart> long_parts() {
       {{"churn", "jumps", "pile"}, {1'000, 10'000, 100'000}, {0}, 50},
       {{"box2d_rain", "box2d_tumbler", "box2d_pyramid"}, {1'000, 5'000}, {0}, 60},
       {{"bullet_free_fall", "bullet_brownian", "bullet_moving_gravity"}, {1'000, 5'000}, {0}, 60},
-      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"}, {0}},
+      {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"},
+       own_count},
   };
 }
 
@@ -67,7 +79,7 @@ std::vector<CaseRequest> plan_from(const std::vector<PlanPart>& parts) {
     for (const std::string& scene : part.scenes) {
       for (const std::size_t boxes : part.boxes) {
         for (const double moving : part.moving) {
-          for (const int dimension : {2, 3}) {
+          for (const int dimension : part.dimensions) {
             if (has_dimension(scene, dimension))
               plan.push_back({.scene = scene,
                               .dimension = dimension,
@@ -95,6 +107,8 @@ bool moves_by_itself(const Scene& scene, int dimension) {
 }
 
 std::vector<CaseRequest> quick_plan() { return plan_from(quick_parts()); }
+
+Effort quick_effort() { return {.share_seconds = 0.05, .case_seconds = 3.5}; }
 
 std::vector<CaseRequest> long_plan() { return plan_from(long_parts()); }
 

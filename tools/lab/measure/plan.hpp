@@ -29,8 +29,9 @@ struct CaseRequest {
 /// Whether the scene has its own motion in that dimension.
 bool moves_by_itself(const Scene& scene, int dimension);
 
-/// The cases of `make compare`: four and a half minutes on two cores, with all algorithms.
+/// The cases of `make compare`, and the effort for each: a minute and a half with all algorithms.
 std::vector<CaseRequest> quick_plan();
+Effort quick_effort();
 
 /// The cases of `make bench`, and the effort for each.
 std::vector<CaseRequest> long_plan();
