@@ -149,14 +149,14 @@ class Server:
         """Seconds for an empty call, and for making what the library takes of the arrays (in queries, its index)."""
         return self.empty, statistics.median(self.taking)
 
-    def listed(self, found: Any) -> np.ndarray | int:
-        rows = self.driver.rows(found)
+    def comparable(self, rows: Pairs) -> np.ndarray | int:
         return rows if isinstance(rows, int) else keys(rows, self.is_self)
 
     def check(self, at: int) -> tuple[float, float, np.ndarray | int]:
-        """Seconds for the call and for listing its pairs as this script compares them, and the pairs."""
+        """Seconds for the call and for making an array of its result, and the pairs."""
         taken, found = seconds(lambda: self.call(self.given[at]))
-        return taken, *seconds(lambda: self.listed(found))
+        listing, rows = seconds(lambda: self.driver.rows(found))
+        return taken, listing, self.comparable(rows)
 
     def turn(self) -> tuple[float, float, int, np.ndarray | int]:
         """Seconds per call and of processor time per call, and the last call's input and pairs."""
@@ -170,7 +170,7 @@ class Server:
             calls += 1
         taken, work = time.perf_counter() - began, time.process_time() - worked
         gc.enable()
-        return taken / calls, work / calls, at, self.listed(found)
+        return taken / calls, work / calls, at, self.comparable(self.driver.rows(found))
 
 
 def serve(pipe: Connection) -> None:
