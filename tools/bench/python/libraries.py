@@ -234,10 +234,9 @@ def make_duckdb(threads: int) -> Driver:
 
 def make_duckdb_spatial(threads: int) -> Driver:
     """Its join by one spatial condition: `l.id < r.id` beside it would make another plan."""
-    duckdb = importlib.import_module("duckdb")
+    connection = importlib.import_module("duckdb").connect(config={"threads": threads})
     extension = importlib.import_module("duckdb_extension_spatial")
-    connection = duckdb.connect(config={"threads": threads})
-    [path] = (Path(extension.__file__).parent / "extensions").glob(f"v{duckdb.__version__}/spatial.duckdb_extension")
+    [path] = (Path(extension.__file__).parent / "extensions").glob("*/spatial.duckdb_extension")
     connection.load_extension(str(path))
     geometry = "ST_MakeEnvelope(min_x, min_y, max_x, max_y) as geom"
     return duckdb_driver(connection, geometry, "ST_Intersects_Extent(l.geom, r.geom)", operator="SPATIAL_JOIN")

@@ -190,7 +190,7 @@ def serve(pipe: Connection) -> None:
             pipe.send((True, getattr(server, name)(*arguments)))
         except Exception as error:
             text = str(error).strip().splitlines() or [""]
-            pipe.send((False, f"{type(error).__name__}: {text[0][:100]}"))
+            pipe.send((False, f"{type(error).__name__}: {text[0][:300]}"))
 
 
 class Failed(Exception):
