@@ -65,6 +65,7 @@ python: $(python_folder)/builder/ready ## Build the Python package as a wheel: b
 test-python: python $(python_folder)/tester/ready ## Install the wheel and run the tests of the Python package
 	$(python_folder)/tester/bin/python -m pip install --quiet --force-reinstall --no-deps $(python_folder)/wheels/*.whl
 	$(python_folder)/tester/bin/python -m pytest -q tests/bindings/python
+	$(python_folder)/tester/bin/python -m pytest -q tests/tools/bench/python
 
 $(python_folder)/builder/ready: bindings/python/requirements.txt
 $(python_folder)/tester/ready: tests/bindings/python/requirements.txt

@@ -33,7 +33,7 @@ import shapely
 
 import broadside
 import broadside.dask
-from compare import keys, scattered, seconds
+from rounds import keys, scattered, seconds
 
 COLUMNS = ("xmin", "ymin", "xmax", "ymax")
 

@@ -1,249 +1,74 @@
-"""broadside.pairs against other libraries for Python: verified in the same run, medians of alternating rounds, Markdown.
+"""broadside.pairs against other libraries for Python: verified in the same run, alternating rounds, Markdown.
 
-    build/python/tester/bin/pip install --requirement tools/bench/python/requirements.txt
-    build/python/tester/bin/python tools/bench/python/compare.py [--boxes 10000,100000,1000000] [--rounds 7] [--threads 1]
+    python3 -m venv build/python/peers
+    build/python/peers/bin/pip install --requirement tools/bench/python/requirements.txt build/python/wheels/*.whl
+    build/python/peers/bin/python tools/bench/python/compare.py [--boxes 1000,10000,100000,1000000] [--threads 2]
+
+Each library makes its structures anew in each call, as broadside does, except in `queries`, where all keep an index. It
+runs in a process of its own; one that is not installed is left out by name. The table's columns:
+
+    ms           a call: median of the rounds. What the library takes (its geometries, tables, objects) lies ready
+    CPU ms       processor time of a call, which tells how many threads were used, and on a busy machine more than ms
+    broadside x  its time over broadside's in the same round: median, lowest and highest; then the same of CPU ms
+    in, out      ms for making what it takes of arrays (in queries, its index), and an array of what it returns: not in ms
+    empty        us for a call with two boxes that do not overlap: in ms
 
 With --cpp FILE it also compares with find_pairs() in C++, called by tools/bench/python/cpp_times.cpp, which says how to
-build it. Each library rebuilds its structures from the arrays in each call, as broadside does.
+build it.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib
+import importlib.metadata
 import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
-import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from datetime import date
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 
 import broadside
-
-Pairs = Any  # an array of pairs, or their number
-SLOW_SECONDS = 60.0  # a library is left out of the rounds if its first call takes longer
-
-
-def scattered(n: int, dimension: int, seed: int) -> np.ndarray:
-    """Boxes that each overlap about two others."""
-    rng = np.random.default_rng(seed)
-    minima = rng.random((n, dimension))
-    sides = rng.random((n, dimension)) * 2 / n ** (1 / dimension)
-    return np.hstack([minima, minima + sides])
+from libraries import LIBRARIES
+from rounds import KINDS, Case, Library, Result, Runner, compare, scattered, seconds
 
 
-def self_pairs(rows: np.ndarray) -> np.ndarray:
-    """Keeps each pair of a self-join once."""
-    return rows[rows[:, 0] < rows[:, 1]]
+def version(package: str) -> str | None:
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return None
 
 
-def make_broadside(threads: int) -> Callable[..., Pairs]:
-    return lambda a, b: broadside.pairs(a, b, threads=threads)
+def availability(library: Library) -> str:
+    """Versions of what a library takes, or how to install what is missing."""
+    versions = {package: version(package) for package in library.packages}
+    missing = [package for package, found in versions.items() if found is None]
+    if not missing:
+        return ", ".join(f"{package} {found}" for package, found in versions.items())
+    pins = Path(__file__).with_name("requirements.txt").read_text()
+    wanted = [match[0] if (match := re.search(f"^{package}==.*", pins, re.MULTILINE)) else package for package in library.packages]
+    return f"left out: {', '.join(missing)} not installed (`pip install {' '.join(wanted)}`)"
 
 
-def make_shapely(threads: int) -> Callable[..., Pairs] | None:
-    shapely = importlib.import_module("shapely")
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        left = shapely.box(*a.T)
-        tree = shapely.STRtree(left if b is None else shapely.box(*b.T))
-        rows = tree.query(left).T  # by the bounds alone
-        return self_pairs(rows) if b is None else rows
-
-    return search
-
-
-def make_geopandas(threads: int) -> Callable[..., Pairs] | None:
-    geopandas = importlib.import_module("geopandas")
-    shapely = importlib.import_module("shapely")
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        left = geopandas.GeoDataFrame(geometry=shapely.box(*a.T))
-        right = left if b is None else geopandas.GeoDataFrame(geometry=shapely.box(*b.T))
-        joined = geopandas.sjoin(left, right, predicate="intersects")
-        rows = np.column_stack([joined.index.to_numpy(), joined["index_right"].to_numpy()])
-        return self_pairs(rows) if b is None else rows
-
-    return search
-
-
-def make_rtree(threads: int) -> Callable[..., Pairs] | None:
-    index = importlib.import_module("rtree.index")
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        half = a.shape[1] // 2
-        right = np.ascontiguousarray(a if b is None else b)
-        tree = index.Index((np.arange(len(right)), right[:, :half], right[:, half:]), properties=index.Property(dimension=half))
-        found, counts = tree.intersection_v(a[:, :half], a[:, half:])
-        rows = np.column_stack([np.repeat(np.arange(len(a)), counts.astype(np.int64)), found])
-        return self_pairs(rows) if b is None else rows
-
-    return search
-
-
-def make_prtree(threads: int) -> Callable[..., Pairs] | None:
-    prtree = importlib.import_module("python_prtree")
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        kind = prtree.PRTree2D if a.shape[1] == 4 else prtree.PRTree3D
-        right = a if b is None else b
-        tree = kind(np.arange(len(right)), right)
-        found = tree.batch_query(a)
-        counts = [len(one) for one in found]
-        rows = np.column_stack(
-            [np.repeat(np.arange(len(a)), counts), np.concatenate([np.asarray(one, np.int64) for one in found])]
-        )
-        return self_pairs(rows) if b is None else rows
-
-    return search
-
-
-def make_scipy(threads: int) -> Callable[..., Pairs] | None:
-    """A tree of points: finds centres within the longest side, and filters the overlapping boxes."""
-    spatial = importlib.import_module("scipy.spatial")
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        half = a.shape[1] // 2
-        right = a if b is None else b
-        reach = (a[:, half:] - a[:, :half]).max() / 2 + (right[:, half:] - right[:, :half]).max() / 2
-        tree = spatial.cKDTree((right[:, :half] + right[:, half:]) / 2)
-        # Rounding of centres must lose no pair.
-        radius = reach * (1 + 1e-9)
-        if b is None:
-            rows = tree.query_pairs(radius, p=np.inf, output_type="ndarray")
-        else:
-            found = spatial.cKDTree((a[:, :half] + a[:, half:]) / 2).sparse_distance_matrix(tree, radius, p=np.inf, output_type="ndarray")
-            rows = np.column_stack([found["i"], found["j"]])
-        left, other = a[rows[:, 0]], right[rows[:, 1]]
-        overlap = ((left[:, :half] <= other[:, half:]) & (other[:, :half] <= left[:, half:])).all(axis=1)
-        return rows[overlap]
-
-    return search
-
-
-def make_coal(threads: int) -> Callable[..., Pairs] | None:
-    """Its broad phase as a physics engine uses it, with an object per box. Python can only count the pairs."""
-    coal = importlib.import_module("coal")
-
-    def manager_of(boxes: np.ndarray) -> tuple[Any, list[Any]]:
-        manager = coal.DynamicAABBTreeCollisionManager()
-        objects = [
-            coal.CollisionObject(coal.Box(*(row[3:] - row[:3])), np.eye(3), (row[3:] + row[:3]) / 2) for row in boxes
-        ]
-        for one in objects:
-            manager.registerObject(one)
-        manager.setup()
-        return manager, objects
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        manager, kept = manager_of(a)
-        counter = coal.CollisionCallBackCollect(100 * len(a))
-        if b is None:
-            manager.collide(counter)
-            return counter.numCollisionPairs()
-        other, also_kept = manager_of(b)
-        manager.collide(other, counter)
-        return counter.numCollisionPairs()
-
-    return search
-
-
-def make_duckdb(threads: int) -> Callable[..., Pairs] | None:
-    duckdb = importlib.import_module("duckdb")
-    connection = duckdb.connect(config={"threads": threads})
-
-    def search(a: np.ndarray, b: np.ndarray | None) -> Pairs:
-        half = a.shape[1] // 2
-        axes = "xyz"[:half]
-
-        def columns(boxes: np.ndarray) -> dict[str, np.ndarray]:
-            named = {f"min_{axis}": boxes[:, i] for i, axis in enumerate(axes)}
-            named |= {f"max_{axis}": boxes[:, half + i] for i, axis in enumerate(axes)}
-            return {"id": np.arange(len(boxes))} | named
-
-        left = columns(a)
-        right = left if b is None else columns(b)
-        touching = " and ".join(f"l.min_{x} <= r.max_{x} and r.min_{x} <= l.max_{x}" for x in axes)
-        connection.register("l_boxes", importlib.import_module("pyarrow").table(left))
-        connection.register("r_boxes", importlib.import_module("pyarrow").table(right))
-        found = connection.execute(
-            f"select l.id as i, r.id as j from l_boxes l join r_boxes r on {touching}" + (" and l.id < r.id" if b is None else "")
-        ).fetchnumpy()
-        return np.column_stack([found["i"], found["j"]])
-
-    return search
-
-
-LIBRARIES = {
-    "broadside": (make_broadside, (2, 3)),
-    "shapely.STRtree": (make_shapely, (2,)),
-    "geopandas.sjoin": (make_geopandas, (2,)),
-    "rtree": (make_rtree, (2, 3)),
-    "python-prtree": (make_prtree, (2, 3)),
-    "scipy.cKDTree": (make_scipy, (2, 3)),
-    "coal": (make_coal, (3,)),
-    "DuckDB": (make_duckdb, (2, 3)),
-}
-
-
-def keys(rows: Pairs, is_self: bool) -> np.ndarray:
-    rows = np.asarray(rows, np.int64).reshape(-1, 2)
-    if is_self:
-        rows = np.sort(rows, axis=1)
-    return np.sort(rows[:, 0] << 32 | rows[:, 1])
-
-
-def seconds(call: Callable[[], Any]) -> tuple[float, Any]:
-    began = time.perf_counter()
-    result = call()
-    return time.perf_counter() - began, result
-
-
-def compare(n: int, dimension: int, two_sets: bool, rounds: int, threads: int) -> list[str]:
-    a = scattered(n, dimension, 1)
-    b = scattered(n, dimension, 2) if two_sets else None
-    searches: dict[str, Callable[..., Pairs]] = {}
-    notes: dict[str, str] = {}
-    expected = None
-    for name, (make, dimensions) in LIBRARIES.items():
-        if dimension not in dimensions:
-            continue
-        try:
-            search = make(threads)
-            taken, rows = seconds(lambda: search(a, b))
-        except Exception as error:  # an unsupported case is reported in the library's line
-            notes[name] = f"{type(error).__name__}: {str(error).splitlines()[0][:60]}"
-            continue
-        if isinstance(rows, int):
-            is_right, count = expected is not None and rows == len(expected), rows
-        else:
-            found = keys(rows, not two_sets)
-            expected = found if expected is None else expected
-            is_right, count = np.array_equal(found, expected), len(found)
-        if not is_right:
-            notes[name] = f"wrong: {count:,} pairs, {len(expected):,} expected"
-            continue
-        if taken > SLOW_SECONDS:
-            notes[name] = f"one call: {taken:,.1f} s"
-        else:
-            searches[name] = search
-    times: dict[str, list[float]] = {name: [] for name in searches}
-    for _ in range(rounds):
-        for name, search in searches.items():
-            times[name].append(seconds(lambda: search(a, b))[0])
-    best = statistics.median(times["broadside"])
-    sets = "two sets" if two_sets else "one set"
+def lines_of(case: Case, results: dict[str, Result]) -> list[str]:
+    start = f"| {case.n:,} | {case.dimension}D | {case.kind} |"
     lines = []
-    for name in sorted(times, key=lambda one: statistics.median(times[one])):
-        median = statistics.median(times[name])
-        lines.append(f"| {n:,} | {dimension}D | {sets} | {name} | {median * 1e3:,.2f} | {median / best:,.1f} |")
-    lines += [f"| {n:,} | {dimension}D | {sets} | {name} | {note} | |" for name, note in notes.items()]
-    return lines
+    own_work = statistics.median(next(iter(results.values())).work or [np.nan])
+    timed = {name: result for name, result in results.items() if not result.note}
+    for name, one in sorted(timed.items(), key=lambda item: statistics.median(item[1].times)):
+        work, pairs = statistics.median(one.work), f"{one.pairs:,}" + (" (counted)" if one.is_counted else "")
+        lines.append(
+            f"{start} {name} | {statistics.median(one.times) * 1e3:,.2f} | {work * 1e3:,.2f} | "
+            f"{statistics.median(one.ratios):,.1f} ({min(one.ratios):,.1f} to {max(one.ratios):,.1f}); {work / own_work:,.1f} | "
+            f"{one.taking * 1e3:,.2f}, {one.listing * 1e3:,.2f} | {one.empty * 1e6:,.0f} | {pairs} |"
+        )
+    return lines + [f"{start} {name} | {one.note} | | | | | |" for name, one in results.items() if one.note]
 
 
 def overhead(program: str) -> list[str]:
@@ -270,21 +95,54 @@ def overhead(program: str) -> list[str]:
     return lines
 
 
+def chosen(name: str, choices: Sequence[str]) -> list[str]:
+    found = [choice for choice in choices if name.lower() in choice.lower()]
+    if not found:
+        raise SystemExit(f"compare.py: no library '{name}'; there are: {', '.join(choices)}")
+    return found
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--boxes", default="10000,100000,1000000")
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--boxes", default="1000,10000,100000")
     parser.add_argument("--dimensions", default="2,3")
+    parser.add_argument("--kinds", default=",".join(KINDS))
+    parser.add_argument("--libraries", help="parts of names: only these")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--threads", type=int, default=1, help="more than one: only libraries that have threads")
+    parser.add_argument("--limit", type=float, default=120, help="seconds after which a call is stopped")
+    parser.add_argument("--slow", type=float, default=5, help="a library is called once if that takes more seconds")
     parser.add_argument("--cpp", help="the program made of tools/bench/python/cpp_times.cpp")
     arguments = parser.parse_args()
+
     print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}, "
           f"Broadside {broadside.__version__}, {date.today()}, threads: {arguments.threads}; `{' '.join(sys.argv)}`\n")
-    print("| boxes | | sets | library | ms | times broadside |\n|---:|---|---|---|---:|---:|")
+    names = [library.name for library in LIBRARIES]
+    if arguments.libraries:
+        names = [name for part in ["broadside", *arguments.libraries.split(",")] for name in chosen(part, names)]
+    runners = []
+    for library in LIBRARIES:
+        if library.name in names:
+            found = availability(library)
+            if arguments.threads > 1 and not library.has_threads and "broadside" not in library.packages:
+                found = "left out: it has no threads"
+            print(f"- {library.name}: {found}")
+            if not found.startswith("left out"):
+                runners.append(Runner(library, arguments.threads))
+
+    print("\n| boxes | | sets | library | ms | CPU ms | broadside x; by CPU | in, out, ms | empty, us | pairs |")
+    print("|---:|---|---|---|---:|---:|---:|---:|---:|---:|")
     for dimension in map(int, arguments.dimensions.split(",")):
         for n in map(int, arguments.boxes.split(",")):
-            for two_sets in (False, True):
-                print("\n".join(compare(n, dimension, two_sets, arguments.rounds, arguments.threads)), flush=True)
+            for kind in arguments.kinds.split(","):
+                here = [one for one in runners if dimension in one.library.dimensions and kind in one.library.kinds]
+                if len(here) < 2:
+                    continue
+                case = Case(n, dimension, kind)
+                results = compare(here, case, arguments.rounds, arguments.limit, arguments.slow)
+                print("\n".join(lines_of(case, results)), flush=True)
+    for runner in runners:
+        runner.stop()
     if arguments.cpp:
         print("\n| boxes | Python, us | C++, us | ratio |\n|---:|---:|---:|---:|")
         print("\n".join(overhead(arguments.cpp)))
