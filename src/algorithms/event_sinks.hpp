@@ -88,7 +88,9 @@ class CandidateSink final : public PairSink {
 template <int D>
 class EventSinks {
  public:
-  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, Checkpoint* checkpoint = nullptr)
+  /// `all_placed` as in core::ChangeSinks.
+  EventSinks(const Change<D>& change, PairSink& begun, PairSink& ended, Checkpoint* checkpoint = nullptr,
+             bool all_placed = false)
       : candidates_(change, begun, ended),
         sinks_{.begun = change.wants_candidates || change.filters_now.empty() ? begun : candidates_,
                .ended = change.wants_candidates      ? begun
@@ -96,7 +98,8 @@ class EventSinks {
                                                      : candidates_,
                .candidates = change.wants_candidates ? begun : candidates_,
                .moves = change.flags.data(),
-               .checkpoint = checkpoint} {}
+               .checkpoint = checkpoint,
+               .all_placed = all_placed} {}
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;
 

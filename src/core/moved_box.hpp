@@ -56,6 +56,10 @@ struct ChangeSinks {
 
   /// Counts the compared pairs, and may end the search by an exception. May be null.
   Checkpoint* checkpoint = nullptr;
+
+  /// Whether all movers are in their places in the structure, and marked, so that each of two finds the
+  /// other: then a pair of two is written only once.
+  bool all_placed = false;
 };
 
 /// The work of a search.

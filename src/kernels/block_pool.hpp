@@ -61,6 +61,7 @@ class BlockPool {
   BlocksView<D> view() const { return {heads_.data(), blocks_.data()}; }
   const BlockHead& head(std::uint32_t block) const { return heads_[block]; }
   bool is_full(std::uint32_t block) const { return heads_[block].used == all_used; }
+  std::size_t block_count() const { return blocks_.size(); }
 
   /// Adds an empty block at the front of the chain `first`.
   void add_block(std::uint32_t& first, std::uint32_t owner) {

@@ -15,8 +15,10 @@
 #endif
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include <hwy/highway.h>
 
@@ -33,6 +35,11 @@ HWY_INLINE std::uint32_t bits_of(Tag tag, hn::Mask<Tag> mask) {
 #else
   std::array<std::uint8_t, 8> bytes{};
   hn::StoreMaskBits(tag, mask, bytes.data());
+  if constexpr (std::endian::native == std::endian::little) {
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes.data(), sizeof(bits));
+    return bits;
+  }
   return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
 #endif
 }

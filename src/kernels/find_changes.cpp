@@ -7,6 +7,7 @@
 #define HWY_TARGET_INCLUDE "kernels/find_changes.cpp"
 #include "kernels/find_changes.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -20,13 +21,12 @@ HWY_BEFORE_NAMESPACE();
 namespace broadside::kernels::HWY_NAMESPACE {
 namespace {
 
-/// A block in which a moved box has hits, and its hits, as bits.
+/// A moved box and a block with hits: the boxes that make an event or a candidate with it, as bits.
 struct BlockHits {
   std::uint32_t moved;
   std::uint32_t block;
-  std::uint16_t begun;
-  std::uint16_t ended;
-  std::uint16_t candidates;
+  std::uint16_t hits;
+  std::uint16_t is;  ///< which boxes of the block it overlaps now
 };
 
 template <int D>
@@ -37,11 +37,11 @@ class MovedSearch {
 
   core::ChangeWork in_blocks(std::span<const BlockTask> tasks) {
     for (const BlockTask& task : tasks) list(task.moved, task.block);
-    compare();
-    return work_;
+    return finish();
   }
 
   core::ChangeWork in_cells(const CellsView<D>& cells) {
+    prefetches_ = !cells.are_cached;
     for (std::uint32_t i = 0; i < moved_.size(); ++i) {
       if (HWY_UNLIKELY(moved_[i].is_far)) {
         list(cells, i, moved_[i].before);
@@ -50,8 +50,7 @@ class MovedSearch {
         list(cells, i, moved_[i].bounds);
       }
     }
-    compare();
-    return work_;
+    return finish();
   }
 
  private:
@@ -117,6 +116,7 @@ class MovedSearch {
   }
 
   HWY_INLINE void prefetch(std::uint32_t block) const {
+    if (!prefetches_) return;
     hwy::Prefetch(&blocks_.heads[block]);
     for (int axis = 0; axis < D; ++axis) {
       hwy::Prefetch(blocks_.blocks[block].min[axis].data());
@@ -127,71 +127,113 @@ class MovedSearch {
   /// Compares the listed boxes with all blocks of their chains.
   HWY_NOINLINE void compare() {
     const std::size_t listed = std::exchange(listed_, 0);
-    std::size_t found = 0;
+    std::size_t found = found_count_;
     std::uint64_t tests = 0;
     std::uint64_t told = 0;
     std::uint64_t blocks = 0;
-    for (std::size_t i = 0; i < listed; ++i) {
-      const MovedBox<D>& moved = moved_[listed_tasks_[i].moved];
+    for (std::size_t i = 0; i < listed;) {
+      const std::uint32_t number = listed_tasks_[i].moved;
+      const MovedBox<D>& moved = moved_[number];
       const BroadcastBox<D> before(moved.before);
       const BroadcastBox<D> now(moved.now);
-      std::uint32_t block = listed_tasks_[i].block;
+      const std::uint32_t own_block = moved.slot / block_size;
+      const std::uint32_t own_lane = 1U << moved.slot % block_size;
+      const std::uint32_t filter_changed = moved.filter_changed ? 0xffffU : 0;
       do {
-        const BlockHead& head = blocks_.heads[block];
-        tests += static_cast<std::uint64_t>(std::popcount(head.used));
-        ++blocks;
-        const std::uint32_t next = head.next;
-        const std::uint32_t was = before.overlaps(blocks_.blocks[block]);
-        const std::uint32_t is = now.overlaps(blocks_.blocks[block]);
-        const std::uint32_t own = moved.slot / block_size == block ? 1U << moved.slot % block_size : 0;
-        const std::uint32_t unknown = moved.filter_changed ? 0xffffU : head.moving;
-        const std::uint32_t candidates = (was | is) & unknown & ~own;
-        const std::uint32_t begun = is & ~was & ~unknown;
-        const std::uint32_t ended = was & ~is & ~unknown;
-        found_[found] = {listed_tasks_[i].moved, block, static_cast<std::uint16_t>(begun),
-                         static_cast<std::uint16_t>(ended), static_cast<std::uint16_t>(candidates)};
-        found += static_cast<std::size_t>((begun | ended | candidates) != 0);
-        if (HWY_UNLIKELY(found == max_listed)) write(std::exchange(found, 0));
-        block = next;
-      } while (HWY_UNLIKELY(block != no_slot));
-      if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
+        std::uint32_t block = listed_tasks_[i].block;
+        do {
+          const BlockHead& head = blocks_.heads[block];
+          tests += static_cast<std::uint64_t>(std::popcount(head.used));
+          ++blocks;
+          const std::uint32_t was = before.overlaps(blocks_.blocks[block]);
+          const std::uint32_t is = now.overlaps(blocks_.blocks[block]);
+          const std::uint32_t unknown = filter_changed | head.moving;
+          const std::uint32_t own = block == own_block ? own_lane : 0;
+          const std::uint32_t hits = ((was ^ is) | (is & unknown)) & ~own;
+          found_[found] = {number, block, static_cast<std::uint16_t>(hits), static_cast<std::uint16_t>(is)};
+          found += static_cast<std::size_t>(hits != 0);
+          block = head.next;
+          if (HWY_UNLIKELY(found == max_listed)) {
+            take_hits(found);
+            found = 0;
+          }
+        } while (HWY_UNLIKELY(block != no_slot));
+        if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
+      } while (++i < listed && listed_tasks_[i].moved == number);
     }
     tell(sinks_.checkpoint, tests, told);
-    write(found);
+    found_count_ = found;
     work_ += {tests, blocks};
   }
 
-  void write(std::size_t count) {
-    const std::span<const BlockHits> all = std::span(found_).first(count);
-    for (const BlockHits& found : all) hwy::Prefetch(blocks_.blocks[found.block].id.data());
-    for (const BlockHits& found : all) {
-      for (std::uint32_t bits = found.begun | found.ended | found.candidates; bits != 0; bits &= bits - 1)
-        hwy::Prefetch(&sinks_.moves[blocks_.blocks[found.block].id[std::countr_zero(bits)]]);
-    }
-    for (const BlockHits& found : all) {
-      write(found, found.begun, sinks_.begun);
-      write(found, found.ended, sinks_.ended);
-      write(found, found.candidates, sinks_.candidates);
+  /// Takes the pairs of the hits: in each pass one of each block, until none is left. Where the hits are
+  /// cannot be predicted, so there is no branch for a hit.
+  void take_hits(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) hwy::Prefetch(blocks_.blocks[found_[i].block].id.data());
+    while (count > 0) {
+      if (*std::max_element(pair_counts_.begin(), pair_counts_.end()) + count > max_pairs) write();
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const BlockHits found = found_[i];
+        take(found, static_cast<std::uint32_t>(std::countr_zero(found.hits)));
+        const auto rest = static_cast<std::uint16_t>(found.hits & (found.hits - 1));
+        found_[left] = {found.moved, found.block, rest, found.is};
+        left += static_cast<std::size_t>(rest != 0);
+      }
+      count = left;
     }
   }
 
-  void write(const BlockHits& found, std::uint32_t bits, PairSink& sink) {
-    const BoxId id = moved_[found.moved].id;
-    for (; bits != 0; bits &= bits - 1) {
-      const std::uint32_t other = blocks_.blocks[found.block].id[std::countr_zero(bits)];
-      if (other != index(id)) (sinks_.moves[other] != 0 ? sinks_.candidates : sink).add(id, BoxId{other});
+  HWY_INLINE void take(const BlockHits& found, std::uint32_t lane) {
+    const MovedBox<D>& moved = moved_[found.moved];
+    const std::uint32_t id = index(moved.id);
+    const std::uint32_t other = blocks_.blocks[found.block].id[lane];
+    const std::uint32_t is_marked = blocks_.heads[found.block].moving >> lane & 1U;
+    const std::uint32_t is_candidate =
+        is_marked | static_cast<std::uint32_t>(moved.filter_changed) | std::uint32_t{sinks_.moves[other]};
+    const std::size_t kind = is_candidate * candidate + (found.is >> lane & 1U);
+    pairs_[kind][pair_counts_[kind]] = {BoxId{std::min(id, other)}, BoxId{std::max(id, other)}};
+    const std::uint32_t is_again =
+        is_marked & static_cast<std::uint32_t>(sinks_.all_placed) & static_cast<std::uint32_t>(other > id);
+    pair_counts_[kind] += static_cast<std::size_t>(other != id) & ~std::size_t{is_again};
+  }
+
+  void write() {
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      PairSink& sink = kind == ended ? sinks_.ended : kind == begun ? sinks_.begun : sinks_.candidates;
+      const std::size_t count = std::exchange(pair_counts_[kind], 0);
+      std::copy_n(pairs_[kind].begin(), count, sink.room(count));
+      sink.commit(count);
     }
   }
+
+  core::ChangeWork finish() {
+    compare();
+    take_hits(std::exchange(found_count_, 0));
+    write();
+    return work_;
+  }
+
+  /// What a pair is: its number if the boxes overlap now is one more than if they did before.
+  static constexpr std::size_t ended = 0;
+  static constexpr std::size_t begun = 1;
+  static constexpr std::size_t candidate = 2;
+  static constexpr std::size_t kinds = 4;
 
   static constexpr std::size_t max_listed = 128;
+  static constexpr std::size_t max_pairs = PairSink::max_room;
 
   BlocksView<D> blocks_;
   std::span<const MovedBox<D>> moved_;
   core::ChangeSinks sinks_;
   core::ChangeWork work_;
+  bool prefetches_ = true;
   std::size_t listed_ = 0;
   std::array<BlockTask, max_listed> listed_tasks_;
+  std::size_t found_count_ = 0;
   std::array<BlockHits, max_listed> found_;
+  std::array<std::size_t, kinds> pair_counts_{};
+  std::array<std::array<Pair, max_pairs>, kinds> pairs_;  // not yet written
 };
 
 template <int D>

@@ -43,6 +43,7 @@ struct CellsView {
   std::span<const CellLevel<D>> levels;
   const std::uint32_t* first;  ///< by cell, over all levels: the first block, or no_slot
   BlocksView<D> blocks;
+  bool are_cached = false;  ///< whether the blocks are most likely in the cache, so that none is prefetched
 };
 
 /// A moved box, by its place in a list, and the first block of a chain to compare it with.

@@ -1,6 +1,7 @@
 // The followers of the library's algorithms by themselves: the events and the candidates that a Tracker
 // relies on.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "broadside/algorithm.hpp"
 #include "broadside/follower.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/tracker.hpp"
 
 #include "tests/algorithms/moved_frames.hpp"
 
@@ -26,7 +28,7 @@ template <int D, typename Body>
 void in_each_frame(const Body& body) {
   algorithm::MovedFrames<D> frames(300, {});
   for (int frame = 0; frame < 20; ++frame) {
-    frames.step(5);
+    frames.step(2 + frame % 4);
     const std::vector<Box<D>> now = frames.now();
     std::vector<BoxId> changed;
     for (const core::MovedBox<D>& box : frames.moved) changed.insert(changed.begin(), box.id);
@@ -116,6 +118,39 @@ TEST(Followers, WriteEveryPairOfAChangedBoxWhereCandidatesAreWanted) {
         }
       });
     });
+  });
+}
+
+TEST(Followers, InCellsTakeAnyNumberOfMovers) {
+  in_each_dimension([]<int D>() {
+    for (const std::size_t count : {std::size_t{1'000}, std::size_t{40'000}}) {
+      Rng rng(7);
+      std::vector<Box<D>> boxes(count);
+      const int places = D == 2 ? 400 : 60;
+      for (Box<D>& box : boxes)
+        box = random_box<D>(rng, {.places = places, .max_extent = 3, .infinite_one_in = 0});
+      Tracker<D> following(Spec("grid:update=follow"));
+      Tracker<D> finding(Spec("grid:update=rebuild"));
+      std::vector<BoxId> all(count);
+      for (std::size_t i = 0; i < count; ++i) all[i] = BoxId(i);
+      for (int frame = 0; frame < 4; ++frame) {
+        const auto events_of = [&](Tracker<D>& tracker) {
+          std::vector<Pair> ended;
+          const std::vector<Pair> begun = written_pairs([&](PairSink& begun_sink) {
+            ended = written_pairs([&](PairSink& ended_sink) {
+              tracker.update({.boxes = boxes, .changed = all}, begun_sink, ended_sink);
+            });
+          });
+          return std::pair(begun, ended);
+        };
+        ASSERT_EQ(events_of(following), events_of(finding)) << count << " boxes, frame " << frame;
+        for (Box<D>& box : boxes) {
+          const auto way = static_cast<float>(rng.below(3));
+          box.min[0] += way;
+          box.max[0] += way;
+        }
+      }
+    }
   });
 }
 

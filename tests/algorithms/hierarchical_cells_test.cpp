@@ -2,10 +2,15 @@
 #include "algorithms/grid/hierarchical_cells.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "broadside/sinks.hpp"
 
 #include "tests/algorithms/moved_frames.hpp"
 #include "tests/support/model.hpp"
@@ -37,8 +42,10 @@ TEST(HierarchicalCells, TellWhatMovedBoxesChange) {
           }
         }
         for (core::MovedBox<D>& box : frames.moved) cells.move(box);
-        Changes found = written_changes(frames.moves, [&](const core::ChangeSinks& sinks) {
-          kernels::find_changes(cells.view(), std::span<const core::MovedBox<D>>(frames.moved), sinks);
+        Changes found = written_changes(frames.moves, [&](core::ChangeSinks sinks) {
+          sinks.all_placed = round % 2 == 1;
+          const std::size_t movers = round % 3 == 0 ? 0 : frames.moved.size();
+          kernels::find_changes(cells.view(movers), std::span<const core::MovedBox<D>>(frames.moved), sinks);
         });
         cells.drop_stale();
         frames.apply();
@@ -51,6 +58,36 @@ TEST(HierarchicalCells, TellWhatMovedBoxesChange) {
                   static_cast<std::size_t>(std::ranges::count_if(frames.boxes, is_present<D, float>)));
         if (testing::Test::HasFailure()) FAIL() << "round " << round;
       }
+    }
+  });
+}
+
+TEST(HierarchicalCells, TellAPairOfTwoMovedBoxesOnceIfAllAreInTheirPlaces) {
+  on_each_instruction_set([]<int D>() {
+    constexpr std::uint32_t count = 40;
+    std::vector<Box<D>> boxes(count);
+    std::vector<core::MovedBox<D>> moved;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      boxes[i].min.fill(static_cast<float>(i));
+      boxes[i].max.fill(static_cast<float>(i) + 1);
+      Box<D> now = boxes[i];
+      now.max.fill(now.min[0] + 1.5F);
+      moved.push_back(moved_box(i, boxes[i], now, false));
+    }
+    HierarchicalCells<D> cells(std::nullopt);
+    cells.build(boxes, boxes);
+    for (core::MovedBox<D>& box : moved) cells.move(box);
+    for (const bool all_placed : {false, true}) {
+      PairCounter none;
+      PairCounter candidates;
+      const std::vector<std::uint8_t> moves(count, 1);
+      core::ChangeSinks sinks{none, none, candidates, moves.data()};
+      sinks.all_placed = all_placed;
+      kernels::find_changes(cells.view(count), std::span<const core::MovedBox<D>>(moved), sinks);
+      none.flush();
+      candidates.flush();
+      EXPECT_EQ(none.count(), 0u);
+      EXPECT_EQ(candidates.count(), all_placed ? count - 1 : 2 * (count - 1));
     }
   });
 }

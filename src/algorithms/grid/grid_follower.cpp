@@ -6,7 +6,10 @@
 // written. Several threads share a batch: first they move its boxes, then they search, so that no entry
 // changes while it is read.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,14 +22,20 @@
 #include "core/filter_sink.hpp"
 #include "core/grow.hpp"
 #include "core/parallel.hpp"
+#include "core/prefix_sum.hpp"
 
 namespace broadside::algorithm {
 namespace {
 
-/// Movers per batch: few enough that their entries are still in the cache when the kernel searches, and
-/// enough that several threads can share them and that their cache misses overlap. Independent of the number
-/// of threads, which must not change the number of tests.
-constexpr std::size_t batch = 8192;
+/// Movers per batch: few enough that they are still in the cache when the kernel searches, and enough that
+/// several threads can share them, that their cache misses overlap, and that mostly one batch has all, so
+/// that a pair of two movers need not be found twice. Independent of the number of threads, which must not
+/// change the number of tests.
+constexpr std::size_t batch = 16384;
+
+/// Fewer movers are not put in order. More buckets would not stay in the first-level cache.
+constexpr std::size_t min_ordered = 64;
+constexpr std::size_t max_buckets = 1024;
 
 /// A mover takes as long as this many boxes of a search.
 constexpr std::size_t boxes_per_mover = 2;
@@ -65,7 +74,8 @@ class GridFollower final : public Follower<D> {
     std::uint64_t candidates = 0;
     std::size_t queries = 0;
     for (std::size_t at = 0; at < change.changed.size(); at += batch) {
-      move(change, change.changed.subspan(at, std::min(batch, change.changed.size() - at)));
+      move(change,
+           in_order_of_blocks(change.changed.subspan(at, std::min(batch, change.changed.size() - at))));
       search(change, begun, ended);
       for (const MoverRange& part : parts()) {
         work += part.work;
@@ -81,7 +91,7 @@ class GridFollower final : public Follower<D> {
   }
 
   std::size_t bytes() const noexcept override {
-    std::size_t bytes = cells_.bytes() + core::bytes_of(moved_, moving_);
+    std::size_t bytes = cells_.bytes() + core::bytes_of(moved_, moving_, ordered_);
     for (const MoverRange& part : parts_) bytes += core::bytes_of(part.boxes, part.begun, part.ended);
     return bytes;
   }
@@ -109,6 +119,28 @@ class GridFollower final : public Follower<D> {
     moving_.clear();
   }
 
+  /// The ids, roughly in the order of the blocks that have their boxes, so that movers that are searched for
+  /// one after the other look at the same blocks. Left as they are if most blocks would be looked at only
+  /// once.
+  std::span<const BoxId> in_order_of_blocks(std::span<const BoxId> ids) {
+    const std::size_t slots = cells_.slots();
+    if (!cells_.are_revisited(ids.size()) || ids.size() < min_ordered) return ids;
+    const std::size_t buckets = std::min(max_buckets, std::bit_floor(ids.size()));
+    const auto shift = static_cast<std::uint32_t>(std::bit_width(slots / buckets));
+    // A box that was absent has any slot.
+    const auto bucket_of = [&](BoxId id) {
+      return std::min<std::size_t>(cells_.slot(id) >> shift, buckets - 1);
+    };
+    std::array<std::uint32_t, max_buckets> kept;
+    const std::span<std::uint32_t> begins = std::span(kept).first(buckets);
+    std::fill(begins.begin(), begins.end(), 0);
+    for (const BoxId id : ids) ++begins[bucket_of(id)];
+    core::prefix_sum(begins, buckets);
+    core::resize_by_eighths(ordered_, ids.size());
+    for (const BoxId id : ids) ordered_[begins[bucket_of(id)]++] = id;
+    return ordered_;
+  }
+
   /// Lists these boxes in parts_ and moves them: first several threads the boxes that stay in their cells,
   /// then one thread the others.
   void move(const Change<D>& change, std::span<const BoxId> ids) {
@@ -132,9 +164,10 @@ class GridFollower final : public Follower<D> {
   /// Finds the events of the boxes in parts_.
   void search(const Change<D>& change, PairSink& begun, PairSink& ended) {
     const auto search = [&](MoverRange& part, PairSink& its_begun, PairSink& its_ended, std::size_t worker) {
-      EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker));
-      part.work = kernels::find_changes(cells_.view(), std::span<const core::MovedBox<D>>(part.boxes),
-                                        events.sinks());
+      EventSinks<D> events(change, its_begun, its_ended, parallel_.checkpoint(worker),
+                           change.changed.size() <= batch);
+      part.work = kernels::find_changes(cells_.view(change.changed.size()),
+                                        std::span<const core::MovedBox<D>>(part.boxes), events.sinks());
       events.flush();
       part.candidates = events.candidates();
     };
@@ -204,6 +237,7 @@ class GridFollower final : public Follower<D> {
   HierarchicalCells<D> cells_;
   std::vector<BoxId> moved_;  // boxes whose entries also cover where they were
   std::vector<BoxId> moving_;
+  std::vector<BoxId> ordered_;  // the changed boxes of a batch
   core::Parallel parallel_;
   std::vector<MoverRange> parts_;  // by range of a batch
   std::size_t built_for_ = 0;

@@ -54,9 +54,24 @@ class HierarchicalCells {
   /// Removes the entries that boxes left behind. O(number of entries).
   void drop_stale();
 
-  kernels::CellsView<D> view() const { return {levels_.all(), first_.data(), pool_.view()}; }
+  /// Whether searches for this number of movers look at most blocks more than once: each looks into about two
+  /// cells on each axis.
+  bool are_revisited(std::size_t movers) const { return movers >= pool_.block_count() >> D; }
+
+  /// The cells and their boxes, for a search for this number of movers.
+  kernels::CellsView<D> view(std::size_t movers) const {
+    // This many bytes stay in the second-level cache, and prefetching them costs more than it saves.
+    constexpr std::size_t max_cached_bytes = std::size_t{1} << 19;
+    const bool are_cached =
+        are_revisited(movers) && pool_.block_count() * sizeof(kernels::Block<D>) <= max_cached_bytes;
+    return {levels_.all(), first_.data(), pool_.view(), are_cached};
+  }
 
   std::size_t boxes() const { return boxes_; }
+
+  /// The slot of a present box, and the number of slots.
+  std::uint32_t slot(BoxId id) const { return slot_[index(id)]; }
+  std::size_t slots() const { return pool_.block_count() * kernels::block_size; }
   std::size_t cells() const { return first_.size(); }
 
   std::size_t bytes() const noexcept {
