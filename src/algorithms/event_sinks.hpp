@@ -96,7 +96,8 @@ class EventSinks {
                                                      : candidates_,
                .candidates = change.wants_candidates ? begun : candidates_,
                .moves = change.flags.data(),
-               .checkpoint = checkpoint} {}
+               .checkpoint = checkpoint,
+               .max_tests = change.max_tests} {}
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;
 

@@ -56,6 +56,9 @@ struct ChangeSinks {
 
   /// Counts the compared pairs, and may end the search by an exception. May be null.
   Checkpoint* checkpoint = nullptr;
+
+  /// The search ends soon after it has made more tests.
+  std::uint64_t max_tests = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// The work of a search.

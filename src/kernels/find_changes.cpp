@@ -126,7 +126,8 @@ class MovedSearch {
 
   /// Compares the listed boxes with all blocks of their chains.
   HWY_NOINLINE void compare() {
-    const std::size_t listed = std::exchange(listed_, 0);
+    const std::size_t listed = work_.tests > sinks_.max_tests ? 0 : listed_;
+    listed_ = 0;
     std::size_t found = 0;
     std::uint64_t tests = 0;
     std::uint64_t told = 0;
@@ -154,7 +155,10 @@ class MovedSearch {
         if (HWY_UNLIKELY(found == max_listed)) write(std::exchange(found, 0));
         block = next;
       } while (HWY_UNLIKELY(block != no_slot));
-      if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
+      if (HWY_UNLIKELY(tests - told > many_tests)) {
+        tell(sinks_.checkpoint, tests, told);
+        if (work_.tests + tests > sinks_.max_tests) break;
+      }
     }
     tell(sinks_.checkpoint, tests, told);
     write(found);
@@ -184,6 +188,7 @@ class MovedSearch {
   }
 
   static constexpr std::size_t max_listed = 128;
+  static constexpr std::uint64_t many_tests = Checkpoint::max_tests / 64;
 
   BlocksView<D> blocks_;
   std::span<const MovedBox<D>> moved_;
