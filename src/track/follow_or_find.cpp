@@ -16,6 +16,9 @@ namespace {
 /// The number of boxes followed at first, to measure the cost of a mover.
 constexpr std::size_t tried_movers = 64;
 
+/// The number of boxes whose hash decides which ones.
+constexpr std::size_t hashed_boxes = 1024;
+
 template <int D>
 std::vector<StructureCosts> costs_of(const std::vector<FollowerChoice<D>>& structures) {
   std::vector<StructureCosts> costs;
@@ -121,7 +124,7 @@ void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const W
   std::vector<Box<D, Real>> before(boxes.begin(), boxes.end());
   std::vector<std::uint8_t> flags(boxes.size());
   std::vector<BoxId> changed;
-  const std::uint32_t shift = core::sample_shift(boxes, boxes.size());
+  const std::uint32_t shift = core::sample_shift(boxes, hashed_boxes);
   for (std::size_t i = 0; i < std::min(tried_movers, boxes.size()); ++i) {
     const std::size_t place = core::sampled_place(i + shift, boxes.size());
     if (!is_present(boxes[place]) || std::exchange(flags[place], 1) != 0) continue;
