@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -41,6 +42,10 @@ struct Change {
   /// Whether to write candidates instead of events: the pairs of each changed box with every other box that
   /// it overlapped before or overlaps now. Only set for an algorithm with Algorithm::gives_candidates.
   bool wants_candidates = false;
+
+  /// The number of tests beyond which another way costs less. A follower may ignore it, or return once it has
+  /// made more tests. The tracker then takes another way, and the follower's next change has `rebuild`.
+  std::uint64_t max_tests = std::numeric_limits<std::uint64_t>::max();
 
   /// The threads to use and the checkpoint to call, as in SearchInput.
   const Workers& workers = default_workers;

@@ -99,7 +99,8 @@ class EventSinks {
                .candidates = change.wants_candidates ? begun : candidates_,
                .moves = change.flags.data(),
                .checkpoint = checkpoint,
-               .all_placed = all_placed} {}
+               .all_placed = all_placed,
+               .max_tests = change.max_tests} {}
   EventSinks(const EventSinks&) = delete;
   EventSinks& operator=(const EventSinks&) = delete;
 

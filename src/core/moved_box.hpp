@@ -60,6 +60,9 @@ struct ChangeSinks {
   /// Whether all movers are in their places in the structure, and marked, so that each of two finds the
   /// other: then a pair of two is written only once.
   bool all_placed = false;
+
+  /// The search ends soon after it has made more tests.
+  std::uint64_t max_tests = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// The work of a search.

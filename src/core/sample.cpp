@@ -62,7 +62,7 @@ void set_bounds(AxisSample& sample, std::span<const float> maxima) {
 }  // namespace
 
 template <int D>
-void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
+void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count, std::uint32_t shift) {
   const std::size_t count = sample_count(boxes.size(), max_count);
   for (int axis = 0; axis < D; ++axis) {
     AxisSample& sample = axes_[axis];
@@ -70,7 +70,7 @@ void Sample<D>::take(std::span<const Box<D>> boxes, std::size_t max_count) {
     maxima_.clear();
     extents_.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      const Box<D>& box = boxes[sampled_place(i, count, boxes.size())];
+      const Box<D>& box = boxes[sampled_place(i, count, boxes.size(), shift)];
       const float min = without_nan(box.min[axis]);
       const float max = without_nan(box.max[axis]);
       sample.minima.push_back(min);

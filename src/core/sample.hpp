@@ -7,9 +7,13 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/pair.hpp"
+
+#include "core/bit_cast.hpp"
 
 namespace broadside::core {
 
@@ -51,8 +55,24 @@ inline std::size_t sampled_place(std::size_t i, std::size_t boxes) {
 }
 
 /// The same for a sample of `count` boxes: all boxes in order if there are no more.
-inline std::size_t sampled_place(std::size_t i, std::size_t count, std::size_t boxes) {
-  return count == boxes ? i : sampled_place(i, boxes);
+inline std::size_t sampled_place(std::size_t i, std::size_t count, std::size_t boxes,
+                                 std::uint32_t shift = 0) {
+  return count == boxes ? i : sampled_place(i + shift, boxes);
+}
+
+/// A number to add to each `i` of sampled_place(), by a hash of up to `max_hashed` boxes: so the same boxes
+/// are always sampled at the same places, but no order of an array is misleading at the places of every
+/// sample.
+template <int D, typename Real>
+std::uint32_t sample_shift(std::span<const Box<D, Real>> boxes, std::size_t max_hashed) {
+  const std::size_t count = std::min(boxes.size(), max_hashed);
+  using Bits = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
+  std::uint64_t hash = boxes.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Box<D, Real>& box = boxes[sampled_place(i, count, boxes.size())];
+    for (const Real coordinate : box.min) hash = detail::mixed(hash + bit_cast<Bits>(coordinate));
+  }
+  return static_cast<std::uint32_t>(hash);
 }
 
 /// Calls `take(box)` for up to `max_count` present boxes, sampled from the whole array.
@@ -74,8 +94,8 @@ void for_present_sample(std::span<const Box<D, Real>> boxes, std::size_t max_cou
 template <int D>
 class Sample {
  public:
-  /// Samples at most `max_count` of the boxes, or fewer if the array is small.
-  void take(std::span<const Box<D>> boxes, std::size_t max_count = 256);
+  /// Samples at most `max_count` of the boxes, or fewer if the array is small. `shift`: by sample_shift().
+  void take(std::span<const Box<D>> boxes, std::size_t max_count = 256, std::uint32_t shift = 0);
 
   const AxisSample& operator[](int axis) const noexcept { return axes_[axis]; }
 

@@ -126,7 +126,8 @@ class MovedSearch {
 
   /// Compares the listed boxes with all blocks of their chains.
   HWY_NOINLINE void compare() {
-    const std::size_t listed = std::exchange(listed_, 0);
+    std::size_t listed = work_.tests > sinks_.max_tests ? 0 : listed_;
+    listed_ = 0;
     std::size_t found = found_count_;
     std::uint64_t tests = 0;
     std::uint64_t told = 0;
@@ -158,7 +159,10 @@ class MovedSearch {
             found = 0;
           }
         } while (HWY_UNLIKELY(block != no_slot));
-        if (HWY_UNLIKELY(tests - told > Checkpoint::max_tests / 4)) tell(sinks_.checkpoint, tests, told);
+        if (HWY_UNLIKELY(tests - told > many_tests)) {
+          tell(sinks_.checkpoint, tests, told);
+          if (work_.tests + tests > sinks_.max_tests) listed = i + 1;
+        }
       } while (++i < listed && listed_tasks_[i].moved == number);
     }
     tell(sinks_.checkpoint, tests, told);
@@ -222,6 +226,7 @@ class MovedSearch {
 
   static constexpr std::size_t max_listed = 128;
   static constexpr std::size_t max_pairs = PairSink::max_room;
+  static constexpr std::uint64_t many_tests = Checkpoint::max_tests / 64;
 
   BlocksView<D> blocks_;
   std::span<const MovedBox<D>> moved_;

@@ -117,6 +117,7 @@ class DoubleFollower {
                                                             .flags = change.flags,
                                                             .rebuild = starts,
                                                             .wants_candidates = true,
+                                                            .max_tests = change.max_tests,
                                                             .workers = change.workers},
                                                            candidates, candidates);
     candidates.flush();

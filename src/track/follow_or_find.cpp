@@ -16,6 +16,9 @@ namespace {
 /// The number of boxes followed at first, to measure the cost of a mover.
 constexpr std::size_t tried_movers = 64;
 
+/// The number of boxes whose hash decides which ones.
+constexpr std::size_t hashed_boxes = 1024;
+
 template <int D>
 std::vector<StructureCosts> costs_of(const std::vector<FollowerChoice<D>>& structures) {
   std::vector<StructureCosts> costs;
@@ -41,24 +44,45 @@ std::optional<Statistics> FollowOrFind<D, Real>::update(const Change<D, Real>& c
                                                         PairSink& ended) {
   changed_ = change.changed.size();
   was_followed_ = policy_.follows(change.now.size(), changed_, change.rebuild);
-  if (was_followed_) return follow(change, begun, ended);
+  std::optional<Statistics> statistics;
+  std::uint64_t tests_in_vain = 0;
+  while (was_followed_) {
+    const std::uint64_t max_tests = policy_.max_tests();
+    statistics = follow(change, max_tests, begun, ended);
+    if (!statistics || statistics->tests <= max_tests) break;
+    const bool may_follow = tests_in_vain == 0;  // once, since each structure has to be built
+    tests_in_vain += max_tests;                  // the statistics' tests may depend on the number of threads
+    was_followed_ = policy_.passed_max_tests(changed_, may_follow);
+  }
+  if (was_followed_) {
+    if (find_anew_) find_anew_->skip();
+    policy_.followed(changed_, statistics);
+  } else {
+    statistics = find(change, begun, ended);
+  }
+  if (statistics) statistics->tests += tests_in_vain;
+  return statistics;
+}
+
+template <int D, typename Real>
+std::optional<Statistics> FollowOrFind<D, Real>::follow(const Change<D, Real>& change,
+                                                        std::uint64_t max_tests, PairSink& begun,
+                                                        PairSink& ended) {
+  Change<D, Real> followed = change;
+  followed.rebuild |= !policy_.is_following();
+  followed.max_tests = max_tests;
+  return follower().follow(followed, begun, ended);
+}
+
+template <int D, typename Real>
+std::optional<Statistics> FollowOrFind<D, Real>::find(const Change<D, Real>& change, PairSink& begun,
+                                                      PairSink& ended) {
   const std::optional<Statistics> statistics = find_anew_->update(change, max_pairs_, begun, ended);
   policy_.found(change.now.size(), find_anew_->pair_count(), statistics);
   // Frames after the first usually have few changes. The structure that follows them is built now, so that
   // the second frame does not take longer than later ones.
   if (change.rebuild && policy_.update() == Update::automatic && !structures_.empty())
     start_following(change.now, change.workers);
-  return statistics;
-}
-
-template <int D, typename Real>
-std::optional<Statistics> FollowOrFind<D, Real>::follow(const Change<D, Real>& change, PairSink& begun,
-                                                        PairSink& ended) {
-  Change<D, Real> followed = change;
-  followed.rebuild |= !policy_.is_following();
-  const std::optional<Statistics> statistics = follower().follow(followed, begun, ended);
-  if (find_anew_) find_anew_->skip();
-  policy_.followed(changed_, statistics);
   return statistics;
 }
 
@@ -100,8 +124,9 @@ void FollowOrFind<D, Real>::try_out(std::span<const Box<D, Real>> boxes, const W
   std::vector<Box<D, Real>> before(boxes.begin(), boxes.end());
   std::vector<std::uint8_t> flags(boxes.size());
   std::vector<BoxId> changed;
+  const std::uint32_t shift = core::sample_shift(boxes, hashed_boxes);
   for (std::size_t i = 0; i < std::min(tried_movers, boxes.size()); ++i) {
-    const std::size_t place = core::sampled_place(i, boxes.size());
+    const std::size_t place = core::sampled_place(i + shift, boxes.size());
     if (!is_present(boxes[place]) || std::exchange(flags[place], 1) != 0) continue;
     before[place] = absent_box<D, Real>();
     changed.push_back(BoxId(place));

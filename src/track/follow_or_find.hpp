@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -110,7 +111,9 @@ class FollowOrFind {
  private:
   using Followed = std::conditional_t<std::is_same_v<Real, float>, Follower<D>, DoubleFollower<D>>;
 
-  std::optional<Statistics> follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  std::optional<Statistics> follow(const Change<D, Real>& change, std::uint64_t max_tests, PairSink& begun,
+                                   PairSink& ended);
+  std::optional<Statistics> find(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
   void start_following(std::span<const Box<D, Real>> boxes, const Workers& workers);
   void try_out(std::span<const Box<D, Real>> boxes, const Workers& workers);
   Followed& follower();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace broadside::track {
@@ -22,6 +23,10 @@ constexpr double usual_candidates = 64;
 /// With each measurement, every structure's known cost moves by this fraction towards its expected value,
 /// since the boxes may have changed.
 constexpr double forgotten = 0.01;
+
+/// Following may take this many times as long as finding all pairs anew before a frame takes another way.
+/// Above 1, so that a structure whose movers cost about as much as finding is not given up by chance.
+constexpr double max_over_finding = 2;
 
 /// Fewer movers say little about the cost of one.
 constexpr std::size_t telling_movers = 64;
@@ -78,7 +83,7 @@ bool FollowPolicy::follows(std::size_t boxes, std::size_t changed, bool rebuild)
   if (structures_.empty()) return false;
   const auto movers = static_cast<double>(changed);
   const std::size_t best = cheapest();
-  const double finding = static_cast<double>(boxes) * of_box_;
+  const double finding = cost_of_finding();
   break_even_ =
       std::max(few_movers, static_cast<std::size_t>(finding / cost_of_mover(follows_ ? current_ : best)));
   if (update_ != Update::automatic) return update_ == Update::follow;
@@ -159,6 +164,36 @@ void FollowPolicy::followed(std::size_t changed, const std::optional<Statistics>
     shared_candidates_.of_mover = cost_of_shared_candidate * candidates;
   else
     of_mover += cost_of_candidate * std::max(0.0, candidates - usual_candidates);
+}
+
+std::uint64_t FollowPolicy::max_tests() const {
+  constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
+  const KnownStructure& known = structures_[current_];
+  if (update_ != Update::automatic || known.compares_all() || !(known.costs.further_test > 0))
+    return unlimited;
+  const double tests = max_over_finding * cost_of_finding() / known.costs.further_test;
+  return tests < static_cast<double>(unlimited / 2) ? static_cast<std::uint64_t>(tests) : unlimited;
+}
+
+/// What the tests have cost is lost. Among the structures whose movers cost less than finding all pairs anew,
+/// the cheapest one counts, its start included.
+bool FollowPolicy::passed_max_tests(std::size_t changed, bool may_follow) {
+  lost();
+  seen_ = {};
+  const auto movers = static_cast<double>(changed);
+  structures_[current_].of_mover =
+      std::max(structures_[current_].of_mover, max_over_finding * cost_of_finding() / movers);
+  const auto cost_with_start = [&](std::size_t i) {
+    return movers * cost_of_mover(i) + static_cast<double>(boxes_) * structures_[i].costs.start;
+  };
+  std::size_t best = current_;
+  for (std::size_t i = 0; may_follow && i < structures_.size(); ++i) {
+    if (structures_[i].compares_all() || movers * cost_of_mover(i) >= cost_of_finding()) continue;
+    if (best == current_ || cost_with_start(i) < cost_with_start(best)) best = i;
+  }
+  if (best == current_) return false;
+  use(best);
+  return true;
 }
 
 void FollowPolicy::lost() noexcept {

@@ -41,6 +41,14 @@ class FollowPolicy {
   /// Call it after the structure followed a frame, with what that took.
   void followed(std::size_t changed, const std::optional<Statistics>& statistics);
 
+  /// The number of tests that following this frame may take: above it, another way costs less.
+  std::uint64_t max_tests() const;
+
+  /// Call it if following a frame took more than max_tests(). Returns whether to follow it in another
+  /// structure, which is then the current one, instead of finding all pairs anew. `may_follow`: otherwise
+  /// returns false.
+  bool passed_max_tests(std::size_t changed, bool may_follow);
+
   /// Call it when no structure has the boxes of the last frame.
   void lost() noexcept;
 
@@ -65,6 +73,7 @@ class FollowPolicy {
 
  private:
   double cost_of_mover(std::size_t structure) const;
+  double cost_of_finding() const { return static_cast<double>(boxes_) * of_box_; }
   void take_count(std::size_t boxes);
 
   struct KnownStructure : StructureCosts {

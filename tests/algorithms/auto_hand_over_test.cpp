@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -20,6 +21,7 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
+#include "algorithms/auto/auto_thresholds.hpp"
 #include "core/sample.hpp"
 #include "lab/worst/family.hpp"
 #include "tests/support/found.hpp"
@@ -84,11 +86,20 @@ std::vector<Box3> boxes_of(Kind kind, std::size_t count, Random& random) {
   return boxes;
 }
 
-/// Benign boxes where auto and what it chooses look, and others everywhere else.
+/// Benign boxes where auto and what it chooses look, and others everywhere else. What auto looks at depends
+/// on the first places alone, which keep their boxes.
 std::vector<Box3> fooling(Kind benign, Kind other, std::size_t count, Random& random) {
   std::vector<Box3> boxes = boxes_of(other, count, random);
   const std::vector<Box3> seen = boxes_of(benign, 1024, random);
   for (std::size_t i = 0; i < seen.size(); ++i) boxes[core::sampled_place(i, count)] = seen[i];
+  const std::span<const Box3> all = boxes;
+  const std::uint32_t shift = core::sample_shift(all, algorithm::AutoThresholds<3>::hashed_boxes);
+  std::vector<std::uint8_t> is_kept(count);
+  for (std::size_t i = 0; i < seen.size(); ++i) is_kept[core::sampled_place(i, count)] = 1;
+  for (std::size_t i = 0; i < algorithm::AutoThresholds<3>::sampled_boxes; ++i) {
+    const std::size_t place = core::sampled_place(i + shift, count);
+    if (is_kept[place] == 0) boxes[place] = seen[i];
+  }
   return boxes;
 }
 
@@ -276,6 +287,33 @@ TEST(AutoTrackerHandOver, TestsLessThanItsFirstFollowerInPlatesAndLines) {
     EXPECT_LT(tests, tests_of_few_movers<float>(kind, "grid:update=follow") * 3 / 4);
     EXPECT_LT(tests_of_few_movers<double>(kind, "auto"), 2 * tests) << "doubles";
   }
+}
+
+TEST(AutoTrackerHandOver, BoundsTheTestsOfTheFirstFramesWhereOnlyTheMoversAreCrowded) {
+  constexpr std::size_t count = 30'000;
+  constexpr std::size_t crowded = 3'000;  // few enough that the boxes tried in the first frame say little
+  Random random(7);
+  std::vector<Box3> boxes = boxes_of(Kind::uniform, count, random);
+  std::vector<BoxId> movers;
+  for (std::size_t i = 0; i < crowded; ++i) {
+    boxes[i] = box_at({500 + uniform(random, 1), 500 + uniform(random, 1), 500 + uniform(random, 1)},
+                      {1.0F / 64, 1.0F / 64, 1.0F / 64});
+    movers.push_back(BoxId(i));
+  }
+  const auto events_of = [&](Tracker<3>& tracker, std::span<const BoxId> changed, std::uint64_t& tests) {
+    return written_pairs([&](PairSink& events) {
+      tests = tracker.update({boxes, changed}, events, events).value_or(Statistics{}).tests;
+    });
+  };
+  Tracker<3> tracker("auto");
+  Tracker<3> definition("bvh:update=follow");
+  std::uint64_t tests = 0;
+  std::uint64_t few_tests = 0;
+  EXPECT_TRUE(events_of(tracker, {}, tests) == events_of(definition, {}, few_tests));
+  for (const BoxId id : movers) boxes[id] = shifted(boxes[id], random);
+  EXPECT_TRUE(events_of(tracker, movers, tests) == events_of(definition, movers, few_tests));
+  EXPECT_THAT(tracker.explanation(), testing::HasSubstr("followed by bvh"));
+  EXPECT_LT(tests, crowded * crowded * 2 / 3) << "the grid alone makes crowded * crowded tests";
 }
 
 template <typename Real>

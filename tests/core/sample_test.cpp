@@ -2,8 +2,10 @@
 #include "core/sample.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <set>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -38,6 +40,19 @@ TEST(SampledPlace, LiesInTheArrayAndSpreadsOverIt) {
     }
     EXPECT_EQ(sixteenths.size(), std::min<std::size_t>(16, size));
   }
+}
+
+TEST(SampleShift, DependsOnTheHashedBoxesAlone) {
+  Rng rng(2);
+  std::vector<Box<2>> boxes = random_boxes<2>(rng, 1'000, {.infinite_one_in = 0});
+  const std::span<const Box<2>> all = boxes;
+  const std::uint32_t shift = sample_shift(all, 32);
+  const std::uint32_t shift_of_all = sample_shift(all, boxes.size());
+  boxes[1].min[0] = 0.375F;  // not among the hashed ones
+  EXPECT_EQ(sample_shift(all, 32), shift);
+  EXPECT_NE(sample_shift(all, boxes.size()), shift_of_all);
+  boxes[sampled_place(31, boxes.size())].min[1] = 0.375F;
+  EXPECT_NE(sample_shift(all, 32), shift);
 }
 
 TEST(Sample, SaysOfFewBoxesWhatIsTrueOfAll) {

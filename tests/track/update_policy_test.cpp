@@ -2,6 +2,9 @@
 // EnlargePolicy: when boxes stay enlarged.
 #include "track/update_policy.hpp"
 
+#include <cstdint>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace broadside::track {
@@ -46,6 +49,22 @@ TEST(FollowPolicy, TakesAnotherStructureWhereTheFirstMakesManyTests) {
   policy.followed(1'000, Statistics{.tests = 1'000 * 500});
   for (int frame = 0; frame < 10 && policy.current() == 0; ++frame) policy.follows(boxes, 1'000, false);
   EXPECT_EQ(policy.current(), 1U);
+}
+
+TEST(FollowPolicy, GivesAFrameToAnotherStructureWhereTheFirstMakesTooManyTests) {
+  FollowPolicy policy = started({{cheap}, {dear}});
+  ASSERT_TRUE(policy.follows(boxes, 1'000, false));
+  EXPECT_EQ(policy.max_tests(), 2 * boxes * 50);
+  EXPECT_TRUE(policy.passed_max_tests(1'000, true));
+  EXPECT_EQ(policy.current(), 1U);
+  EXPECT_FALSE(policy.is_following()) << "it has to be built";
+  EXPECT_FALSE(policy.passed_max_tests(1'000, true)) << "no other is left";
+}
+
+TEST(FollowPolicy, LimitsNoStructureThatIsToFollow) {
+  FollowPolicy policy(Update::follow, finding, {{cheap}});
+  policy.follows(boxes, boxes, true);
+  EXPECT_EQ(policy.max_tests(), std::numeric_limits<std::uint64_t>::max());
 }
 
 TEST(FollowPolicy, DoesAsItIsTold) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -114,7 +115,7 @@ class AutoSearcher final : public Searcher<D> {
       RefusedTile<D> refused;
       const std::optional<Statistics> statistics = search_with_choice(input, refused, pairs);
       if (!refused.is_refused()) return statistics;
-      sample_.take(input.boxes, Limits::sampled_boxes);
+      take_sample(input.boxes);
       choice_ = tests_on_best_axis(input.boxes) <= Limits::tests_of_an_uneven_tiles_axis
                     ? AutoReason::one_axis
                     : AutoReason::uneven_tile;
@@ -194,6 +195,11 @@ class AutoSearcher final : public Searcher<D> {
     choice_ = choice_for(boxes);
   }
 
+  void take_sample(std::span<const Box<D>> boxes) {
+    shift_ = core::sample_shift(boxes, Limits::hashed_boxes);
+    sample_.take(boxes, Limits::sampled_boxes, shift_);
+  }
+
   /// Sets tests_, by the sample.
   double tests_on_best_axis(std::span<const Box<D>> boxes) {
     const int best = sample_.axes_by_overlap()[0];
@@ -204,7 +210,7 @@ class AutoSearcher final : public Searcher<D> {
   AutoReason choice_for(std::span<const Box<D>> boxes) {
     if (boxes.size() <= Limits::few_boxes) return AutoReason::few;
     if (boxes.size() <= Limits::boxes_of_a_tile) return AutoReason::tile;
-    sample_.take(boxes, Limits::sampled_boxes);
+    take_sample(boxes);
     const auto count = static_cast<double>(boxes.size());
     if (tests_on_best_axis(boxes) <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
@@ -215,11 +221,12 @@ class AutoSearcher final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *
                                        (static_cast<double>(sample_[axis].high) - sample_[axis].low));
-    clustering_ = clustering<D>(boxes, reach);
+    clustering_ = clustering<D>(boxes, reach, shift_);
     return clustering_ >= Limits::clustered ? AutoReason::clusters : AutoReason::cells;
   }
 
   core::Sample<D> sample_;
+  std::uint32_t shift_ = 0;                                                      // of the sample
   std::array<std::unique_ptr<Searcher<D>>, chosen_algorithm.size()> searchers_;  // null until chosen
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
   AutoReason choice_ = AutoReason::few;

@@ -38,6 +38,9 @@ struct AutoThresholds {
 
   /// Boxes in a sample.
   static constexpr std::size_t sampled_boxes = 96;
+
+  /// Boxes whose hash decides where the sample begins.
+  static constexpr std::size_t hashed_boxes = 32;
 };
 
 }  // namespace broadside::algorithm

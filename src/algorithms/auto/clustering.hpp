@@ -16,14 +16,15 @@ namespace broadside::algorithm {
 
 /// The number of pairs of sampled boxes that are near on all axes, over the number that independent axes
 /// would give: 1 if boxes are spread evenly. Two boxes are near if their minima differ by at most `reach`.
+/// `shift`: by core::sample_shift().
 /// Cost: O(1): all pairs of the sample, without branches.
 template <int D>
-double clustering(std::span<const Box<D>> boxes, const std::array<float, D>& reach) {
+double clustering(std::span<const Box<D>> boxes, const std::array<float, D>& reach, std::uint32_t shift = 0) {
   constexpr std::size_t sampled = AutoThresholds<D>::sampled_boxes;
   const std::size_t count = std::min(boxes.size(), sampled);
   std::array<std::array<float, sampled>, D> minima;
   for (std::size_t i = 0; i < count; ++i) {
-    const Box<D>& box = boxes[core::sampled_place(i, boxes.size())];
+    const Box<D>& box = boxes[core::sampled_place(i + shift, boxes.size())];
     for (int axis = 0; axis < D; ++axis) minima[axis][i] = box.min[axis];
   }
   std::array<std::uint32_t, D> on_axis{};

@@ -80,6 +80,7 @@ class BvhFollower final : public Follower<D> {
       tests += kernels::follow(tree, std::span<const kernels::MovedBox<D>>(moved_), calls_for_.data(), begins,
                                ends);
       movers += moved_.size();
+      if (tests > change.max_tests) break;
       mend();
     }
     begins.flush();

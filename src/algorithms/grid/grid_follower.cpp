@@ -82,6 +82,7 @@ class GridFollower final : public Follower<D> {
         candidates += part.candidates;
         queries += part.boxes.size();
       }
+      if (work.tests > change.max_tests) break;
     }
     cells_.drop_stale();
     std::swap(moved_, moving_);
