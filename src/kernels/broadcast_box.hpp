@@ -45,7 +45,7 @@ HWY_INLINE std::uint32_t bits_of(FloatMask mask) { return bits_of(Floats(), mask
 
 /// Which of these lanes have a <= b.
 HWY_INLINE FloatMask also_at_most(FloatMask lanes_asked, FloatVector a, FloatVector b) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX3  // AVX-512
   // One instruction: with AVX-512, ands of masks compete with comparisons for the same units.
   if constexpr (lanes == 16)
     return FloatMask{_mm512_mask_cmp_ps_mask(lanes_asked.raw, a.raw, b.raw, _CMP_LE_OQ)};

@@ -39,8 +39,9 @@ HWY_INLINE std::uint32_t bits_of(Tag tag, hn::Mask<Tag> mask) {
     std::uint16_t bits;
     std::memcpy(&bits, bytes.data(), sizeof(bits));
     return bits;
+  } else {
+    return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
   }
-  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
 #endif
 }
 

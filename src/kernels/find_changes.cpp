@@ -2,7 +2,8 @@
 //
 // In blocks, each step runs for many boxes before the next one, so that none waits for memory. The first step
 // lists and prefetches the blocks in question. The second compares a box, now and before, with the sixteen
-// boxes of each block at once, and lists the blocks with hits without a branch. The third writes their pairs.
+// boxes of each block at once, and lists the blocks with hits without a branch. The third writes their pairs,
+// without a branch for each.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/find_changes.cpp"
 #include "kernels/find_changes.hpp"
@@ -86,17 +87,23 @@ class MovedSearch {
   HWY_INLINE void list_small(const CellsView<D>& cells, std::uint32_t moved, const CellLevel<D>& level,
                              std::uint32_t first, const std::array<std::uint32_t, D>& count) {
     if (HWY_UNLIKELY(listed_ + (std::size_t{1} << D) > max_listed)) compare();
+    std::array<std::uint32_t, D> has_two;  // 0 or 1
+    std::array<std::uint32_t, D> step;     // to the second cell, if there is one
+    for (int axis = 0; axis < D; ++axis) {
+      has_two[axis] = count[axis] - 1;
+      step[axis] = level.stride[axis] & (0U - has_two[axis]);
+    }
     for (std::uint32_t corner = 0; corner < 1U << D; ++corner) {
       std::uint32_t cell = first;
-      bool counts = true;
+      std::uint32_t counts = 1;
       for (int axis = 0; axis < D; ++axis) {
-        const std::uint32_t step = corner >> axis & 1U;
-        counts &= step < count[axis];
-        cell += step < count[axis] ? step * level.stride[axis] : 0;
+        if ((corner >> axis & 1U) == 0) continue;
+        counts &= has_two[axis];
+        cell += step[axis];
       }
       const std::uint32_t block = cells.first[cell];
       listed_tasks_[listed_] = {moved, block};
-      listed_ += static_cast<std::size_t>(counts & (block != no_slot));
+      listed_ += counts & static_cast<std::uint32_t>(block != no_slot);
       prefetch(block == no_slot ? 0 : block);
     }
   }
@@ -149,7 +156,7 @@ class MovedSearch {
           const std::uint32_t was = before.overlaps(blocks_.blocks[block]);
           const std::uint32_t is = now.overlaps(blocks_.blocks[block]);
           const std::uint32_t unknown = filter_changed | head.moving;
-          const std::uint32_t own = block == own_block ? own_lane : 0;
+          const std::uint32_t own = own_lane & (0U - static_cast<std::uint32_t>(block == own_block));
           const std::uint32_t hits = ((was ^ is) | (is & unknown)) & ~own;
           found_[found] = {number, block, static_cast<std::uint16_t>(hits), static_cast<std::uint16_t>(is)};
           found += static_cast<std::size_t>(hits != 0);
@@ -172,7 +179,7 @@ class MovedSearch {
 
   /// Takes the pairs of the hits: in each pass one of each block, until none is left. Where the hits are
   /// cannot be predicted, so there is no branch for a hit.
-  void take_hits(std::size_t count) {
+  HWY_NOINLINE void take_hits(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) hwy::Prefetch(blocks_.blocks[found_[i].block].id.data());
     while (count > 0) {
       if (*std::max_element(pair_counts_.begin(), pair_counts_.end()) + count > max_pairs) write();
@@ -196,7 +203,9 @@ class MovedSearch {
     const std::uint32_t is_candidate =
         is_marked | static_cast<std::uint32_t>(moved.filter_changed) | std::uint32_t{sinks_.moves[other]};
     const std::size_t kind = is_candidate * candidate + (found.is >> lane & 1U);
-    pairs_[kind][pair_counts_[kind]] = {BoxId{std::min(id, other)}, BoxId{std::max(id, other)}};
+    // Compilers make a branch of std::min().
+    const std::uint32_t swap = (id ^ other) & (0U - static_cast<std::uint32_t>(other < id));
+    pairs_[kind][pair_counts_[kind]] = {BoxId{id ^ swap}, BoxId{other ^ swap}};
     const std::uint32_t is_again =
         is_marked & static_cast<std::uint32_t>(sinks_.all_placed) & static_cast<std::uint32_t>(other > id);
     pair_counts_[kind] += static_cast<std::size_t>(other != id) & ~std::size_t{is_again};
@@ -218,7 +227,7 @@ class MovedSearch {
     return work_;
   }
 
-  /// What a pair is: its number if the boxes overlap now is one more than if they did before.
+  /// The kinds of pairs. The fourth is a candidate whose boxes overlap now.
   static constexpr std::size_t ended = 0;
   static constexpr std::size_t begun = 1;
   static constexpr std::size_t candidate = 2;

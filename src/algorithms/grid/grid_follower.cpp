@@ -34,8 +34,8 @@ namespace {
 constexpr std::size_t batch = 16384;
 
 /// Fewer movers are not put in order. More buckets would not stay in the first-level cache.
-constexpr std::size_t min_ordered = 64;
-constexpr std::size_t max_buckets = 1024;
+constexpr std::size_t min_ordered_movers = 64;
+constexpr std::size_t max_order_buckets = 1024;
 
 /// A mover takes as long as this many boxes of a search.
 constexpr std::size_t boxes_per_mover = 2;
@@ -125,14 +125,14 @@ class GridFollower final : public Follower<D> {
   /// once.
   std::span<const BoxId> in_order_of_blocks(std::span<const BoxId> ids) {
     const std::size_t slots = cells_.slots();
-    if (!cells_.are_revisited(ids.size()) || ids.size() < min_ordered) return ids;
-    const std::size_t buckets = std::min(max_buckets, std::bit_floor(ids.size()));
+    if (!cells_.are_revisited(ids.size()) || ids.size() < min_ordered_movers) return ids;
+    const std::size_t buckets = std::min(max_order_buckets, std::bit_floor(ids.size()));
     const auto shift = static_cast<std::uint32_t>(std::bit_width(slots / buckets));
     // A box that was absent has any slot.
     const auto bucket_of = [&](BoxId id) {
       return std::min<std::size_t>(cells_.slot(id) >> shift, buckets - 1);
     };
-    std::array<std::uint32_t, max_buckets> kept;
+    std::array<std::uint32_t, max_order_buckets> kept;
     const std::span<std::uint32_t> begins = std::span(kept).first(buckets);
     std::fill(begins.begin(), begins.end(), 0);
     for (const BoxId id : ids) ++begins[bucket_of(id)];
