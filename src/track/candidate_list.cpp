@@ -26,36 +26,75 @@ constexpr std::size_t max_candidates_per_box = 16;
 /// The number of candidates that are tested before what changed is noted.
 constexpr std::size_t tested_at_once = 512;
 
+/// Branchless. Every box has an absent one within it, as in kernels::select_outside().
+template <int D, typename Real>
+bool is_within(const Box<D, Real>& enlarged, const Box<D, Real>& box) {
+  unsigned within = 1;
+  for (int axis = 0; axis < D; ++axis) {
+    within &= static_cast<unsigned>(enlarged.min[axis] <= box.min[axis]) &
+              static_cast<unsigned>(box.max[axis] <= enlarged.max[axis]);
+  }
+  return within != 0;
+}
+
 }  // namespace
 
 template <int D, typename Real>
 std::uint64_t CandidateList<D, Real>::start(const Change<D, Real>& change,
                                             const core::Margins<D, Real>& margins,
                                             FollowOrFind<D, Real>& pairs, const EventSinks* events) {
+  find_all(change, margins, pairs);
+  test_all(change.now, change.workers);
+  if (events != nullptr) {
+    select_holding(begun_);
+    pairs.report(change, begun_, events->begun, events->ended);
+  }
+  return tests_at_first();
+}
+
+template <int D, typename Real>
+std::optional<Statistics> CandidateList<D, Real>::prepare(const Change<D, Real>& change,
+                                                          const core::Margins<D, Real>& margins,
+                                                          FollowOrFind<D, Real>& pairs,
+                                                          std::vector<Pair>& holding) {
+  find_all(change, margins, pairs);
+  sort_all();
+  test_all(change.now, change.workers);
+  select_holding(holding);
+  std::optional<Statistics> statistics = found_;
+  if (statistics) statistics->tests += candidates_.size();
+  return statistics;
+}
+
+/// Sets now_ and before_ to all boxes, enlarged, and candidates_ to their pairs.
+template <int D, typename Real>
+void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
+                                      FollowOrFind<D, Real>& pairs) {
   const std::size_t size = change.now.size();
   margins_ = StaggeredMargins<D, Real>(margins);
   is_sorted_ = false;
   is_followed_ = false;
   now_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) now_[i] = margins_.enlarged_at_first(i, change.now[i]);
+  margins_.enlarge_all(change.now, now_);
   pairs.lend_memory(candidates_);
   CandidateCollector<D, Real> collector(candidates_, max_candidates_per_box * size, max_candidates_per_pair,
                                         change.now);
   found_ = pairs.find_within_limits(now_, change.filters_now, change.workers, collector);
   collector.flush();
-  test_candidates(change.now, change.workers);
-  holding_ = static_cast<std::size_t>(std::count(holds_.begin(), holds_.end(), std::uint8_t{1}));
   before_ = now_;
   flags_.assign(size, 0);
-  if (events != nullptr) {
-    begun_.clear();
-    begun_.reserve(holding_);
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      if (holds_[i] != 0) begun_.push_back(candidates_[i]);
-    }
-    pairs.report(change, begun_, events->begun, events->ended);
+}
+
+/// Branchless: which candidates hold cannot be predicted.
+template <int D, typename Real>
+void CandidateList<D, Real>::select_holding(std::vector<Pair>& holding) const {
+  holding.resize(holding_ + 1);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    holding[count] = candidates_[i];
+    count += holds_[i];
   }
-  return found_.value_or(Statistics{}).tests + candidates_.size();
+  holding.resize(holding_);
 }
 
 template <int D, typename Real>
@@ -64,10 +103,9 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
   left_.clear();
   last_ = {.boxes = change.now.size(), .changed = change.changed.size()};
   if (change.changed.empty()) return {};
-  if (!std::exchange(is_sorted_, true)) {
-    core::sort_unique(candidates_, sorting_);
-    core::give_back(sorting_);
-    test_candidates(change.before, change.workers);
+  if (!is_sorted_) {
+    sort_all();
+    test_all(change.before, change.workers);
   }
   enlarge_anew(change);
   Statistics statistics;
@@ -150,7 +188,7 @@ void CandidateList<D, Real>::find_left(const Change<D, Real>& change) {
   } else {
     for (const BoxId id : change.changed) {
       const std::size_t i = index(id);
-      const bool stays = margins().keeps(now_[i], change.now[i], nullptr) &&
+      const bool stays = is_within(now_[i], change.now[i]) &&
                          !(has_filters && change.filters_before[i] != change.filters_now[i]);
       left_[count] = id;
       count += static_cast<std::size_t>(!stays);
@@ -222,15 +260,23 @@ std::size_t CandidateList<D, Real>::place_of(Pair pair, std::size_t from, std::s
                                   begin);
 }
 
-/// Sets holds_.
 template <int D, typename Real>
-void CandidateList<D, Real>::test_candidates(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+void CandidateList<D, Real>::sort_all() {
+  core::sort_unique(candidates_, sorting_);
+  core::give_back(sorting_);
+  is_sorted_ = true;
+}
+
+/// Sets holds_ and holding_.
+template <int D, typename Real>
+void CandidateList<D, Real>::test_all(std::span<const Box<D, Real>> boxes, const Workers& workers) {
   holds_.resize(candidates_.size());
   parallel_.start(workers, candidates_.size() / pairs_per_box);
   parallel_.for_ranges(candidates_.size(), [&](core::Range range, std::size_t) {
     kernels::set_overlap_flags(boxes, std::span<const Pair>(candidates_).subspan(range.begin, range.size()),
                                holds_.data() + range.begin);
   });
+  holding_ = static_cast<std::size_t>(std::count(holds_.begin(), holds_.end(), std::uint8_t{1}));
 }
 
 /// Tests the candidates, and reports those that began or ceased to hold.

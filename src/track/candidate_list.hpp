@@ -41,6 +41,14 @@ class CandidateList {
   std::uint64_t start(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
                       FollowOrFind<D, Real>& pairs, const EventSinks* events);
 
+  /// The same in a first frame, and sorts the candidates at once. Sets `holding` to the pairs that hold,
+  /// sorted.
+  std::optional<Statistics> prepare(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
+                                    FollowOrFind<D, Real>& pairs, std::vector<Pair>& holding);
+
+  /// The margins of boxes that are enlarged from now on, once their motion is known.
+  void set_margins(const core::Margins<D, Real>& margins) { margins_ = StaggeredMargins<D, Real>(margins); }
+
   /// Writes the events of a frame. Throws LimitPassed before anything is written.
   Statistics update(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs, PairSink& begun,
                     PairSink& ended);
@@ -66,6 +74,10 @@ class CandidateList {
 
  private:
   std::size_t max_candidates() const noexcept;
+  void find_all(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
+                FollowOrFind<D, Real>& pairs);
+  void select_holding(std::vector<Pair>& holding) const;
+  std::uint64_t tests_at_first() const { return found_.value_or(Statistics{}).tests + candidates_.size(); }
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
   void enlarge_anew(const Change<D, Real>& change);
   void find_left(const Change<D, Real>& change);
@@ -73,7 +85,8 @@ class CandidateList {
   void change_candidates(PairSink& ended);
   std::size_t place_of(Pair pair, std::size_t from, std::size_t end) const noexcept;
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
-  void test_candidates(std::span<const Box<D, Real>> boxes, const Workers& workers);
+  void sort_all();
+  void test_all(std::span<const Box<D, Real>> boxes, const Workers& workers);
 
   StaggeredMargins<D, Real> margins_;
   bool is_sorted_ = false;

@@ -63,6 +63,10 @@ class FollowOrFind {
     find_anew_->report(change, found, begun, ended);
   }
 
+  /// As update() in a first frame, with pairs that were found in another way.
+  void start_with(const Change<D, Real>& change, std::vector<Pair>&& pairs,
+                  const std::optional<Statistics>& statistics);
+
   /// As FindAnew::lend_memory().
   void lend_memory(std::vector<Pair>& pairs) noexcept { find_anew_->lend_memory(pairs); }
 
@@ -79,10 +83,10 @@ class FollowOrFind {
   /// too many tests (see above), it throws LimitPassed, and the next update must be a rebuild.
   void limit_pairs(std::size_t max) noexcept { max_pairs_ = max; }
 
-  /// Releases the memory for the last frame. The next update must be a rebuild.
+  /// Releases the memory for the pairs of the last frame, and keeps that of the structure for the next one,
+  /// whose pages are in use already. The next update must be a rebuild.
   void forget() noexcept {
     if (find_anew_) find_anew_->forget();
-    follower_.reset();
     was_followed_ = false;
     policy_.lost();
   }
@@ -111,6 +115,7 @@ class FollowOrFind {
   using Followed = std::conditional_t<std::is_same_v<Real, float>, Follower<D>, DoubleFollower<D>>;
 
   std::optional<Statistics> follow(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void found(const Change<D, Real>& change, const std::optional<Statistics>& statistics);
   void start_following(std::span<const Box<D, Real>> boxes, const Workers& workers);
   void try_out(std::span<const Box<D, Real>> boxes, const Workers& workers);
   Followed& follower();
