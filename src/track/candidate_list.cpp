@@ -26,6 +26,9 @@ constexpr std::size_t max_candidates_per_box = 16;
 /// The number of candidates that are tested before what changed is noted.
 constexpr std::size_t tested_at_once = 512;
 
+/// The number of frames over which a structure takes enlarged boxes, if none leaves before.
+constexpr std::size_t frames_to_follow = 16;
+
 /// Branchless. Every box has an absent one within it, as in kernels::select_outside().
 template <int D, typename Real>
 bool is_within(const Box<D, Real>& enlarged, const Box<D, Real>& box) {
@@ -58,6 +61,7 @@ std::optional<Statistics> CandidateList<D, Real>::prepare(const Change<D, Real>&
                                                           FollowOrFind<D, Real>& pairs,
                                                           std::vector<Pair>& holding) {
   find_all(change, margins, pairs);
+  before_.assign(change.now.begin(), change.now.end());
   sort_all();
   test_all(change.now, change.workers);
   select_holding(holding);
@@ -66,7 +70,7 @@ std::optional<Statistics> CandidateList<D, Real>::prepare(const Change<D, Real>&
   return statistics;
 }
 
-/// Sets now_ and before_ to all boxes, enlarged, and candidates_ to their pairs.
+/// Sets now_ to all boxes, enlarged, and candidates_ to their pairs.
 template <int D, typename Real>
 void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
                                       FollowOrFind<D, Real>& pairs) {
@@ -74,6 +78,7 @@ void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core:
   margins_ = StaggeredMargins<D, Real>(margins);
   is_sorted_ = false;
   is_followed_ = false;
+  followed_ = 0;
   now_.resize(size);
   margins_.enlarge_all(change.now, now_);
   pairs.lend_memory(candidates_);
@@ -81,7 +86,6 @@ void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core:
                                         change.now);
   found_ = pairs.find_within_limits(now_, change.filters_now, change.workers, collector);
   collector.flush();
-  before_ = now_;
   flags_.assign(size, 0);
 }
 
@@ -107,20 +111,22 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
     sort_all();
     test_all(change.before, change.workers);
   }
-  enlarge_anew(change);
+  list_left(change);
+  last_.left = left_.size();
   Statistics statistics;
   if (!left_.empty()) {
-    if (!std::exchange(is_followed_, true))
+    if (!std::exchange(is_followed_, true)) {
+      before_ = now_;
       pairs.start_at(before_, candidates_.size(), found_, change.workers);
+    }
+    for (const BoxId id : left_) now_[index(id)] = margins().enlarged(change.now[index(id)], nullptr);
     statistics = find_candidates(change, pairs);
     change_candidates(ended);
-    for (const BoxId id : left_) {
-      before_[index(id)] = now_[index(id)];
-      flags_[index(id)] = 0;
-    }
+    keep_left();
+  } else if (!is_followed_ && pairs.is_following()) {
+    statistics = follow_share(change, pairs);
   }
   report(change, begun, ended);
-  last_.left = left_.size();
   last_.candidates = candidates_.size();
   statistics.tests += last_.candidates;
   return statistics;
@@ -163,9 +169,37 @@ Statistics CandidateList<D, Real>::find_candidates(const Change<D, Real>& change
   return statistics.value_or(Statistics{});
 }
 
-/// Sets left_ and flags_, and enlarges the boxes in left_.
+/// Puts the next share of the enlarged boxes into the structure of the boxes themselves, in their stead.
+/// Their pairs are candidates already.
 template <int D, typename Real>
-void CandidateList<D, Real>::enlarge_anew(const Change<D, Real>& change) {
+Statistics CandidateList<D, Real>::follow_share(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs) {
+  const std::size_t size = now_.size();
+  const std::size_t end = std::min(size, followed_ + size / frames_to_follow + 1);
+  for (; followed_ < end; ++followed_) {
+    left_.push_back(BoxId(followed_));
+    flags_[followed_] = 1;
+  }
+  PairCounter none;
+  const auto statistics = pairs.update(
+      {.before = before_, .now = now_, .changed = left_, .flags = flags_, .workers = change.workers}, none,
+      none);
+  keep_left();
+  is_followed_ = followed_ >= size;
+  return statistics.value_or(Statistics{});
+}
+
+/// Makes the enlarged boxes in left_ those of the frame before.
+template <int D, typename Real>
+void CandidateList<D, Real>::keep_left() noexcept {
+  for (const BoxId id : left_) {
+    before_[index(id)] = now_[index(id)];
+    flags_[index(id)] = 0;
+  }
+}
+
+/// Sets left_ and flags_.
+template <int D, typename Real>
+void CandidateList<D, Real>::list_left(const Change<D, Real>& change) {
   const std::size_t size = change.now.size();
   before_.resize(size, absent_box<D, Real>());
   now_.resize(size, absent_box<D, Real>());
@@ -174,7 +208,6 @@ void CandidateList<D, Real>::enlarge_anew(const Change<D, Real>& change) {
   for (const BoxId id : left_) flags_[index(id)] = 1;
   margins_.note_left(left_.size(), size);
   review(change);
-  for (const BoxId id : left_) now_[index(id)] = margins().enlarged(change.now[index(id)], nullptr);
 }
 
 /// Sets left_.

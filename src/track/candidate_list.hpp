@@ -79,7 +79,9 @@ class CandidateList {
   void select_holding(std::vector<Pair>& holding) const;
   std::uint64_t tests_at_first() const { return found_.value_or(Statistics{}).tests + candidates_.size(); }
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
-  void enlarge_anew(const Change<D, Real>& change);
+  Statistics follow_share(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
+  void keep_left() noexcept;
+  void list_left(const Change<D, Real>& change);
   void find_left(const Change<D, Real>& change);
   void review(const Change<D, Real>& change);
   void change_candidates(PairSink& ended);
@@ -90,15 +92,16 @@ class CandidateList {
 
   StaggeredMargins<D, Real> margins_;
   bool is_sorted_ = false;
-  bool is_followed_ = false;         // whether the FollowOrFind has started, as it does once a box leaves
+  bool is_followed_ = false;         // whether the FollowOrFind has all enlarged boxes
+  std::size_t followed_ = 0;         // the boxes that it has enlarged until then
   std::optional<Statistics> found_;  // of the search for the first candidates
   EnlargedFrame last_;
-  std::vector<Box<D, Real>> before_;  // enlarged boxes of the frame before
-  std::vector<Box<D, Real>> now_;
-  std::vector<BoxId> left_;          // boxes that left their enlarged boxes, or whose filter changed
-  std::vector<std::uint8_t> flags_;  // for each box, 1 if it is in left_; all 0 between updates
-  std::vector<Pair> candidates_;     // sorted from the second frame on
-  std::vector<std::uint8_t> holds_;  // for each candidate, whether the boxes themselves overlap
+  std::vector<Box<D, Real>> before_;  // those that the FollowOrFind has
+  std::vector<Box<D, Real>> now_;     // enlarged boxes
+  std::vector<BoxId> left_;           // boxes that left their enlarged boxes, or whose filter changed
+  std::vector<std::uint8_t> flags_;   // for each box, 1 if it is in left_; all 0 between updates
+  std::vector<Pair> candidates_;      // sorted from the second frame on
+  std::vector<std::uint8_t> holds_;   // for each candidate, whether the boxes themselves overlap
   std::vector<std::vector<std::uint32_t>> toggled_;  // by range: the candidates that began or ceased to hold
   std::size_t holding_ = 0;                          // candidates that hold
   std::vector<Pair> begun_;                          // candidates that began

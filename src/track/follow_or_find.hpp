@@ -86,10 +86,18 @@ class FollowOrFind {
   /// Releases the memory for the pairs of the last frame, and keeps that of the structure for the next one,
   /// whose pages are in use already. The next update must be a rebuild.
   void forget() noexcept {
-    if (find_anew_) find_anew_->forget();
-    was_followed_ = false;
+    forget_pairs();
     policy_.lost();
   }
+
+  /// Releases the memory for the pairs of the last frame. The structure still follows.
+  void forget_pairs() noexcept {
+    if (find_anew_) find_anew_->forget();
+    was_followed_ = false;
+  }
+
+  /// Whether a structure has the boxes of the last frame.
+  bool is_following() const noexcept { return policy_.is_following(); }
 
   /// Whether the last update compared all boxes.
   bool has_compared_all() const noexcept {

@@ -129,11 +129,11 @@ class Updater {
         are_many && !change.rebuild ? StaggeredMargins<D, Real>::suiting(change) : std::nullopt;
     if (!margins) return candidates_.release();
     candidates_.set_margins(*margins);
+    pairs_.forget_pairs();
     go_on_enlarged();
   }
 
   void go_on_enlarged() {
-    pairs_.forget();
     boxes_ = KnownBoxes::enlarged;
     policy_.started();
   }
@@ -164,6 +164,7 @@ class Updater {
     Statistics statistics = events == nullptr ? statistics_.value_or(Statistics{}) : Statistics{};
     try {
       statistics.tests += candidates_.start(change, *margins, pairs_, events);
+      pairs_.forget();
       go_on_enlarged();
       statistics_ = statistics;
       return true;
