@@ -1,5 +1,6 @@
 // CandidateList: the events of the boxes themselves, whatever happens while they are enlarged, and what that
 // saves.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -161,6 +162,86 @@ TEST(CandidateList, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
   EXPECT_FALSE(is_ever_enlarged(2000, 0.1F, 1));
   EXPECT_FALSE(is_ever_enlarged(30, 0.005F, 1));
   EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 100));
+}
+
+/// The second frame moves boxes in some way, or none; the frames after it let all tremble.
+void expect_the_same_events(const std::string& spec, const std::function<void(TremblingBoxes&)>& second,
+                            bool is_enlarged_at_once) {
+  TremblingBoxes world(1000, 7);
+  Tracker<2> tracker(spec);
+  Tracker<2> expected("grid:update=follow");
+  for (int frame = 0; frame < 50; ++frame) {
+    const std::vector<Box2> before = world.boxes;
+    if (frame == 1)
+      second(world);
+    else
+      world.tremble();
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < world.boxes.size(); ++i) {
+      if (i >= before.size() || before[i] != world.boxes[i]) changed.push_back(BoxId(i));
+    }
+    EXPECT_EQ(update(tracker, world.boxes, changed), update(expected, world.boxes, changed)) << frame;
+    if (frame == 1) {
+      EXPECT_EQ(is_enlarged(tracker.explanation()), is_enlarged_at_once);
+    }
+  }
+  EXPECT_TRUE(is_enlarged(tracker.explanation())) << tracker.explanation();
+}
+
+TEST(CandidateList, TellsTheSameWhateverTheSecondFrameDoes) {
+  for (const std::string spec : {"auto", "sweep_and_prune", "quadtree", "bvh"}) {
+    SCOPED_TRACE(spec);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.tremble(); }, true);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& /*world*/) {}, false);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.tremble(0.2F); }, false);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.boxes[3] = world.anywhere(); }, false);
+    expect_the_same_events(
+        spec,
+        [](TremblingBoxes& world) {
+          world.tremble();
+          for (int i = 0; i < 50; ++i) world.add();
+          for (std::size_t i = 1000; i < 1050; ++i) world.boxes[i] = world.rest[i];
+          for (std::size_t i = 0; i < 20; ++i) world.boxes[i] = absent_box<2>();
+        },
+        true);
+  }
+}
+
+TEST(CandidateList, MakesNoFrameOfASteadyMotionMuchLongerThanTheOthers) {
+  // Tests stand for time. A search makes some 20 to a box, one for each candidate is 3.
+  for (const bool drifts : {false, true}) {
+    TremblingBoxes world(5000, 12);
+    std::vector<Box2> boxes;
+    for (std::size_t i = 0; i < 5000; ++i) {
+      const float x = world.random.between(0, 60);
+      const float y = world.random.between(0, 60);
+      boxes.push_back({{x, y}, {x + 1, y + 1}});
+    }
+    world.rest = boxes;
+    Tracker<2> tracker("auto");
+    std::vector<std::uint64_t> tests;
+    for (int frame = 0; frame < 300; ++frame) {
+      for (std::size_t i = 0; i < 5000 && drifts; ++i) {
+        const float way = i % 2 == 0 ? 0.002F : -0.002F;
+        world.boxes[i].min[0] = boxes[i].min[0] + way * static_cast<float>(frame);
+        world.boxes[i].max[0] = world.boxes[i].min[0] + 1;
+        world.boxes[i].min[1] = boxes[i].min[1];
+        world.boxes[i].max[1] = boxes[i].max[1];
+      }
+      if (!drifts) world.tremble();
+      PairCounter none;
+      const auto statistics = tracker.update({world.boxes, world.all()}, none, none);
+      if (frame > 0) tests.push_back(statistics->tests);
+    }
+    const std::uint64_t worst = *std::ranges::max_element(tests);
+    const auto median = tests.begin() + 150;
+    std::ranges::nth_element(tests, median);
+    EXPECT_LE(worst, 4 * *median) << drifts;
+  }
 }
 
 TEST(CandidateList, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
