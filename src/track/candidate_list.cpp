@@ -62,6 +62,7 @@ std::optional<Statistics> CandidateList<D, Real>::prepare(const Change<D, Real>&
                                                           std::vector<Pair>& holding) {
   find_all(change, margins, pairs);
   before_.assign(change.now.begin(), change.now.end());
+  partly_ = before_;
   sort_all();
   test_all(change.now, change.workers);
   select_holding(holding);
@@ -117,6 +118,7 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
   if (!left_.empty()) {
     if (!std::exchange(is_followed_, true)) {
       before_ = now_;
+      core::give_back(partly_);
       pairs.start_at(before_, candidates_.size(), found_, change.workers);
     }
     for (const BoxId id : left_) now_[index(id)] = margins().enlarged(change.now[index(id)], nullptr);
@@ -175,16 +177,18 @@ template <int D, typename Real>
 Statistics CandidateList<D, Real>::follow_share(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs) {
   const std::size_t size = now_.size();
   const std::size_t end = std::min(size, followed_ + size / frames_to_follow + 1);
+  partly_.resize(size, absent_box<D, Real>());
   for (; followed_ < end; ++followed_) {
-    left_.push_back(BoxId(followed_));
-    flags_[followed_] = 1;
+    partly_[followed_] = now_[followed_];
+    leave(followed_);
   }
   PairCounter none;
   const auto statistics = pairs.update(
-      {.before = before_, .now = now_, .changed = left_, .flags = flags_, .workers = change.workers}, none,
+      {.before = before_, .now = partly_, .changed = left_, .flags = flags_, .workers = change.workers}, none,
       none);
   keep_left();
   is_followed_ = followed_ >= size;
+  if (is_followed_) core::give_back(partly_);
   return statistics.value_or(Statistics{});
 }
 
@@ -206,6 +210,11 @@ void CandidateList<D, Real>::list_left(const Change<D, Real>& change) {
   flags_.resize(size);
   find_left(change);
   for (const BoxId id : left_) flags_[index(id)] = 1;
+  // Elsewhere an absent box stays in its enlarged box. Here the array may have ended with the frame, and the
+  // next frame would not know of these.
+  for (std::size_t i = size; i > 0 && !is_present(change.now[i - 1]); --i) {
+    if (is_present(now_[i - 1])) leave(i - 1);
+  }
   margins_.note_left(left_.size(), size);
   review(change);
 }
@@ -235,10 +244,14 @@ void CandidateList<D, Real>::find_left(const Change<D, Real>& change) {
 template <int D, typename Real>
 void CandidateList<D, Real>::review(const Change<D, Real>& change) {
   margins_.review(change.now.size(), [&](std::size_t i) {
-    if (flags_[i] != 0 || !margins_.are_much_too_large(now_[i], change.now[i])) return;
-    flags_[i] = 1;
-    left_.push_back(BoxId(i));
+    if (flags_[i] == 0 && margins_.are_much_too_large(now_[i], change.now[i])) leave(i);
   });
+}
+
+/// Lists a box in left_, once.
+template <int D, typename Real>
+void CandidateList<D, Real>::leave(std::size_t i) {
+  if (std::exchange(flags_[i], std::uint8_t{1}) == 0) left_.push_back(BoxId(i));
 }
 
 /// Removes the candidates that ended, with an event if they held, and inserts those that began. Both are few:

@@ -63,12 +63,13 @@ class CandidateList {
   std::size_t candidate_count() const noexcept { return candidates_.size(); }
 
   void release() noexcept {
-    core::give_back(before_, now_, flags_, candidates_, holds_, toggled_, begun_, ended_, sorting_, places_);
+    core::give_back(before_, now_, partly_, flags_, candidates_, holds_, toggled_, begun_, ended_, sorting_,
+                    places_);
   }
 
   std::size_t bytes() const noexcept {
-    return core::bytes_of(before_, now_, left_, flags_, candidates_, holds_, begun_, ended_, sorting_,
-                          places_) +
+    return core::bytes_of(before_, now_, partly_, left_, flags_, candidates_, holds_, begun_, ended_,
+                          sorting_, places_) +
            core::bytes_of(toggled_);
   }
 
@@ -84,6 +85,7 @@ class CandidateList {
   void list_left(const Change<D, Real>& change);
   void find_left(const Change<D, Real>& change);
   void review(const Change<D, Real>& change);
+  void leave(std::size_t i);
   void change_candidates(PairSink& ended);
   std::size_t place_of(Pair pair, std::size_t from, std::size_t end) const noexcept;
   void report(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
@@ -98,6 +100,7 @@ class CandidateList {
   EnlargedFrame last_;
   std::vector<Box<D, Real>> before_;  // those that the FollowOrFind has
   std::vector<Box<D, Real>> now_;     // enlarged boxes
+  std::vector<Box<D, Real>> partly_;  // before_ with the next share enlarged, until all are
   std::vector<BoxId> left_;           // boxes that left their enlarged boxes, or whose filter changed
   std::vector<std::uint8_t> flags_;   // for each box, 1 if it is in left_; all 0 between updates
   std::vector<Pair> candidates_;      // sorted from the second frame on

@@ -211,6 +211,31 @@ TEST(CandidateList, TellsTheSameWhateverTheSecondFrameDoes) {
   }
 }
 
+TEST(CandidateList, ForgetsBoxesBehindTheEndOfTheArray) {
+  TremblingBoxes world(1000, 8);
+  Tracker<2> tracker("auto");
+  Tracker<2> expected("grid:update=follow");
+  const auto expect_the_same = [&](std::size_t count, const std::vector<Filter>& filters) {
+    world.tremble();
+    const Frame<2> frame{std::span(world.boxes).first(count), Ids(world.all()), filters};
+    EXPECT_EQ(update(tracker, frame), update(expected, frame)) << count;
+  };
+  for (int i = 0; i < 5; ++i) expect_the_same(1000, {});
+  ASSERT_TRUE(is_enlarged(tracker.explanation()));
+  const auto all = world.all();
+  const auto shrink = [&](std::size_t count) {
+    world.tremble();
+    const Frame<2> frame{std::span(world.boxes).first(count), std::span(all).first(count)};
+    EXPECT_EQ(update(tracker, frame), update(expected, frame)) << count;
+  };
+  shrink(900);
+  shrink(900);
+  // The last ones come back, and meet nothing.
+  std::vector<Filter> filters(1000);
+  for (std::size_t i = 900; i < 1000; ++i) filters[i].mask = 0;
+  for (int i = 0; i < 3; ++i) expect_the_same(1000, filters);
+}
+
 TEST(CandidateList, MakesNoFrameOfASteadyMotionMuchLongerThanTheOthers) {
   // Tests stand for time. A search makes some 20 to a box, one for each candidate is 3.
   for (const bool drifts : {false, true}) {
