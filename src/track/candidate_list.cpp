@@ -152,15 +152,7 @@ Statistics CandidateList<D, Real>::find_candidates(const Change<D, Real>& change
     PairCollector ended_candidates(ended_);
     // An event may be written more than once.
     LimitSink limited(2 * max, begun_candidates);
-    pairs.limit_pairs(max);
-    statistics = pairs.update({.before = before_,
-                               .now = now_,
-                               .changed = left_,
-                               .flags = flags_,
-                               .filters_before = change.filters_before,
-                               .filters_now = change.filters_now,
-                               .workers = change.workers},
-                              limited, ended_candidates);
+    statistics = update_pairs(change, now_, pairs, limited, ended_candidates);
     limited.flush();
     begun_candidates.flush();
     ended_candidates.flush();
@@ -169,6 +161,23 @@ Statistics CandidateList<D, Real>::find_candidates(const Change<D, Real>& change
   core::sort_unique(ended_, sorting_);
   if (candidates_.size() + begun_.size() > max + ended_.size()) throw LimitPassed();
   return statistics.value_or(Statistics{});
+}
+
+/// Updates the pairs of enlarged boxes: those in left_ change from before_ to `now`.
+template <int D, typename Real>
+std::optional<Statistics> CandidateList<D, Real>::update_pairs(const Change<D, Real>& change,
+                                                               std::span<const Box<D, Real>> now,
+                                                               FollowOrFind<D, Real>& pairs, PairSink& begun,
+                                                               PairSink& ended) {
+  pairs.limit_pairs(max_candidates());
+  return pairs.update({.before = before_,
+                       .now = now,
+                       .changed = left_,
+                       .flags = flags_,
+                       .filters_before = change.filters_before,
+                       .filters_now = change.filters_now,
+                       .workers = change.workers},
+                      begun, ended);
 }
 
 /// Puts the next share of the enlarged boxes into the structure of the boxes themselves, in their stead.
@@ -183,9 +192,7 @@ Statistics CandidateList<D, Real>::follow_share(const Change<D, Real>& change, F
     leave(followed_);
   }
   PairCounter none;
-  const auto statistics = pairs.update(
-      {.before = before_, .now = partly_, .changed = left_, .flags = flags_, .workers = change.workers}, none,
-      none);
+  const auto statistics = update_pairs(change, partly_, pairs, none, none);
   keep_left();
   is_followed_ = followed_ >= size;
   if (is_followed_) core::give_back(partly_);

@@ -80,6 +80,8 @@ class CandidateList {
   void select_holding(std::vector<Pair>& holding) const;
   std::uint64_t tests_at_first() const { return found_.value_or(Statistics{}).tests + candidates_.size(); }
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
+  std::optional<Statistics> update_pairs(const Change<D, Real>& change, std::span<const Box<D, Real>> now,
+                                         FollowOrFind<D, Real>& pairs, PairSink& begun, PairSink& ended);
   Statistics follow_share(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
   void keep_left() noexcept;
   void list_left(const Change<D, Real>& change);

@@ -99,10 +99,9 @@ class FollowOrFind {
   /// Whether a structure has the boxes of the last frame.
   bool is_following() const noexcept { return policy_.is_following(); }
 
-  /// Whether the last update compared all boxes.
-  bool has_compared_all() const noexcept {
-    return was_followed_ && structures_[policy_.current()].max_boxes > 0;
-  }
+  /// Whether the structure in use compares all boxes, and whether the last update did so.
+  bool compares_all() const noexcept { return structures_[policy_.current()].max_boxes > 0; }
+  bool has_compared_all() const noexcept { return was_followed_ && compares_all(); }
 
   std::string explanation() const;
 

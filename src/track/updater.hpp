@@ -118,19 +118,25 @@ class Updater {
     }
     begun.put(holding);
     pairs_.start_with(change, std::move(holding), statistics_);
+    if (pairs_.compares_all()) drop_prepared();
     return true;
   }
 
   /// In the frame after prepare(): uses the candidates if many boxes move and hardly any moves far.
   void use_prepared(const Change<D, Real>& change) {
-    is_prepared_ = false;
     const bool are_many = EnlargePolicy::are_many(change.now.size(), change.changed.size());
     const auto margins =
         are_many && !change.rebuild ? StaggeredMargins<D, Real>::suiting(change) : std::nullopt;
-    if (!margins) return candidates_.release();
+    if (!margins) return drop_prepared();
+    is_prepared_ = false;
     candidates_.set_margins(*margins);
     pairs_.forget_pairs();
     go_on_enlarged();
+  }
+
+  void drop_prepared() noexcept {
+    is_prepared_ = false;
+    candidates_.release();
   }
 
   void go_on_enlarged() {

@@ -215,21 +215,15 @@ TEST(CandidateList, ForgetsBoxesBehindTheEndOfTheArray) {
   TremblingBoxes world(1000, 8);
   Tracker<2> tracker("auto");
   Tracker<2> expected("grid:update=follow");
-  const auto expect_the_same = [&](std::size_t count, const std::vector<Filter>& filters) {
+  const Ids all = world.all();
+  const auto expect_the_same = [&](std::size_t count, std::span<const Filter> filters) {
     world.tremble();
-    const Frame<2> frame{std::span(world.boxes).first(count), Ids(world.all()), filters};
+    const Frame<2> frame{std::span(world.boxes).first(count), std::span(all).first(count), filters};
     EXPECT_EQ(update(tracker, frame), update(expected, frame)) << count;
   };
   for (int i = 0; i < 5; ++i) expect_the_same(1000, {});
   ASSERT_TRUE(is_enlarged(tracker.explanation()));
-  const auto all = world.all();
-  const auto shrink = [&](std::size_t count) {
-    world.tremble();
-    const Frame<2> frame{std::span(world.boxes).first(count), std::span(all).first(count)};
-    EXPECT_EQ(update(tracker, frame), update(expected, frame)) << count;
-  };
-  shrink(900);
-  shrink(900);
+  for (int i = 0; i < 2; ++i) expect_the_same(900, {});
   // The last ones come back, and meet nothing.
   std::vector<Filter> filters(1000);
   for (std::size_t i = 900; i < 1000; ++i) filters[i].mask = 0;
@@ -276,7 +270,7 @@ TEST(CandidateList, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
   Tracker<2> tracker("auto");
   std::int64_t pairs = 0;
   std::optional<Statistics> statistics;
-  for (int frame = 0; frame < 12; ++frame) {
+  for (int frame = 0; frame < 20; ++frame) {
     world.tremble();
     for (std::size_t i = 0; i < 50; ++i) world.boxes[i] = world.rest[i];
     PairCounter begun;
