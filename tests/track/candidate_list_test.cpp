@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -208,6 +210,54 @@ TEST(CandidateList, TellsTheSameWhateverTheSecondFrameDoes) {
           for (std::size_t i = 0; i < 20; ++i) world.boxes[i] = absent_box<2>();
         },
         true);
+  }
+}
+
+/// Expects that no box changes unlisted, and passes all on to another follower.
+class StrictFollower final : public Follower<2> {
+ public:
+  explicit StrictFollower(std::unique_ptr<Follower<2>> other) : other_(std::move(other)) {}
+
+  std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    boxes_.resize(change.now.size(), absent_box<2>());
+    if (change.rebuild) boxes_.assign(change.before.begin(), change.before.end());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      wrong += static_cast<std::size_t>(change.before[i] != boxes_[i]);
+      wrong += static_cast<std::size_t>(change.flags[i] == 0 && change.now[i] != boxes_[i]);
+    }
+    EXPECT_EQ(wrong, 0U);
+    boxes_.assign(change.now.begin(), change.now.end());
+    return other_->follow(change, begun, ended);
+  }
+
+ private:
+  std::unique_ptr<Follower<2>> other_;
+  std::vector<Box2> boxes_;
+};
+
+TEST(CandidateList, ListsForItsFollowerEachBoxThatChanges) {
+  Algorithm strict = *find_algorithm("quadtree");
+  for (FollowerChoice<2>& choice : strict.in_2d.followers) {
+    choice.make = [make = choice.make](const Settings& settings) {
+      return std::make_unique<StrictFollower>(make(settings));
+    };
+  }
+  for (const bool drifts : {false, true}) {
+    TremblingBoxes world(1000, 6);
+    Tracker<2> tracker(strict, Spec("quadtree"));
+    int enlarged = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+      for (std::size_t i = 0; i < 100 && drifts; ++i) {
+        world.rest[i].min[0] += 0.005F;
+        world.rest[i].max[0] += 0.005F;
+      }
+      world.tremble();
+      PairCounter none;
+      tracker.update({world.boxes, world.all()}, none, none);
+      enlarged += static_cast<int>(is_enlarged(tracker.explanation()));
+    }
+    EXPECT_GT(enlarged, 90);
   }
 }
 
