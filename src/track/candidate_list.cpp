@@ -223,7 +223,8 @@ void CandidateList<D, Real>::list_left(const Change<D, Real>& change) {
     if (is_present(now_[i - 1])) leave(i - 1);
   }
   margins_.note_left(left_.size(), size);
-  review(change);
+  // Not while the structure takes shares: a box that leaves would have it built anew.
+  if (partly_.empty()) review(change);
 }
 
 /// Sets left_.
