@@ -71,6 +71,32 @@ std::optional<Statistics> CandidateList<D, Real>::prepare(const Change<D, Real>&
   return statistics;
 }
 
+template <int D, typename Real>
+void CandidateList<D, Real>::set_margins(const core::Margins<D, Real>& margins) {
+  const bool are_smaller = margins.relative < margins_.now().relative;
+  margins_ = StaggeredMargins<D, Real>(margins);
+  if (!are_smaller) return;
+  std::vector<Box<D, Real>> smaller(before_.size());
+  margins_.enlarge_all(before_, smaller);
+  for (std::size_t i = 0; i < smaller.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      now_[i].min[axis] = std::max(now_[i].min[axis], smaller[i].min[axis]);
+      now_[i].max[axis] = std::min(now_[i].max[axis], smaller[i].max[axis]);
+    }
+  }
+  std::vector<std::uint8_t> stays(candidates_.size());
+  kernels::set_overlap_flags(std::span<const Box<D, Real>>(now_), std::span<const Pair>(candidates_),
+                             stays.data());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    candidates_[count] = candidates_[i];
+    holds_[count] = holds_[i];
+    count += stays[i];
+  }
+  candidates_.resize(count);
+  holds_.resize(count);
+}
+
 /// Sets now_ to all boxes, enlarged, and candidates_ to their pairs.
 template <int D, typename Real>
 void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
@@ -80,6 +106,7 @@ void CandidateList<D, Real>::find_all(const Change<D, Real>& change, const core:
   is_sorted_ = false;
   is_followed_ = false;
   followed_ = 0;
+  takes_shares_ = false;
   now_.resize(size);
   margins_.enlarge_all(change.now, now_);
   pairs.lend_memory(candidates_);
@@ -125,7 +152,7 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
     statistics = find_candidates(change, pairs);
     change_candidates(ended);
     keep_left();
-  } else if (!is_followed_ && pairs.is_following()) {
+  } else if (takes_shares_ && !partly_.empty() && pairs.is_following()) {
     statistics = follow_share(change, pairs);
   }
   report(change, begun, ended);
@@ -223,8 +250,7 @@ void CandidateList<D, Real>::list_left(const Change<D, Real>& change) {
     if (is_present(now_[i - 1])) leave(i - 1);
   }
   margins_.note_left(left_.size(), size);
-  // Not while the structure takes shares: a box that leaves would have it built anew.
-  if (partly_.empty()) review(change);
+  review(change);
 }
 
 /// Sets left_.
@@ -252,7 +278,12 @@ void CandidateList<D, Real>::find_left(const Change<D, Real>& change) {
 template <int D, typename Real>
 void CandidateList<D, Real>::review(const Change<D, Real>& change) {
   margins_.review(change.now.size(), [&](std::size_t i) {
-    if (flags_[i] == 0 && margins_.are_much_too_large(now_[i], change.now[i])) leave(i);
+    if (flags_[i] != 0 || !margins_.are_much_too_large(now_[i], change.now[i])) return;
+    // A box that leaves before the structure has all would have it built anew, in one frame.
+    if (partly_.empty())
+      leave(i);
+    else
+      takes_shares_ = true;
   });
 }
 

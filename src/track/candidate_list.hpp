@@ -46,8 +46,9 @@ class CandidateList {
   std::optional<Statistics> prepare(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
                                     FollowOrFind<D, Real>& pairs, std::vector<Pair>& holding);
 
-  /// The margins of boxes that are enlarged from now on, once their motion is known.
-  void set_margins(const core::Margins<D, Real>& margins) { margins_ = StaggeredMargins<D, Real>(margins); }
+  /// Sets the margins after prepare(), once it is known how boxes move. Drops candidates that smaller margins
+  /// do not make.
+  void set_margins(const core::Margins<D, Real>& margins);
 
   /// Writes the events of a frame. Throws LimitPassed before anything is written.
   Statistics update(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs, PairSink& begun,
@@ -98,6 +99,7 @@ class CandidateList {
   bool is_sorted_ = false;
   bool is_followed_ = false;         // whether the FollowOrFind has all enlarged boxes
   std::size_t followed_ = 0;         // the boxes that it has enlarged until then
+  bool takes_shares_ = false;        // whether it should get to have all, since margins shrink
   std::optional<Statistics> found_;  // of the search for the first candidates
   EnlargedFrame last_;
   std::vector<Box<D, Real>> before_;  // those that the FollowOrFind has
