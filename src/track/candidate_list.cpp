@@ -52,7 +52,7 @@ std::uint64_t CandidateList<D, Real>::start(const Change<D, Real>& change,
     select_holding(begun_);
     pairs.report(change, begun_, events->begun, events->ended);
   }
-  return tests_at_first();
+  return found_.value_or(Statistics{}).tests + candidates_.size();
 }
 
 template <int D, typename Real>
@@ -144,7 +144,7 @@ Statistics CandidateList<D, Real>::update(const Change<D, Real>& change, FollowO
   Statistics statistics;
   if (!left_.empty()) {
     if (!std::exchange(is_followed_, true)) {
-      before_ = now_;
+      before_ = now_;  // enlarged as before this frame
       core::give_back(partly_);
       pairs.start_at(before_, candidates_.size(), found_, change.workers);
     }

@@ -79,7 +79,6 @@ class CandidateList {
   void find_all(const Change<D, Real>& change, const core::Margins<D, Real>& margins,
                 FollowOrFind<D, Real>& pairs);
   void select_holding(std::vector<Pair>& holding) const;
-  std::uint64_t tests_at_first() const { return found_.value_or(Statistics{}).tests + candidates_.size(); }
   Statistics find_candidates(const Change<D, Real>& change, FollowOrFind<D, Real>& pairs);
   std::optional<Statistics> update_pairs(const Change<D, Real>& change, std::span<const Box<D, Real>> now,
                                          FollowOrFind<D, Real>& pairs, PairSink& begun, PairSink& ended);

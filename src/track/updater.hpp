@@ -111,6 +111,7 @@ class Updater {
     } catch (const LimitPassed&) {
       tests_in_vain_ = candidates_.candidate_count();  // those found so far
     } catch (const std::bad_alloc&) {
+      policy_.out_of_memory();
     }
     if (!is_prepared_) {
       candidates_.release();
