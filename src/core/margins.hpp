@@ -55,8 +55,7 @@ struct Margins {
     return keeps != 0;
   }
 
- private:
-  /// Infinite sides are ignored.
+  /// The margin of a box on each side. Infinite sides are ignored.
   Real margin_of(const Box<D, Real>& box) const noexcept {
     if (!has_relative) return margin;
     constexpr Real infinity = std::numeric_limits<Real>::infinity();

@@ -152,7 +152,7 @@ void sort_part(std::span<Pair> pairs, Checkpoint& checkpoint) {
 }  // namespace
 
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch) {
-  sort_pairs(pairs, scratch);
+  if (!std::is_sorted(pairs.begin(), pairs.end())) sort_pairs(pairs, scratch);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 

@@ -7,7 +7,7 @@
 
 namespace broadside::core {
 
-/// Sorts as sort_pairs() does, and drops duplicates.
+/// Sorts as sort_pairs() does unless the pairs are sorted, and drops duplicates.
 void sort_unique(std::vector<Pair>& pairs, std::vector<Pair>& scratch);
 
 }  // namespace broadside::core

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadside/filter.hpp"
@@ -41,6 +42,12 @@ class FindAnew {
 
   /// Whether the pairs of the last frame are known.
   bool knows_pairs() const noexcept { return has_pairs_; }
+
+  /// Takes the pairs of a frame that were found in another way.
+  void take(std::vector<Pair>&& pairs) noexcept {
+    pairs_ = std::move(pairs);
+    has_pairs_ = true;
+  }
 
   /// Writes the events of a change from `found`, all pairs that hold after it. knows_pairs() must be true.
   void report(const Change<D, Real>& change, std::span<const Pair> found, PairSink& begun, PairSink& ended);

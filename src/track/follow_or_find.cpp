@@ -78,12 +78,28 @@ template <int D, typename Real>
 std::optional<Statistics> FollowOrFind<D, Real>::find(const Change<D, Real>& change, PairSink& begun,
                                                       PairSink& ended) {
   const std::optional<Statistics> statistics = find_anew_->update(change, max_pairs_, begun, ended);
+  found(change, statistics);
+  return statistics;
+}
+
+template <int D, typename Real>
+void FollowOrFind<D, Real>::start_with(const Change<D, Real>& change, std::vector<Pair>&& pairs,
+                                       const std::optional<Statistics>& statistics) {
+  changed_ = change.changed.size();
+  was_followed_ = policy_.follows(change.now.size(), changed_, true);
+  find_anew_->take(std::move(pairs));
+  found(change, statistics);
+}
+
+/// Notes that all pairs were found.
+template <int D, typename Real>
+void FollowOrFind<D, Real>::found(const Change<D, Real>& change,
+                                  const std::optional<Statistics>& statistics) {
   policy_.found(change.now.size(), find_anew_->pair_count(), statistics);
   // Frames after the first usually have few changes. The structure that follows them is built now, so that
   // the second frame does not take longer than later ones.
   if (change.rebuild && policy_.update() == Update::automatic && !structures_.empty())
     start_following(change.now, change.workers);
-  return statistics;
 }
 
 /// The structure in use; makes it if it does not exist yet.

@@ -64,6 +64,10 @@ class FollowOrFind {
     find_anew_->report(change, found, begun, ended);
   }
 
+  /// As update() in a first frame, with pairs that were found in another way.
+  void start_with(const Change<D, Real>& change, std::vector<Pair>&& pairs,
+                  const std::optional<Statistics>& statistics);
+
   /// As FindAnew::lend_memory().
   void lend_memory(std::vector<Pair>& pairs) noexcept { find_anew_->lend_memory(pairs); }
 
@@ -80,18 +84,25 @@ class FollowOrFind {
   /// too many tests (see above), it throws LimitPassed, and the next update must be a rebuild.
   void limit_pairs(std::size_t max) noexcept { max_pairs_ = max; }
 
-  /// Releases the memory for the last frame. The next update must be a rebuild.
+  /// Releases the memory for the pairs of the last frame, and keeps that of the structure for the next one,
+  /// whose pages are in use already. The next update must be a rebuild.
   void forget() noexcept {
-    if (find_anew_) find_anew_->forget();
-    follower_.reset();
-    was_followed_ = false;
+    forget_pairs();
     policy_.lost();
   }
 
-  /// Whether the last update compared all boxes.
-  bool has_compared_all() const noexcept {
-    return was_followed_ && structures_[policy_.current()].max_boxes > 0;
+  /// Releases the memory for the pairs of the last frame. The structure still follows.
+  void forget_pairs() noexcept {
+    if (find_anew_) find_anew_->forget();
+    was_followed_ = false;
   }
+
+  /// Whether a structure has the boxes of the last frame.
+  bool is_following() const noexcept { return policy_.is_following(); }
+
+  /// Whether the structure in use compares all boxes, and whether the last update did so.
+  bool compares_all() const noexcept { return structures_[policy_.current()].max_boxes > 0; }
+  bool has_compared_all() const noexcept { return was_followed_ && compares_all(); }
 
   std::string explanation() const;
 
@@ -114,6 +125,7 @@ class FollowOrFind {
   std::optional<Statistics> follow(const Change<D, Real>& change, std::uint64_t max_tests, PairSink& begun,
                                    PairSink& ended);
   std::optional<Statistics> find(const Change<D, Real>& change, PairSink& begun, PairSink& ended);
+  void found(const Change<D, Real>& change, const std::optional<Statistics>& statistics);
   void start_following(std::span<const Box<D, Real>> boxes, const Workers& workers);
   void try_out(std::span<const Box<D, Real>> boxes, const Workers& workers);
   Followed& follower();

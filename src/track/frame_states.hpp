@@ -29,7 +29,7 @@ class FrameStates {
             core::Parallel& parallel) {
     const bool had_filters = !filters_before_.empty();
     is_whole_ = !takes_all && lists_all && frame.filters.empty() != had_filters;
-    if (is_whole_) return take_whole(frame, parallel);
+    if (is_whole_) return take_all_boxes(frame, known_, parallel);
     if (std::exchange(now_is_old_, false)) now_ = before_;
     const std::size_t size = std::max(frame.boxes.size(), known_);
     core::resize_by_eighths(before_, size, absent_box<D, Real>());
@@ -40,9 +40,9 @@ class FrameStates {
     } else {
       filters_now_.clear();
     }
-    // Flags are all 0 between two updates, unless the last one failed.
-    if (takes_all) std::fill(flags_.begin(), flags_.end(), std::uint8_t{0});
     core::resize_by_eighths(flags_, size);
+    if (takes_all || frame.filters.empty() == had_filters) return take_all_boxes(frame, size, parallel);
+    // Flags are all 0, since the last update did not fail.
     changed_.clear();
     invalid_.clear();
     const auto copy = [this, boxes = frame.boxes, filters = frame.filters](std::size_t place) {
@@ -59,10 +59,6 @@ class FrameStates {
         invalid_.push_back(BoxId(place));
       }
     };
-    if (takes_all || frame.filters.empty() == had_filters) {
-      for (std::size_t i = 0; i < size; ++i) take_once(i);
-      return;
-    }
     if (lists_once) {
       changed_.assign(frame.changed.begin(), frame.changed.end());
       parallel.for_ranges(changed_.size(), [&](core::Range range, std::size_t) {
@@ -140,19 +136,22 @@ class FrameStates {
   }
 
  private:
-  /// Takes a frame that lists every box: array by array, without a look at the list.
-  void take_whole(const Frame<D, Real>& frame, core::Parallel& parallel) {
+  /// Takes every box as changed: array by array, without a look at the list.
+  void take_all_boxes(const Frame<D, Real>& frame, std::size_t size, core::Parallel& parallel) {
     // Not a copy: another thread may have written to the list since it was checked.
-    changed_.resize(known_);
-    for (std::size_t i = 0; i < known_; ++i) changed_[i] = BoxId(i);
+    changed_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) changed_[i] = BoxId(i);
     invalid_.clear();
     std::fill(flags_.begin(), flags_.end(), std::uint8_t{1});
-    parallel.for_ranges(known_, [&](core::Range range, std::size_t) {
-      std::copy(&frame.boxes[range.begin], &frame.boxes[range.begin] + range.size(), &now_[range.begin]);
+    parallel.for_ranges(frame.boxes.size(), [&](core::Range range, std::size_t) {
+      std::copy_n(frame.boxes.data() + range.begin, range.size(), now_.data() + range.begin);
     });
-    std::copy(frame.filters.begin(), frame.filters.end(), filters_now_.begin());
+    std::fill(now_.begin() + static_cast<std::ptrdiff_t>(frame.boxes.size()), now_.end(),
+              absent_box<D, Real>());
+    const auto others = std::copy(frame.filters.begin(), frame.filters.end(), filters_now_.begin());
+    std::fill(others, filters_now_.end(), Filter{});
     if (kernels::all_present(std::span<const Box<D, Real>>(now_))) return;
-    for (std::size_t i = 0; i < known_; ++i) {
+    for (std::size_t i = 0; i < size; ++i) {
       if (!core::is_invalid(now_[i])) continue;
       now_[i] = absent_box<D, Real>();
       invalid_.push_back(BoxId(i));

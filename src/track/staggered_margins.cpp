@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/sample.hpp"
 
@@ -125,12 +126,38 @@ auto StaggeredMargins<D, Real>::suiting(const Change<D, Real>& change)
       .margin = greatest->absolute * frames, .relative = relative, .frames = 0, .is_of_shortest = true};
 }
 
+/// The margins of boxes of median size: large boxes do not meet all small ones around them.
 template <int D, typename Real>
-Box<D, Real> StaggeredMargins<D, Real>::enlarged_at_first(std::size_t i, const Box<D, Real>& box) const {
+auto StaggeredMargins<D, Real>::guessed(std::span<const Box<D, Real>> boxes)
+    -> std::optional<core::Margins<D, Real>> {
+  std::vector<Real> sides;
+  core::for_present_sample(boxes, sampled_displacements, [&](const Box<D, Real>& box) {
+    Real side = std::numeric_limits<Real>::infinity();
+    for (int axis = 0; axis < D; ++axis) side = std::min(side, box.max[axis] - box.min[axis]);
+    sides.push_back(side);
+  });
+  const Real margin = static_cast<Real>(max_margin) * core::median(sides);
+  if (!(margin > 0 && margin < std::numeric_limits<Real>::infinity())) return std::nullopt;
+  return core::Margins<D, Real>{
+      .margin = margin, .relative = static_cast<Real>(max_margin), .frames = 0, .is_of_shortest = true};
+}
+
+template <int D, typename Real>
+void StaggeredMargins<D, Real>::enlarge_all(std::span<const Box<D, Real>> boxes,
+                                            std::span<Box<D, Real>> enlarged) const {
   constexpr std::size_t steps = std::size_t{1} << 20;
-  const double place = static_cast<double>(core::sampled_place(i, steps)) / steps;
-  const double share = min_share_of_margin + (1 - min_share_of_margin) * place;
-  return scaled(now_, share).enlarged(box, nullptr);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Real place = static_cast<Real>(core::sampled_place(i, steps)) / steps;
+    const Real share =
+        static_cast<Real>(min_share_of_margin) + static_cast<Real>(1 - min_share_of_margin) * place;
+    const Box<D, Real>& box = boxes[i];
+    const Real margin = share * now_.margin_of(box);
+    // Coordinate by coordinate, since a copy of the whole box would wait for these stores.
+    for (int axis = 0; axis < D; ++axis) {
+      enlarged[i].min[axis] = std::min(box.min[axis], box.min[axis] - margin);
+      enlarged[i].max[axis] = std::max(box.max[axis], box.max[axis] + margin);
+    }
+  }
 }
 
 template <int D, typename Real>

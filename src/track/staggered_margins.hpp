@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "broadside/follower.hpp"
 
@@ -19,14 +20,18 @@ class StaggeredMargins {
   /// Margins that suit a sample of the changed boxes; nothing if these moved too far or not at all.
   static std::optional<core::Margins<D, Real>> suiting(const Change<D, Real>& change);
 
+  /// The largest margins that a sample of the boxes allows, for boxes whose motion is unknown yet; nothing if
+  /// most boxes have no volume.
+  static std::optional<core::Margins<D, Real>> guessed(std::span<const Box<D, Real>> boxes);
+
   StaggeredMargins() = default;
   explicit StaggeredMargins(const core::Margins<D, Real>& first) : first_(first), now_(first) {}
 
   /// The margins of boxes that are enlarged from now on.
   const core::Margins<D, Real>& now() const noexcept { return now_; }
 
-  /// Box `i` enlarged by a share of its margin that depends on `i`, for the frame that enlarges all boxes.
-  Box<D, Real> enlarged_at_first(std::size_t i, const Box<D, Real>& box) const;
+  /// Enlarges each box by a share of its margin that depends on its place, for the frame that enlarges all.
+  void enlarge_all(std::span<const Box<D, Real>> boxes, std::span<Box<D, Real>> enlarged) const;
 
   /// Whether smaller enlarged boxes would save candidates: the boxes or the margins shrank.
   bool are_much_too_large(const Box<D, Real>& enlarged, const Box<D, Real>& box) const;

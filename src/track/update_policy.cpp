@@ -217,8 +217,12 @@ void FollowPolicy::use(std::size_t structure) {
   seen_ = {};
 }
 
+bool EnlargePolicy::are_many(std::size_t boxes, std::size_t changed) noexcept {
+  return boxes >= min_enlarged && changed >= boxes / many_movers;
+}
+
 bool EnlargePolicy::tries(std::size_t boxes, std::size_t changed) {
-  if (boxes < min_enlarged || changed < boxes / many_movers) return false;
+  if (!are_many(boxes, changed)) return false;
   if (pause_ == 0) return true;
   --pause_;
   return false;

@@ -128,6 +128,9 @@ class EnlargePolicy {
   /// `may_compare_all`: there is a structure that compares all boxes.
   explicit EnlargePolicy(bool may_compare_all) : may_compare_all_(may_compare_all) {}
 
+  /// Whether so many of the boxes change that enlarging them may pay.
+  static bool are_many(std::size_t boxes, std::size_t changed) noexcept;
+
   /// Whether to enlarge the boxes after a frame without enlarged boxes, if they moved little enough.
   bool tries(std::size_t boxes, std::size_t changed);
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "broadside/follower.hpp"
 
@@ -34,9 +35,11 @@ class Updater {
   /// Writes the events of a change, in any order. One may be written more than once. After an exception the
   /// next change must be a rebuild.
   std::optional<Statistics> update(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
+    if (is_prepared_ && (change.rebuild || !change.changed.empty())) use_prepared(change);
     was_enlarged_ =
         boxes_ == KnownBoxes::enlarged && !change.rebuild && update_enlarged(change, begun, ended);
     if (was_enlarged_) return statistics_;
+    if (may_enlarge_ && change.rebuild && prepare(change, begun)) return statistics_;
     const bool may_enlarge = may_enlarge_ && !change.rebuild;
     const bool knows_pairs = pairs_.knows_pairs();
     const EventSinks events{begun, ended};
@@ -92,6 +95,56 @@ class Updater {
     return true;
   }
 
+  /// In a first frame, finds candidates by guessed margins, and the frame's pairs among them: a search that
+  /// is made anyway. So boxes that tremble or drift from the second frame on need no search at all, which
+  /// would take as long as many frames do. Returns false if it has reported nothing.
+  bool prepare(const Change<D, Real>& change, PairSink& begun) {
+    if (boxes_ != KnownBoxes::exact || !EnlargePolicy::are_many(change.now.size(), change.now.size()) ||
+        std::any_of(change.before.begin(), change.before.end(), is_present<D, Real>))
+      return false;
+    const auto margins = StaggeredMargins<D, Real>::guessed(change.now);
+    if (!margins) return false;
+    std::vector<Pair> holding;
+    try {
+      statistics_ = candidates_.prepare(change, *margins, pairs_, holding);
+      is_prepared_ = true;
+    } catch (const LimitPassed&) {
+      tests_in_vain_ = candidates_.candidate_count();  // those found so far
+    } catch (const std::bad_alloc&) {
+      policy_.out_of_memory();
+    }
+    if (!is_prepared_) {
+      candidates_.release();
+      return false;
+    }
+    begun.put(holding);
+    pairs_.start_with(change, std::move(holding), statistics_);
+    if (pairs_.compares_all()) drop_prepared();
+    return true;
+  }
+
+  /// In the frame after prepare(): uses the candidates if many boxes move and hardly any moves far.
+  void use_prepared(const Change<D, Real>& change) {
+    const bool are_many = EnlargePolicy::are_many(change.now.size(), change.changed.size());
+    const auto margins =
+        are_many && !change.rebuild ? StaggeredMargins<D, Real>::suiting(change) : std::nullopt;
+    if (!margins) return drop_prepared();
+    is_prepared_ = false;
+    candidates_.set_margins(*margins);
+    pairs_.forget_pairs();
+    go_on_enlarged();
+  }
+
+  void drop_prepared() noexcept {
+    is_prepared_ = false;
+    candidates_.release();
+  }
+
+  void go_on_enlarged() {
+    boxes_ = KnownBoxes::enlarged;
+    policy_.started();
+  }
+
   void update_exactly(const Change<D, Real>& change, PairSink& begun, PairSink& ended) {
     if (boxes_ == KnownBoxes::exact) {
       statistics_ = pairs_.update(change, begun, ended);
@@ -119,8 +172,7 @@ class Updater {
     try {
       statistics.tests += candidates_.start(change, *margins, pairs_, events);
       pairs_.forget();
-      boxes_ = KnownBoxes::enlarged;
-      policy_.started();
+      go_on_enlarged();
       statistics_ = statistics;
       return true;
     } catch (const LimitPassed&) {
@@ -160,6 +212,7 @@ class Updater {
   FollowOrFind<D, Real> pairs_;
   CandidateList<D, Real> candidates_;
   KnownBoxes boxes_ = KnownBoxes::exact;
+  bool is_prepared_ = false;         // whether the candidates of the last frame are known, and not used yet
   std::uint64_t tests_in_vain_ = 0;  // of a search for candidates that passed a limit
   bool was_enlarged_ = false;        // whether the last update tested candidates
   std::optional<Statistics> statistics_;

@@ -287,6 +287,42 @@ void expect_margins() {
   }
 }
 
+template <typename Real>
+void expect_guessed_margins() {
+  Moved<Real> mixed;  // some large boxes among small ones
+  mixed.add(900, 1, 0);
+  mixed.add(100, 1000, 0);
+  const auto margins = track::StaggeredMargins<2, Real>::guessed(mixed.now);
+  ASSERT_TRUE(margins);
+  EXPECT_GE(mixed.margin_of(*margins, 1), Real(0.1));
+  EXPECT_LE(mixed.margin_of(*margins, 1), Real(0.3));
+  EXPECT_LE(mixed.margin_of(*margins, 1000), Real(0.3)) << "of small boxes, not of large ones";
+  std::vector<Box<2, Real>> enlarged(mixed.now.size());
+  track::StaggeredMargins<2, Real>(*margins).enlarge_all(mixed.now, enlarged);
+  Real least = 1;
+  Real most = 0;
+  for (std::size_t i = 0; i < enlarged.size(); ++i) {
+    const Real margin = mixed.now[i].min[0] - enlarged[i].min[0];
+    least = std::min(least, margin);
+    most = std::max(most, margin);
+  }
+  EXPECT_GT(least, 0);
+  EXPECT_GT(most, 4 * least) << "boxes that move alike must not leave in one frame";
+  EXPECT_LE(most, Real(0.3));
+  for (const Real side : {Real(0), std::numeric_limits<Real>::infinity()}) {
+    Moved<Real> boxes;
+    boxes.add(1000, side, 0);
+    EXPECT_FALSE((track::StaggeredMargins<2, Real>::guessed(boxes.now))) << side;
+  }
+  EXPECT_FALSE(
+      (track::StaggeredMargins<2, Real>::guessed(std::vector<Box<2, Real>>(1000, absent_box<2, Real>()))));
+}
+
+TEST(MarginsFor, AreGuessedFromTheSizeOfMostBoxes) {
+  expect_guessed_margins<float>();
+  expect_guessed_margins<double>();
+}
+
 TEST(MarginsFor, CoverTheSameBoxesByBothLimits) { expect_margins<float>(); }
 
 TEST(MarginsFor, DoSoForBoxesOfDoubles) { expect_margins<double>(); }

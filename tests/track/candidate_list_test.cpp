@@ -1,10 +1,13 @@
 // CandidateList: the events of the boxes themselves, whatever happens while they are enlarged, and what that
 // saves.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -163,6 +166,156 @@ TEST(CandidateList, LeavesBoxesAsTheyAreWhereTheyMoveFarOrAreFewOrRest) {
   EXPECT_FALSE(is_ever_enlarged(2000, 0.005F, 100));
 }
 
+/// The second frame moves boxes in some way, or none; the frames after it let all tremble by up to `part` of
+/// their sides, until margins have shrunk.
+void expect_the_same_events(const std::string& spec, const std::function<void(TremblingBoxes&)>& second,
+                            bool is_enlarged_at_once, float part = 0.005F) {
+  TremblingBoxes world(1000, 7);
+  Tracker<2> tracker(spec);
+  Tracker<2> expected("grid:update=follow");
+  for (int frame = 0; frame < 100; ++frame) {
+    const std::vector<Box2> before = world.boxes;
+    if (frame == 1)
+      second(world);
+    else
+      world.tremble(part);
+    std::vector<BoxId> changed;
+    for (std::size_t i = 0; i < world.boxes.size(); ++i) {
+      if (i >= before.size() || before[i] != world.boxes[i]) changed.push_back(BoxId(i));
+    }
+    EXPECT_EQ(update(tracker, world.boxes, changed), update(expected, world.boxes, changed)) << frame;
+    if (frame == 1) {
+      EXPECT_EQ(is_enlarged(tracker.explanation()), is_enlarged_at_once);
+    }
+  }
+  EXPECT_TRUE(is_enlarged(tracker.explanation())) << tracker.explanation();
+}
+
+TEST(CandidateList, TellsTheSameWhateverTheSecondFrameDoes) {
+  for (const std::string spec : {"auto", "sweep_and_prune", "quadtree", "bvh"}) {
+    SCOPED_TRACE(spec);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.tremble(0.0005F); }, true, 0.0005F);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.tremble(); }, true);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& /*world*/) {}, false);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.tremble(0.2F); }, false);
+    expect_the_same_events(
+        spec, [](TremblingBoxes& world) { world.boxes[3] = world.anywhere(); }, false);
+    expect_the_same_events(
+        spec,
+        [](TremblingBoxes& world) {
+          world.tremble();
+          for (int i = 0; i < 50; ++i) world.add();
+          for (std::size_t i = 1000; i < 1050; ++i) world.boxes[i] = world.rest[i];
+          for (std::size_t i = 0; i < 20; ++i) world.boxes[i] = absent_box<2>();
+        },
+        true);
+  }
+}
+
+/// Expects that no box changes unlisted, and passes all on to another follower.
+class StrictFollower final : public Follower<2> {
+ public:
+  explicit StrictFollower(std::unique_ptr<Follower<2>> other) : other_(std::move(other)) {}
+
+  std::optional<Statistics> follow(const Change<2>& change, PairSink& begun, PairSink& ended) override {
+    boxes_.resize(change.now.size(), absent_box<2>());
+    if (change.rebuild) boxes_.assign(change.before.begin(), change.before.end());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      wrong += static_cast<std::size_t>(change.before[i] != boxes_[i]);
+      wrong += static_cast<std::size_t>(change.flags[i] == 0 && change.now[i] != boxes_[i]);
+    }
+    EXPECT_EQ(wrong, 0U);
+    boxes_.assign(change.now.begin(), change.now.end());
+    return other_->follow(change, begun, ended);
+  }
+
+ private:
+  std::unique_ptr<Follower<2>> other_;
+  std::vector<Box2> boxes_;
+};
+
+TEST(CandidateList, ListsForItsFollowerEachBoxThatChanges) {
+  Algorithm strict = *find_algorithm("quadtree");
+  for (FollowerChoice<2>& choice : strict.in_2d.followers) {
+    choice.make = [make = choice.make](const Settings& settings) {
+      return std::make_unique<StrictFollower>(make(settings));
+    };
+  }
+  for (const bool drifts : {false, true}) {
+    TremblingBoxes world(1000, 6);
+    Tracker<2> tracker(strict, Spec("quadtree"));
+    int enlarged = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+      for (std::size_t i = 0; i < 100 && drifts; ++i) {
+        world.rest[i].min[0] += 0.005F;
+        world.rest[i].max[0] += 0.005F;
+      }
+      world.tremble();
+      PairCounter none;
+      tracker.update({world.boxes, world.all()}, none, none);
+      enlarged += static_cast<int>(is_enlarged(tracker.explanation()));
+    }
+    EXPECT_GT(enlarged, 90);
+  }
+}
+
+TEST(CandidateList, ForgetsBoxesBehindTheEndOfTheArray) {
+  TremblingBoxes world(1000, 8);
+  Tracker<2> tracker("auto");
+  Tracker<2> expected("grid:update=follow");
+  const Ids all = world.all();
+  const auto expect_the_same = [&](std::size_t count, std::span<const Filter> filters) {
+    world.tremble();
+    const Frame<2> frame{std::span(world.boxes).first(count), std::span(all).first(count), filters};
+    EXPECT_EQ(update(tracker, frame), update(expected, frame)) << count;
+  };
+  for (int i = 0; i < 5; ++i) expect_the_same(1000, {});
+  ASSERT_TRUE(is_enlarged(tracker.explanation()));
+  for (int i = 0; i < 2; ++i) expect_the_same(900, {});
+  // The last ones come back, and meet nothing.
+  std::vector<Filter> filters(1000);
+  for (std::size_t i = 900; i < 1000; ++i) filters[i].mask = 0;
+  for (int i = 0; i < 3; ++i) expect_the_same(1000, filters);
+}
+
+TEST(CandidateList, MakesNoFrameOfASteadyMotionMuchLongerThanTheOthers) {
+  // Tests stand for time. A search makes some 20 to a box, one for each candidate is 3.
+  for (const bool drifts : {false, true}) {
+    TremblingBoxes world(5000, 12);
+    std::vector<Box2> boxes;
+    for (std::size_t i = 0; i < 5000; ++i) {
+      const float x = world.random.between(0, 60);
+      const float y = world.random.between(0, 60);
+      boxes.push_back({{x, y}, {x + 1, y + 1}});
+    }
+    world.rest = boxes;
+    Tracker<2> tracker("auto");
+    std::vector<std::uint64_t> tests;
+    for (int frame = 0; frame < 300; ++frame) {
+      for (std::size_t i = 0; i < 5000 && drifts; ++i) {
+        const float way = i % 2 == 0 ? 0.002F : -0.002F;
+        world.boxes[i].min[0] = boxes[i].min[0] + way * static_cast<float>(frame);
+        world.boxes[i].max[0] = world.boxes[i].min[0] + 1;
+        world.boxes[i].min[1] = boxes[i].min[1];
+        world.boxes[i].max[1] = boxes[i].max[1];
+      }
+      if (!drifts) world.tremble();
+      PairCounter none;
+      const auto statistics = tracker.update({world.boxes, world.all()}, none, none);
+      if (frame > 0) tests.push_back(statistics->tests);
+    }
+    const std::uint64_t worst = *std::ranges::max_element(tests);
+    const auto median = tests.begin() + 150;
+    std::ranges::nth_element(tests, median);
+    EXPECT_LE(worst, 4 * *median) << drifts;
+  }
+}
+
 TEST(CandidateList, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
   // Small boxes tremble beside large ones on top of each other, which rest.
   TremblingBoxes world(2000, 4);
@@ -170,7 +323,7 @@ TEST(CandidateList, DoesNotLetLargeBoxesMeetAllSmallOnesAroundThem) {
   Tracker<2> tracker("auto");
   std::int64_t pairs = 0;
   std::optional<Statistics> statistics;
-  for (int frame = 0; frame < 12; ++frame) {
+  for (int frame = 0; frame < 20; ++frame) {
     world.tremble();
     for (std::size_t i = 0; i < 50; ++i) world.boxes[i] = world.rest[i];
     PairCounter begun;
