@@ -144,8 +144,10 @@ check-format: setup-ci
 clean: ## Remove everything that was built or fetched
 	rm -rf build
 
-# The comparison's other libraries are installed unless PEERS=no.
+# The comparison's other libraries are installed unless PEERS=no. RUST_PEERS sets the CMake option BROADSIDE_RUST_PEERS, which
+# docs/peers.md describes.
 PEERS := yes
+RUST_PEERS := $(if $(filter no,$(PEERS)),OFF)
 compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 
 paper experiments: setup_options := --paper
@@ -169,6 +171,7 @@ setup-ci: | setup
 # Builds everything that `cmake --install build/release` copies.
 program: build/release/build.ninja
 	@test -f $< || cmake --preset release
+	$(if $(RUST_PEERS),cmake --preset release -D BROADSIDE_RUST_PEERS=$(RUST_PEERS))
 	cmake --build --preset release --target broadside_installed
 
 # Builds everything with one preset and runs its tests.

@@ -28,7 +28,8 @@ const std::vector<Rule>& rules() {
   const std::string lab = library + R"(|"lab/[a-z_/0-9]+\.hpp"|"paper/listings/(registry|phases)\.hpp")" +
                           R"(|"src/core/(bit_cast|suggestion)\.hpp"|<(fmt|nlohmann)/.*>|<(sys/)?[a-z]+\.h>)";
   const std::string engines = R"(|<box2d/.*>|<bullet/.*>|<bt[A-Z].*>|<(Bullet|Linear)[A-Z].*>)";
-  const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)";
+  const std::string peers = R"(|<(CGAL|boost|geos|embree3|tbb|ode|fcl|chipmunk)/.*>|<geos_c\.h>)"
+                            R"(|"lab/peers/rust/include/rust_peers\.h")";
   static const std::vector<Rule> list = {
       {"include/broadside/", library},
       {"bindings/any_kind", bindings},

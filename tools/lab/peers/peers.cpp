@@ -56,6 +56,14 @@ struct PeerList {
       add({chipmunk_bb_tree(), chipmunk_space_hash()});
     else
       miss("libchipmunk-dev", {"chipmunk_bb_tree", "chipmunk_space_hash"});
+    if constexpr (BROADSIDE_HAS_RUST_INDEXES)
+      add({packed_spatial_index(), geo_index(), rstar_tree()});
+    else
+      miss_because(BROADSIDE_RUST_INDEXES_MISSING, {"packed_spatial_index", "geo_index", "rstar_tree"});
+    if constexpr (BROADSIDE_HAS_RUST_ENGINES)
+      add({parry_bvh(), rapier_broad_phase(), obvhs_bvh()});
+    else
+      miss_because(BROADSIDE_RUST_ENGINES_MISSING, {"parry_bvh", "rapier_broad_phase", "obvhs_bvh"});
   }
 
   void add(std::initializer_list<Algorithm> algorithms) {
@@ -66,11 +74,12 @@ struct PeerList {
   }
 
   void miss(std::string_view package, std::initializer_list<std::string_view> names) {
-    for (const std::string_view name : names) {
-      missing.push_back(
-          {std::string(name),
-           std::string(package) + " was missing at configure time; install it and configure again"});
-    }
+    miss_because(std::string(package) + " was missing at configure time; install it and configure again",
+                 names);
+  }
+
+  void miss_because(const std::string& reason, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) missing.push_back({std::string(name), reason});
   }
 };
 

@@ -16,7 +16,7 @@ std::vector<Algorithm> peers();
 /// A peer that was left out of this build.
 struct MissingPeer {
   std::string name;
-  std::string reason;  ///< the package that was missing at configure time
+  std::string reason;  ///< what was missing at configure time
 };
 
 /// The peers that were left out of this build, in the same order. Thread-safe.
@@ -45,5 +45,11 @@ Algorithm fcl_spatial_hash();
 Algorithm box2d_tree();
 Algorithm chipmunk_bb_tree();
 Algorithm chipmunk_space_hash();
+Algorithm packed_spatial_index();
+Algorithm geo_index();
+Algorithm rstar_tree();
+Algorithm parry_bvh();
+Algorithm rapier_broad_phase();
+Algorithm obvhs_bvh();
 
 }  // namespace broadside::lab::peers
