@@ -172,7 +172,7 @@ std::uint64_t FollowPolicy::max_tests() const {
   if (update_ != Update::automatic || known.compares_all() || !(known.costs.further_test > 0))
     return unlimited;
   const double tests = max_over_finding * cost_of_finding() / known.costs.further_test;
-  return tests < static_cast<double>(unlimited / 2) ? static_cast<std::uint64_t>(tests) : unlimited;
+  return tests < static_cast<double>(unlimited) / 2 ? static_cast<std::uint64_t>(tests) : unlimited;
 }
 
 /// What the tests have cost is lost. Among the structures whose movers cost less than finding all pairs anew,
