@@ -35,7 +35,10 @@ HWY_INLINE std::uint32_t bits_of(Tag tag, hn::Mask<Tag> mask) {
 #else
   std::array<std::uint8_t, 8> bytes{};
   hn::StoreMaskBits(tag, mask, bytes.data());
-  if constexpr (std::endian::native == std::endian::little) {
+  // As many bytes as were stored, since a load of more waits for both stores.
+  if constexpr (hn::MaxLanes(Tag()) <= 8) {
+    return bytes[0];
+  } else if constexpr (std::endian::native == std::endian::little) {
     std::uint16_t bits;
     std::memcpy(&bits, bytes.data(), sizeof(bits));
     return bits;
