@@ -30,7 +30,7 @@ const example = "import { load } from \"broadside\";\n" +
  * they grow.
  */
 const limits: readonly (readonly [string, string, number])[] = [
-  ["index.js", "broadside-2d.js", 170_000], ["index.js", "broadside-3d.js", 175_000],
+  ["index.js", "broadside-2d.js", 174_000], ["index.js", "broadside-3d.js", 178_500],
   ["pairs.js", "broadside-pairs-2d.js", 147_000], ["pairs.js", "broadside-pairs-3d.js", 150_000],
 ];
 
