@@ -170,12 +170,15 @@ std::uint64_t tests_of_frames(double unit) {
   return tests;
 }
 
+/// But for the boxes that a tracker tries its structures with, which depend on the coordinates' bits.
 TEST(DoubleCost, OfAFrameIsTheSameAtEveryScale) {
-  EXPECT_LE(tests_of_frames<2>(1), 200'000u);
-  EXPECT_LE(tests_of_frames<3>(1), 400'000u);
+  const auto flat = static_cast<double>(tests_of_frames<2>(1));
+  const auto solid = static_cast<double>(tests_of_frames<3>(1));
+  EXPECT_LE(flat, 200'000);
+  EXPECT_LE(solid, 400'000);
   for (const double unit : {0x1p200, 0x1p-200, 0x1p-1010}) {
-    EXPECT_EQ(tests_of_frames<2>(unit), tests_of_frames<2>(1)) << unit;
-    EXPECT_EQ(tests_of_frames<3>(unit), tests_of_frames<3>(1)) << unit;
+    EXPECT_NEAR(static_cast<double>(tests_of_frames<2>(unit)), flat, 0.02 * flat) << unit;
+    EXPECT_NEAR(static_cast<double>(tests_of_frames<3>(unit)), solid, 0.02 * solid) << unit;
   }
 }
 
