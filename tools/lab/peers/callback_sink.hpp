@@ -2,6 +2,7 @@
 #pragma once
 
 #include <exception>
+#include <span>
 
 #include "broadside/pair.hpp"
 
@@ -15,13 +16,12 @@ class CallbackSink {
 
   /// Writes the pair, unless the sink threw earlier; returns whether it was written.
   bool add(BoxId a, BoxId b) noexcept {
-    if (thrown_) return false;
-    try {
-      pairs_.add(a, b);
-    } catch (...) {
-      thrown_ = std::current_exception();
-    }
-    return !thrown_;
+    return unless_thrown([&] { pairs_.add(a, b); });
+  }
+
+  /// Likewise for several pairs, each with first < second.
+  bool put(std::span<const Pair> pairs) noexcept {
+    return unless_thrown([&] { pairs_.put(pairs); });
   }
 
   /// Rethrows the sink's exception, if there was one.
@@ -30,6 +30,17 @@ class CallbackSink {
   }
 
  private:
+  template <typename Write>
+  bool unless_thrown(const Write& write) noexcept {
+    if (thrown_) return false;
+    try {
+      write();
+    } catch (...) {
+      thrown_ = std::current_exception();
+    }
+    return !thrown_;
+  }
+
   PairSink& pairs_;
   std::exception_ptr thrown_;
 };

@@ -38,18 +38,21 @@ class PeerFollower : public Follower<D> {
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };
+    // Without filters, what is in a list overlapped in that frame, so only the other frame is looked at.
+    const bool unfiltered = change.filters_before.empty() && change.filters_now.empty();
     auto kept = pairs_.begin();
     for (const Pair pair : pairs_) {
       if (rested(pair))
         *kept++ = pair;
-      else
-        change.report(pair.first, pair.second, begun, ended);
+      else if (!change.holds(pair.first, pair.second) && (unfiltered || change.held(pair.first, pair.second)))
+        ended.add(pair.first, pair.second);
     }
     pairs_.erase(kept, pairs_.end());
     for (const Pair pair : found_) {
       if (rested(pair)) continue;
       pairs_.push_back(pair);
-      change.report(pair.first, pair.second, begun, ended);
+      if (!change.held(pair.first, pair.second) && (unfiltered || change.holds(pair.first, pair.second)))
+        begun.add(pair.first, pair.second);
     }
     return std::nullopt;
   }

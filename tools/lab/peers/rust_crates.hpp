@@ -34,11 +34,8 @@ class RustPairs {
   explicit RustPairs(PairSink& pairs) : pairs_(pairs) {}
 
   static bool take(void* context, const std::uint32_t* ids, std::size_t count) {
-    auto& self = *static_cast<RustPairs*>(context);
-    for (std::size_t i = 0; i < 2 * count; i += 2) {
-      if (!self.pairs_.add(BoxId{ids[i]}, BoxId{ids[i + 1]})) return false;
-    }
-    return true;
+    static_assert(sizeof(Pair) == 2 * sizeof(std::uint32_t));
+    return static_cast<RustPairs*>(context)->pairs_.put({reinterpret_cast<const Pair*>(ids), count});
   }
 
   /// Throws if the call failed or the sink threw.
