@@ -2,16 +2,19 @@
 // as user geometry.
 #include <algorithm>
 #include <array>
-#include <exception>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
+#include "lab/peers/callback_sink.hpp"
+#include "lab/peers/peer_follower.hpp"
 #include "lab/peers/peers.hpp"
 #include "lab/peers/queries.hpp"
 
@@ -42,83 +45,173 @@ RTCBounds bounds_of(const Box<D>& box) {
           .align1 = 0};
 }
 
+/// A scene of one user geometry, the boxes of a set.
 template <int D>
-class EmbreeCollide final : public Searcher<D> {
+class EmbreeSet {
  public:
-  EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
-    if (!device_) throw_error(nullptr);
-    scene_.reset(rtcNewScene(device_.get()));
-    geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+  explicit EmbreeSet(RTCDevice device, RTCSceneFlags flags = RTC_SCENE_FLAG_NONE)
+      : scene_(rtcNewScene(device)), geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER)) {
+    rtcSetSceneFlags(scene_.get(), flags);
     rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryUserData(geometry_.get(), this);
     rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
     rtcAttachGeometry(scene_.get(), geometry_.get());
-    check();
+  }
+  EmbreeSet(const EmbreeSet&) = delete;
+  EmbreeSet& operator=(const EmbreeSet&) = delete;
+
+  void build(std::span<const Box<D>> boxes) {
+    boxes_ = boxes;
+    // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
+    // terminates the program if all boxes are one point.
+    const Box<D>& first = boxes_.front();
+    const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
+                                 return box.min == first.min && box.max == first.max;
+                               });
+    const RTCBuildQuality quality = all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW;
+    rtcSetSceneBuildQuality(scene_.get(), quality);
+    rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
+    commit(quality);
   }
 
-  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    if (input.boxes.size() < 2) return std::nullopt;
-    boxes_ = input.boxes;
-    pairs_ = &pairs;
-    thrown_ = nullptr;
-    // A device with one thread would restrict the whole process to one; an arena with one thread restricts
-    // only the code that runs in it.
-    arena_.execute([this] {
-      // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
-      // terminates the program if all boxes are one point.
-      const Box<D>& first = boxes_.front();
-      const bool all_one_point =
-          first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
-            return box.min == first.min && box.max == first.max;
-          });
-      rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
-      rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
-      rtcCommitGeometry(geometry_.get());
-      rtcCommitScene(scene_.get());
-      rtcCollide(scene_.get(), scene_.get(), report, this);
-    });
-    if (thrown_) std::rethrow_exception(thrown_);
-    check();
-    return std::nullopt;
+  /// Fits the hierarchy of a dynamic scene to as many boxes, of which the same are present.
+  void refit(std::span<const Box<D>> boxes) {
+    boxes_ = boxes;
+    commit(RTC_BUILD_QUALITY_REFIT);
   }
+
+  RTCScene scene() const { return scene_.get(); }
 
  private:
+  void commit(RTCBuildQuality quality) {
+    rtcSetGeometryBuildQuality(geometry_.get(), quality);
+    rtcCommitGeometry(geometry_.get());
+    rtcCommitScene(scene_.get());
+  }
+
   static void bound(const RTCBoundsFunctionArguments* arguments) {
-    const auto& self = *static_cast<const EmbreeCollide*>(arguments->geometryUserPtr);
+    const auto& self = *static_cast<const EmbreeSet*>(arguments->geometryUserPtr);
     *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
   }
 
-  /// Receives pairs of leaves, in both orders; Embree does not guarantee that their boxes overlap.
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
+  std::span<const Box<D>> boxes_;
+};
+
+/// Collides two sets, or one with itself.
+template <int D>
+class EmbreeJoin {
+ public:
+  EmbreeJoin() : device_(rtcNewDevice("set_affinity=0")) { check(); }
+
+  RTCDevice device() const { return device_.get(); }
+
+  /// Calls `prepare`, which builds sets and returns the left and the right one, and collides these. If there
+  /// are flags, leaves out pairs of boxes that both have none.
+  template <typename Prepare>
+  void collide(std::span<const Box<D>> boxes, std::size_t left_count, std::span<const std::uint8_t> flags,
+               PairSink& pairs, const Prepare& prepare) {
+    boxes_ = boxes;
+    left_count_ = left_count;
+    flags_ = flags;
+    CallbackSink sink(pairs);
+    sink_ = &sink;
+    // A device with one thread would restrict the whole process to one; an arena with one thread restricts
+    // only the code that runs in it.
+    arena_.execute([&] {
+      const auto [left, right] = prepare();
+      rtcCollide(left, right, report, this);
+    });
+    sink.finish();
+    check();
+  }
+
+ private:
+  /// Receives pairs of leaves, of one set in both orders; Embree does not guarantee that their boxes overlap.
   static void report(void* user, RTCCollision* collisions, unsigned count) {
-    auto& self = *static_cast<EmbreeCollide*>(user);
-    if (self.thrown_) return;
-    try {
-      for (const RTCCollision& collision : std::span(collisions, count)) {
-        const unsigned a = collision.primID0;
-        const unsigned b = collision.primID1;
-        if (a < b && overlap(self.boxes_[a], self.boxes_[b])) self.pairs_->add(BoxId{a}, BoxId{b});
-      }
-    } catch (...) {  // must not pass through Embree
-      self.thrown_ = std::current_exception();
+    const auto& self = *static_cast<const EmbreeJoin*>(user);
+    for (const RTCCollision& collision : std::span(collisions, count)) {
+      const std::size_t a = collision.primID0;
+      const std::size_t b = collision.primID1 + self.left_count_;
+      if (a < b && (self.flags_.empty() || (self.flags_[a] | self.flags_[b]) != 0) &&
+          overlap(self.boxes_[a], self.boxes_[b]))
+        self.sink_->add(BoxId(a), BoxId(b));
     }
   }
 
   void check() const {
-    if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw_error(device_.get());
-  }
-
-  [[noreturn]] static void throw_error(RTCDevice device) {
-    throw std::runtime_error("Embree reports error " + std::to_string(rtcGetDeviceError(device)) +
-                             "; expected none");
+    const RTCError error = rtcGetDeviceError(device_.get());
+    if (!device_ || error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree reports error " + std::to_string(error) + "; expected none");
   }
 
   tbb::task_arena arena_{1};
   EmbreeOwned<RTCDevice> device_;
-  EmbreeOwned<RTCScene> scene_;
-  EmbreeOwned<RTCGeometry> geometry_;
-  std::span<const Box<D>> boxes_;  // of the current search
-  PairSink* pairs_ = nullptr;
-  std::exception_ptr thrown_;
+  std::span<const Box<D>> boxes_;  // of the current call, as below
+  std::size_t left_count_ = 0;
+  std::span<const std::uint8_t> flags_;
+  CallbackSink* sink_ = nullptr;
+};
+
+template <int D>
+class EmbreeCollide final : public Searcher<D> {
+ public:
+  std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
+    if (input.boxes.size() < 2) return std::nullopt;
+    join_.collide(input.boxes, input.left_count, {}, pairs, [&] {
+      right_.build(input.boxes.subspan(input.left_count));
+      if (input.left_count == 0) return std::pair(right_.scene(), right_.scene());
+      left_.build(input.boxes.first(input.left_count));
+      return std::pair(left_.scene(), right_.scene());
+    });
+    return std::nullopt;
+  }
+
+ private:
+  EmbreeJoin<D> join_;
+  EmbreeSet<D> left_{join_.device()};
+  EmbreeSet<D> right_{join_.device()};
+};
+
+/// Fits the hierarchy to the boxes if few moved a little, and builds it anew otherwise.
+template <int D>
+class EmbreeFollower final : public PeerFollower<D> {
+  void build(std::span<const Box<D>>, std::span<const Box<D>>) override { is_built_ = false; }
+
+  void move(const Change<D>& change) override {
+    // A box that jumped, or came or went, spoils a hierarchy that is fitted.
+    is_steady_ = !change.rebuild && change.before.size() == change.now.size() &&
+                 change.changed.size() <= change.now.size() / 4 &&
+                 std::ranges::all_of(change.changed, [&](BoxId id) {
+                   return overlap(change.before[index(id)], change.now[index(id)]);
+                 });
+    moves_ += change.changed.size();
+    is_built_ = is_built_ && is_steady_ && moves_ <= change.now.size();
+  }
+
+  void collide(const Change<D>& change, PairSink& pairs) override {
+    if (std::ranges::count_if(change.now, is_present<D, float>) < 2) return;
+    const auto flags = change.rebuild ? std::span<const std::uint8_t>() : change.flags;
+    join_.collide(change.now, 0, flags, pairs, [&] {
+      EmbreeSet<D>& set = is_steady_ ? fitted_ : static_;
+      if (is_built_) {
+        set.refit(change.now);
+      } else {
+        set.build(change.now);
+        is_built_ = is_steady_;
+        moves_ = 0;
+      }
+      return std::pair(set.scene(), set.scene());
+    });
+  }
+
+  EmbreeJoin<D> join_;
+  EmbreeSet<D> static_{join_.device()};  // builds faster
+  EmbreeSet<D> fitted_{join_.device(), RTC_SCENE_FLAG_DYNAMIC};
+  bool is_steady_ = false;
+  bool is_built_ = false;  // whether fitted_ has these boxes
+  std::size_t moves_ = 0;  // since it was built
 };
 
 class EmbreeQueries final : public QueryPeer<3> {
@@ -239,8 +332,10 @@ Algorithm embree_collide() {
       .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
       .source = "Embree, rtcCollide",
       .version = "Embree " RTC_VERSION_STRING,
-      .in_2d = {.searcher = make_strategy<EmbreeCollide<2>>},
-      .in_3d = {.searcher = make_strategy<EmbreeCollide<3>>},
+      .in_2d = {.searcher = make_strategy<EmbreeCollide<2>>,
+                .followers = {{"rtcCollide", make_strategy<EmbreeFollower<2>>}}},
+      .in_3d = {.searcher = make_strategy<EmbreeCollide<3>>,
+                .followers = {{"rtcCollide", make_strategy<EmbreeFollower<3>>}}},
       // Beyond 1.844e18, Embree drops boxes as invalid.
       .limits = {.infinite_boxes = false, .max_coordinate = 1.8e18},
       .own_allocator = true,
