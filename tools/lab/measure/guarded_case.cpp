@@ -1,6 +1,8 @@
 // Measures a case in a child process, so that an algorithm that ends the process or never returns has failed
 // and the comparison goes on.
 #include <algorithm>
+#include <cstdio>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <type_traits>
@@ -130,18 +132,41 @@ class ChildWatch {
   bool hangs_ = false;
 };
 
-}  // namespace
+/// Measures some of a benchmark's entries.
+using MeasureEntries = std::function<CaseResult(const Benchmark&)>;
 
-template <int D, typename Real>
-CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark,
-                        std::vector<std::string>& hung) {
-  const auto measure = [&](const Benchmark& some) {
-    if (measured.mode == Mode::find) return measure_find<D, Real>(measured, inputs, some);
-    return CaseResult{measured, measure_track<D, Real>(measured, inputs, some)};
-  };
-  const auto is_peer = [](const Entry& entry) { return entry.algorithm->kind == AlgorithmKind::peer; };
-  if (std::ranges::none_of(benchmark.entries, is_peer)) return measure(benchmark);
+/// What the child process sends: the measurements of all of the benchmark's entries, or an exception.
+std::string measure_in_child(Benchmark benchmark, platform::ChildNote& note, const MeasureEntries& measure) {
+  benchmark.watch = {{}, [&note](std::string_view step) { note.write(step); }};
+  try {
+    CaseResult result = measure(benchmark);
+    ValueBytes bytes;
+    pass(bytes, result.measurements, result.floor_ms);
+    return sent(Sent::result, bytes.bytes());
+  } catch (const std::bad_alloc&) {
+    return sent(Sent::out_of_memory);
+  } catch (const std::exception& thrown) {
+    return sent(Sent::exception, thrown.what());
+  }
+}
 
+/// Stores what the child process sent in those measurements of the result that have no reason.
+void receive(std::string_view what, CaseResult& result) {
+  const std::string_view bytes = what.substr(1);
+  if (Sent(what[0]) == Sent::out_of_memory) throw std::bad_alloc();
+  if (Sent(what[0]) == Sent::exception) throw std::runtime_error(std::string(bytes));
+  std::vector<Measurement> received(
+      static_cast<std::size_t>(std::ranges::count(result.measurements, "", &Measurement::reason)));
+  ValueBytes values(bytes);
+  pass(values, received, result.floor_ms);
+  std::size_t next = 0;
+  for (Measurement& measurement : result.measurements) {
+    if (measurement.reason.empty()) measurement = std::move(received[next++]);
+  }
+}
+
+CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std::vector<std::string>& hung,
+                           const MeasureEntries& measure) {
   CaseResult result{measured, {}};
   for (const Entry& entry : benchmark.entries) {
     result.measurements.push_back(measurement_of(entry));
@@ -160,39 +185,13 @@ CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const B
     some.entries = entries;
     ChildWatch watch(benchmark.watch, limit_seconds);
     const std::optional<platform::ChildEnd> end = platform::run_in_child(
-        [&](platform::ChildNote& note) -> std::string {
-          some.watch = {{}, [&note](std::string_view step) { note.write(step); }};
-          try {
-            CaseResult of_some = measure(some);
-            ValueBytes bytes;
-            pass(bytes, of_some.measurements, of_some.floor_ms);
-            return sent(Sent::result, bytes.bytes());
-          } catch (const std::bad_alloc&) {
-            return sent(Sent::out_of_memory);
-          } catch (const std::exception& thrown) {
-            return sent(Sent::exception, thrown.what());
-          }
-        },
-        [&watch](const platform::ChildNote& note) { return watch.goes_on(note); });
+        [&](platform::ChildNote& note) { return measure_in_child(some, note, measure); },
+        [&](const platform::ChildNote& note) { return watch.goes_on(note); });
     benchmark.watch.ask();  // Ctrl-C ends the child as well
     if (!end) return measure(benchmark);
     if (end->result) {
-      const std::string_view bytes = std::string_view(*end->result).substr(1);
-      switch (Sent((*end->result)[0])) {
-        case Sent::out_of_memory:
-          throw std::bad_alloc();
-        case Sent::exception:
-          throw std::runtime_error(std::string(bytes));
-        case Sent::result:
-          break;
-      }
-      std::vector<Measurement> of_some(entries.size());
-      ValueBytes values(bytes);
-      pass(values, of_some, result.floor_ms);
-      std::size_t next = 0;
-      for (Measurement& measurement : result.measurements) {
-        if (measurement.reason.empty()) measurement = std::move(of_some[next++]);
-      }
+      std::fputs(end->output.c_str(), stderr);  // warnings, for example
+      receive(*end->result, result);
       return result;
     }
     const std::string algorithm(algorithm_of(end->last_step));
@@ -208,6 +207,20 @@ CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const B
     culprit->reason = fmt::format("{} {} (in '{}')", algorithm, how, end->last_step);
     if (watch.hangs()) hung.push_back(algorithm);
   }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark,
+                        std::vector<std::string>& hung) {
+  const MeasureEntries measure = [&](const Benchmark& some) {
+    if (measured.mode == Mode::find) return measure_find<D, Real>(measured, inputs, some);
+    return CaseResult{measured, measure_track<D, Real>(measured, inputs, some)};
+  };
+  const auto is_peer = [](const Entry& entry) { return entry.algorithm->kind == AlgorithmKind::peer; };
+  return std::ranges::any_of(benchmark.entries, is_peer) ? measure_guarded(measured, benchmark, hung, measure)
+                                                         : measure(benchmark);
 }
 
 template CaseResult measure_case<2, float>(const Case&, Histories<2, float>, const Benchmark&,
