@@ -48,7 +48,7 @@ void fail_an_assertion() {
 }
 
 void write_nowhere() {
-  int* volatile nowhere = nullptr;
+  volatile int* volatile nowhere = nullptr;
   *nowhere = 1;
 }
 
@@ -81,7 +81,7 @@ CompareOptions quick_options(std::string algorithms, std::vector<CaseRequest> pl
   options.plan = std::move(plan);
   options.effort.share_seconds = 0;
   options.effort.budget_seconds = options.effort.history_seconds = 0.01;
-  options.effort.limit_seconds = 0.3;
+  options.effort.limit_seconds = 0.5;
   options.effort.min_rounds = 2;
   return options;
 }
@@ -96,7 +96,7 @@ TEST(GuardedCase, ReportsEveryWayInWhichAPeerCanFailAndMeasuresTheOthers) {
        "'aborts, "},
       {broken("writes_nowhere", write_nowhere), "ended the process: "},
       {broken("exits", [] { std::exit(0); }), "ended the process: exit status 0 \\(in 'exits, "},
-      {broken("loops", loop_for_ever), "did not return within 300 ms \\(in 'loops, "},
+      {broken("loops", loop_for_ever), "did not return within 500 ms \\(in 'loops, "},
   };
   Catalogue catalogue;
   std::string algorithms = "grid,aborts_in_the_end";
@@ -107,10 +107,10 @@ TEST(GuardedCase, ReportsEveryWayInWhichAPeerCanFailAndMeasuresTheOthers) {
   Algorithm in_the_end = peer(spoilt("aborts_in_the_end", [](std::vector<Pair>&, std::size_t) {}));
   in_the_end.in_2d.searcher = make_strategy<AbortsInTheEnd>;
   catalogue.add(in_the_end);
-  for (const CaseRequest& request : {small_still, small_moving}) {
-    const Comparison comparison = compare(catalogue, quick_options(algorithms, {request}));
-    ASSERT_EQ(comparison.cases.size(), 1u);
-    const std::vector<Measurement>& measurements = comparison.cases[0].measurements;
+  const Comparison comparison = compare(catalogue, quick_options(algorithms, {small_moving, small_still}));
+  ASSERT_EQ(comparison.cases.size(), 2u);
+  for (const CaseResult& result : comparison.cases) {
+    const std::vector<Measurement>& measurements = result.measurements;
     ASSERT_EQ(measurements.size(), peers.size() + 2);
     EXPECT_EQ(measurements[0].outcome, Outcome::verified) << measurements[0].reason;
     EXPECT_FALSE(measurements[0].samples_ms.empty());
@@ -120,13 +120,18 @@ TEST(GuardedCase, ReportsEveryWayInWhichAPeerCanFailAndMeasuresTheOthers) {
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const Measurement& measurement = measurements[i + 2];
       EXPECT_EQ(measurement.algorithm, peers[i].first.name);
+      EXPECT_TRUE(measurement.samples_ms.empty());
+      if (measurement.algorithm == "loops" && result.of.mode == Mode::find) {
+        EXPECT_EQ(measurement.outcome, Outcome::skipped);
+        EXPECT_EQ(measurement.reason, "did not return in an earlier case");
+        continue;
+      }
       EXPECT_EQ(measurement.outcome, Outcome::failed) << measurement.algorithm;
       EXPECT_THAT(measurement.reason,
                   AllOf(StartsWith(measurement.algorithm), ContainsRegex(peers[i].second)));
-      EXPECT_TRUE(measurement.samples_ms.empty());
     }
-    EXPECT_FALSE(comparison.all_verified());
   }
+  EXPECT_FALSE(comparison.all_verified());
 }
 
 TEST(GuardedCase, ReportsADoubledPairOfAPeer) {
@@ -135,17 +140,6 @@ TEST(GuardedCase, ReportsADoubledPairOfAPeer) {
   const Comparison comparison = compare(catalogue, quick_options("grid,repeats", {small_still}));
   EXPECT_THAT(comparison.cases.at(0).measurements.at(1).reason, HasSubstr("is reported more than once"));
   EXPECT_EQ(comparison.cases[0].measurements[0].outcome, Outcome::verified);
-}
-
-TEST(GuardedCase, LeavesOutAPeerThatDidNotReturnInAnEarlierCase) {
-  if (!has_child_processes()) GTEST_SKIP() << "this system cannot copy a process";
-  Catalogue catalogue;
-  catalogue.add(broken("loops", loop_for_ever));
-  const Comparison comparison = compare(catalogue, quick_options("grid,loops", {small_still, small_moving}));
-  const Measurement& left_out = comparison.cases.at(1).measurements.at(1);
-  EXPECT_EQ(left_out.outcome, Outcome::skipped);
-  EXPECT_EQ(left_out.reason, "did not return in an earlier case");
-  EXPECT_EQ(comparison.cases[1].measurements[0].outcome, Outcome::verified);
 }
 
 TEST(GuardedCase, StopsWhileAPeerDoesNotReturn) {
@@ -190,7 +184,7 @@ TEST(GuardedCase, BringsBackAllThatIsMeasuredWithoutPeers) {
       }
       EXPECT_EQ(b.phases.size(), a.phases.size());
       EXPECT_EQ(b.explanation, a.explanation);
-      EXPECT_EQ(b.own_bytes, a.own_bytes);
+      EXPECT_EQ(b.own_bytes.has_value(), a.own_bytes.has_value());
       EXPECT_TRUE(b.evidence);
     }
   }
