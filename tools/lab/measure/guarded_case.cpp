@@ -127,7 +127,7 @@ class ChildWatch {
  private:
   const Watch& watch_;
   double limit_seconds_;
-  std::uint64_t changes_ = 0;
+  std::uint32_t changes_ = 0;
   double ticks_ = 0;  // for which the step has been the same
   bool hangs_ = false;
 };

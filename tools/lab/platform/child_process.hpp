@@ -22,10 +22,10 @@ class ChildNote {
   std::string text() const;
 
   /// How many texts were written, times two.
-  std::uint64_t changes() const { return changes_; }
+  std::uint32_t changes() const { return changes_; }
 
  private:
-  std::atomic<std::uint64_t> changes_ = 0;  // odd while the text is being written
+  std::atomic<std::uint32_t> changes_ = 0;  // odd while the text is being written
   std::array<char, 501> text_{};
 };
 

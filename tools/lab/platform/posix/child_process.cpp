@@ -128,7 +128,7 @@ void ChildNote::write(std::string_view text) {
 }
 
 std::string ChildNote::text() const {
-  const std::uint64_t before = changes_;
+  const std::uint32_t before = changes_;
   std::string text = text_.data();
   return before % 2 == 0 && changes_ == before ? text : "";
 }
