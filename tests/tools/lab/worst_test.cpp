@@ -7,6 +7,8 @@
 
 #include "broadside/broadside.hpp"
 
+#include "algorithms/auto/auto_thresholds.hpp"
+#include "core/sample.hpp"
 #include "lab/verify/verify.hpp"
 #include "lab/worst/hard_input.hpp"
 #include "tests/support/message.hpp"
@@ -55,6 +57,19 @@ TEST(Worst, ReadsAnInputBackFromItsText) {
     EXPECT_EQ(again.text(), input.text());
     EXPECT_TRUE((make_input<3, double>(again, 50, 1).boxes == make_input<3, double>(input, 50, 1).boxes))
         << input.text();
+  }
+}
+
+TEST(Worst, FoolsTheSampleOfAuto) {
+  constexpr std::size_t count = 10'000;
+  const HardInput input = parse_input("fooled:hidden=plates:dimension=3");
+  const std::vector<Box3> boxes = make_input<3, float>(input, count, 0).boxes;
+  using Limits = algorithm::AutoThresholds<3>;
+  const std::uint32_t shift = core::sample_shift<3, float>(boxes, Limits::hashed_boxes);
+  for (std::size_t i = 0; i < Limits::sampled_boxes; ++i) {
+    const Box3& box = boxes[core::sampled_place(i + shift, count)];
+    EXPECT_NEAR(box.max[0] - box.min[0], box.max[1] - box.min[1], 1e-3) << "a plate is not a cube";
+    EXPECT_NEAR(box.max[0] - box.min[0], box.max[2] - box.min[2], 1e-3);
   }
 }
 

@@ -2,9 +2,6 @@
 #include "bench/worst/measure.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -16,17 +13,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/resource.h>
-#include <sys/types.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
@@ -35,6 +25,7 @@
 #include "lab/measure/benchmark.hpp"
 #include "lab/measure/memory.hpp"
 #include "lab/measure/samples.hpp"
+#include "lab/platform/child_process.hpp"
 
 namespace broadside::bench {
 namespace {
@@ -46,46 +37,30 @@ FaultText fault_of(std::string_view text) {
   return fault;
 }
 
-[[noreturn]] void answer(int pipe, std::uint64_t max_bytes, const std::function<MeasuredRun()>& run) {
-  const rlimit limit{max_bytes, max_bytes};
-  setrlimit(RLIMIT_AS, &limit);
-  MeasuredRun result;
-  try {
-    result = run();
-  } catch (const std::bad_alloc&) {
-    result = {.end = MeasuredRun::End::out_of_memory};
-  } catch (const std::exception& error) {
-    result = {.end = MeasuredRun::End::failed, .fault = fault_of(error.what())};
-  }
-  const bool written = write(pipe, &result, sizeof result) == sizeof result;
-  // Not exit(), which would flush the parent's unwritten output a second time.
-  _exit(written ? 0 : 1);
-}
-
 /// Calls `run` in a child process and returns its result; too_slow after `seconds`, out_of_memory beyond
 /// `max_bytes` of address space. Throws std::runtime_error if no process can be created.
 MeasuredRun in_child(double seconds, std::uint64_t max_bytes, const std::function<MeasuredRun()>& run) {
-  const auto refuse = [](const char* what) { throw std::system_error(errno, std::generic_category(), what); };
-  std::array<int, 2> ends;
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) refuse("worst: a pipe");
-  const pid_t child = fork();
-  if (child < 0) refuse("worst: a process");
-  if (child == 0) answer(ends[1], max_bytes, run);
-  close(ends[1]);
-  pollfd waiting{ends[0], POLLIN, 0};
-  const auto limit = static_cast<int>(std::min(seconds * 1e3 + 1, 1e9));
-  int ready = 0;
-  do {
-    ready = poll(&waiting, 1, limit);
-  } while (ready < 0 && errno == EINTR);
-  MeasuredRun result;
-  const bool answered = ready > 0 && read(ends[0], &result, sizeof result) == sizeof result;
-  if (!answered) kill(child, SIGKILL);
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (ready == 0) return {.end = MeasuredRun::End::too_slow};
-  if (!answered) return {.end = MeasuredRun::End::failed, .fault = fault_of("ended without a result")};
+  const auto work = [&](lab::platform::ChildNote&) {
+    const rlimit limit{max_bytes, max_bytes};
+    setrlimit(RLIMIT_AS, &limit);
+    MeasuredRun result;
+    try {
+      result = run();
+    } catch (const std::bad_alloc&) {
+      result = {.end = MeasuredRun::End::out_of_memory};
+    } catch (const std::exception& error) {
+      result = {.end = MeasuredRun::End::failed, .fault = fault_of(error.what())};
+    }
+    return std::string(reinterpret_cast<const char*>(&result), sizeof result);
+  };
+  const lab::Stopwatch watch;
+  const auto is_in_time = [&] { return watch.milliseconds() <= seconds * 1e3; };
+  const auto end =
+      lab::platform::run_in_child(work, [&](const lab::platform::ChildNote&) { return is_in_time(); });
+  if (!end) throw std::runtime_error("worst: no process can be made");
+  MeasuredRun result{.end = is_in_time() ? MeasuredRun::End::failed : MeasuredRun::End::too_slow,
+                     .fault = fault_of(end->how)};
+  if (end->result) std::memcpy(&result, end->result->data(), sizeof result);
   return result;
 }
 

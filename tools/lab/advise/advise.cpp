@@ -197,8 +197,7 @@ class Adviser {
 
   std::vector<Measurement> measure(std::span<const Entry> entries, const Effort& effort) {
     const Benchmark benchmark{entries, catalogue_.algorithms(), effort, options_.watch};
-    if (advice_.mode == Mode::track) return measure_track<D, Real>(case_, images_, benchmark);
-    CaseResult result = measure_find<D, Real>(case_, images_, benchmark);
+    CaseResult result = measure_case<D, Real>(case_, images_, benchmark, hung_);
     if (!result.floor_ms.empty()) advice_.floor_ms = median(result.floor_ms);
     return std::move(result.measurements);
   }
@@ -277,6 +276,7 @@ class Adviser {
   const AdviseOptions& options_;
   std::vector<History<D, Real>> images_;
   Case case_;
+  std::vector<std::string> hung_;  // algorithms that did not return
   Advice advice_;
   Stopwatch watch_;  // for the whole budget
 };

@@ -30,8 +30,10 @@ class Stopped : public std::exception {
 /// Observes a comparison while it runs. Both functions are called between samples, in the caller's thread.
 /// `stop` is also called during searches that are long or not timed.
 struct Watch {
-  std::function<bool()> stop{};                           ///< whether to stop; empty: never
-  std::function<void(std::string_view what)> progress{};  ///< called with the current step; empty: not called
+  std::function<bool()> stop{};  ///< whether to stop; empty: never
+  /// Called with the current step; empty: not called. The step is "SPEC, WHAT" while code of that algorithm
+  /// runs, and has no comma otherwise.
+  std::function<void(std::string_view what)> progress{};
 
   /// Reports the step and checks whether to stop. Throws Stopped.
   void at(std::string_view what) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -45,6 +46,16 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
   }
   return thin;
 }
+
+/// Measures the case, by measure_find() or measure_track(). If peers take part, in a child process, on
+/// systems that can copy a process: an algorithm that ends the process, or of which one call takes longer
+/// than the effort's limit, has then failed, and the others are measured again without it. `hung` collects
+/// algorithms that did not return; these are skipped.
+///
+/// Throws Stopped; std::runtime_error if the child process ended while it ran no algorithm.
+template <int D, typename Real = float>
+CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark,
+                        std::vector<std::string>& hung);
 
 /// Times one whole find() per entry and round, into a vector with memory already allocated. A round uses the
 /// boxes of one input (one per seed of the case); inputs take turns. Each entry takes part in the first

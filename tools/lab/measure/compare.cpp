@@ -125,9 +125,7 @@ class Runner {
     if (!options_.measure_options.times)
       effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
     const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.measure_options};
-    comparison_.cases.push_back(of.mode == Mode::find
-                                    ? measure_find<D>(of, inputs, benchmark)
-                                    : CaseResult{of, measure_track<D>(of, inputs, benchmark)});
+    comparison_.cases.push_back(measure_case<D>(of, inputs, benchmark, hung_));
     add_ratios(comparison_.cases.back());
     if (options_.finished) options_.finished(comparison_.cases.back());
   }
@@ -172,6 +170,7 @@ class Runner {
   std::vector<Entry> entries_;
   std::vector<std::optional<NamedScene>> scenes_;  // of the plan's cases; empty if it does not exist
   std::string place_;                              // position of the current case in the plan
+  std::vector<std::string> hung_;                  // algorithms that did not return in an earlier case
   Comparison comparison_;
   ProcessorShare share_;
 };

@@ -73,6 +73,11 @@ class FindCase {
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
     }
+    for (FindParticipant<D, Real>& participant : participants_) {
+      benchmark_.watch.at(participant.measurement->algorithm + ", tearing down");
+      participant.finder.reset();
+    }
+    benchmark_.watch.at("counting agreement");
     count_agreement(measurements_, references());
     return {case_, std::move(measurements_), std::move(floor_ms_)};
   }
@@ -88,6 +93,7 @@ class FindCase {
 
   /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
+    benchmark_.watch.at(measurement.algorithm + ", checking its limits");
     measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
     const double budget = benchmark_.effort.budget_seconds;
@@ -105,7 +111,6 @@ class FindCase {
       return (first < is_short_ms ? std::min(first, call(finder, *tried, some)) : first) / 1e3;
     };
     attempt(measurement, [&]() -> std::string {
-      benchmark_.watch.at(measurement.algorithm + ", making the reference");
       touch(expectation(*entry.algorithm, 0).count);
       if (const auto estimate = estimate_above(budget, boxes_of(0).size(), seconds_for))
         skip(measurement, *estimate, 1, budget);
@@ -248,6 +253,7 @@ class FindCase {
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return *known;
     }
+    benchmark_.watch.at("making the reference: " + reference.text());
     std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input), [this] { benchmark_.watch.ask(); });
     ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
     if (!reference.is_definition()) {

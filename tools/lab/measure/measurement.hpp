@@ -141,8 +141,10 @@ struct Effort {
   double slow_history_seconds = 0.8;  ///< a history that takes longer has slow_rounds rounds
   std::size_t slow_rounds = 5;
   std::size_t definition_boxes =
-      20'000;              ///< searches of more boxes are not checked by brute force; nor are histories that
-                           ///< need more than four times the tests of such a search
+      20'000;  ///< searches of more boxes are not checked by brute force; nor are histories that
+               ///< need more than four times the tests of such a search
+  double limit_seconds =
+      10;  ///< a call that takes longer than this, and than ten times its budget, does not return
   double far_ratio = 1.5;  ///< an algorithm that takes more than this many times the time of both the fastest
                            ///< other library and our fastest (and more than far_from_seconds) has far_rounds
                            ///< rounds

@@ -19,8 +19,7 @@ constexpr double greatest_spread = 1.5;
 
 double ProcessorShare::value() const {
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
-  const double used = static_cast<double>(std::clock() - used_) / CLOCKS_PER_SEC;
-  return passed.count() > 0 ? used / passed.count() : 1;
+  return passed.count() > 0 ? (platform::processor_seconds() - used_) / passed.count() : 1;
 }
 
 bool is_busy(double share) {

@@ -4,25 +4,26 @@
 
 #include <chrono>
 #include <cstddef>
-#include <ctime>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "lab/measure/measurement.hpp"
+#include "lab/platform/child_process.hpp"
 
 namespace broadside::lab {
 
-/// The fraction of the time since construction in which this process had a processor: 1 for one thread that
-/// always runs, more for several. Waiting counts as not having one.
+/// The fraction of the time since construction in which this process, or a child process of it that has
+/// ended, had a processor: 1 for one thread that always runs, more for several. Waiting counts as not having
+/// one.
 class ProcessorShare {
  public:
   double value() const;
 
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::clock_t used_ = std::clock();
+  double used_ = platform::processor_seconds();
 };
 
 /// Whether a run of one thread lacked the processor for more than a tenth of the time.

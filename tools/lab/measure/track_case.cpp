@@ -81,6 +81,8 @@ class TrackCase {
     for (std::size_t round = 0; has_time(benchmark_.effort, round, watch_.milliseconds()) && play(round);
          ++round) {
     }
+    for (TrackParticipant<D, Real>& participant : participants_) tear_down(participant);
+    benchmark_.watch.at("counting agreement");
     std::vector<Reference> references;
     for (const auto& known : expectations_) references.push_back(known->reference);
     count_agreement(measurements_, references);
@@ -91,6 +93,7 @@ class TrackCase {
   /// Whether the entry can take part; if not, fills in the reason.
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     const History<D, Real>& history = inputs_[0];
+    benchmark_.watch.at(measurement.algorithm + ", checking its limits");
     measurement.reason = unfit(entry, D, extremes_);
     if (!measurement.reason.empty()) return false;
     const double budget = benchmark_.effort.history_seconds;
@@ -190,9 +193,8 @@ class TrackCase {
     std::vector<Box<D, Real>> boxes = history.boxes;
     for (TrackParticipant<D, Real>& participant : participants_) {
       if (!participant.plays) continue;
-      benchmark_.watch.at(participant.measurement->algorithm + ", checking");
       participant.expected = &expectation(participant, input);
-      participant.tracker.reset();
+      tear_down(participant);
       participant.frames_ms.clear();
       participant.phases.clear();
       participant.counts.reset();
@@ -213,6 +215,11 @@ class TrackCase {
     for (TrackParticipant<D, Real>& participant : participants_) {
       if (participant.plays) note_statistics(participant, input);
     }
+  }
+
+  void tear_down(TrackParticipant<D, Real>& participant) const {
+    benchmark_.watch.at(participant.measurement->algorithm + ", tearing down");
+    participant.tracker.reset();
   }
 
   /// One frame of one participant; returns the fault of its events.
@@ -294,6 +301,7 @@ class TrackCase {
     for (const auto& known : expectations_) {
       if (known->reference == reference && known->input == input) return known->events;
     }
+    benchmark_.watch.at("making the reference: " + reference.text());
     ExpectedEvents events = expected_events(reference, inputs_[input], [this] { benchmark_.watch.ask(); });
     for (const auto& known : expectations_) {
       if (known->input == input && events.fault.empty())

@@ -3,9 +3,16 @@
 
 #include "lab/worst/boxes.hpp"
 #include "lab/worst/family.hpp"
+#include "src/core/bit_cast.hpp"
 
 namespace broadside::lab::worst {
 namespace {
+
+/// core::sampled_place().
+std::size_t golden_place(std::size_t i, std::size_t count) {
+  const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
+  return static_cast<std::size_t>(fraction * std::uint64_t{count} >> 32);
+}
 
 /// The places of an array of `count` at which a library may sample: at steps of the golden ratio, at even
 /// steps, or at the ends.
@@ -14,8 +21,7 @@ std::vector<bool> sampled_places(const std::string& places, std::size_t count, s
   const auto mark = [&](std::size_t place) { sampled[std::min(place, count - 1)] = true; };
   const bool all = places == "all";
   for (std::size_t i = 0; i < std::min(samples, count); ++i) {
-    const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
-    if (all || places == "golden") mark(static_cast<std::size_t>(fraction * std::uint64_t{count} >> 32));
+    if (all || places == "golden") mark(golden_place(i, count));
     if (all || places == "ends") {
       mark(i);
       mark(count - 1 - i);
@@ -32,6 +38,17 @@ std::vector<bool> sampled_places(const std::string& places, std::size_t count, s
   return sampled;
 }
 
+/// core::sample_shift() of the boxes as floats, with as many hashed as auto hashes.
+template <int D>
+std::uint32_t shift_of_auto(const DoubleBoxes<D>& boxes) {
+  std::uint64_t hash = boxes.size();
+  for (std::size_t i = 0; i < std::min<std::size_t>(boxes.size(), 32); ++i) {
+    for (const double coordinate : boxes[golden_place(i, boxes.size())].min)
+      hash = detail::mixed(hash + core::bit_cast<std::uint32_t>(static_cast<float>(coordinate)));
+  }
+  return static_cast<std::uint32_t>(hash);
+}
+
 /// Harmless boxes at the places of a sample, others elsewhere.
 struct Fooled {
   template <int D>
@@ -45,16 +62,21 @@ struct Fooled {
     // As large as if all boxes were of this kind.
     const double side = side_for<D>(1, count);
     const double away = settings.text("where") == "beside" ? 2 : 0;
-    DoubleBoxes<D> boxes;
-    auto other = others.begin();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!sampled[i]) {
-        boxes.push_back(*other++);
-        continue;
-      }
+    const auto harmless = [&] {
       Point<D> min = anywhere<D>(random);
       min[D - 1] += away;
-      boxes.push_back(box_at<D>(min, cube<D>(side)));
+      return box_at<D>(min, cube<D>(side));
+    };
+    DoubleBoxes<D> boxes;
+    auto other = others.begin();
+    for (std::size_t i = 0; i < count; ++i) boxes.push_back(sampled[i] ? harmless() : *other++);
+    if (const std::string& places = settings.text("places"); places == "even" || places == "ends")
+      return boxes;
+    // Auto's places depend on the boxes at the first ones, which keep theirs.
+    const std::uint32_t shift = shift_of_auto<D>(boxes);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const std::size_t place = golden_place(i + shift, count);
+      if (!sampled[place]) boxes[place] = harmless();
     }
     return boxes;
   }
