@@ -87,6 +87,39 @@ TEST(Peers, FindTheSameWhetherTheyWereTornDownOrNot) {
   }
 }
 
+template <int D>
+void expect_a_join_of_two_sets(const Algorithm& peer) {
+  const Scene scene = find_scene("uniform").scene;
+  std::unique_ptr<Searcher<D>> searcher = searcher_of<D>(peer);
+  for (const std::size_t left : {40, 0, 200, 360}) {
+    const std::vector<Box<D>> boxes =
+        make_history<D>(scene, {scene.name, {}}, {.boxes = 400, .seed = left + 1}).boxes;
+    std::vector<Pair> expected = find_pairs(boxes, {.algorithm = "brute_force"});
+    if (left > 0)
+      std::erase_if(expected,
+                    [left](Pair pair) { return index(pair.first) >= left || index(pair.second) < left; });
+    std::ranges::sort(expected);
+    ASSERT_FALSE(expected.empty());
+    std::vector<Pair> found;
+    PairCollector collector(found);
+    searcher->search({.boxes = boxes, .left_count = left}, collector);
+    collector.flush();
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << peer.name << ", of which " << left << " in the left set";
+  }
+}
+
+TEST(Peers, ThatJoinTwoSetsFindNoPairsWithinASet) {
+  std::size_t count = 0;
+  for (const Algorithm& peer : peers::peers()) {
+    if (!peers::joins_sets(peer.name)) continue;
+    ++count;
+    if (peer.has_dimension(2)) expect_a_join_of_two_sets<2>(peer);
+    if (peer.has_dimension(3)) expect_a_join_of_two_sets<3>(peer);
+  }
+  EXPECT_EQ(count == 0, peers::peers().empty());
+}
+
 TEST(Peers, ThatAreMissingAreNamedWithTheWayToGetThem) {
   const std::string packages = project_text("tools/setup/packages-peers.txt");
   for (const peers::MissingPeer& peer : peers::missing_peers()) {

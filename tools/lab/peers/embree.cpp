@@ -42,40 +42,68 @@ RTCBounds bounds_of(const Box<D>& box) {
           .align1 = 0};
 }
 
+/// A scene of one user geometry, the boxes of a set.
+template <int D>
+class EmbreeSet {
+ public:
+  explicit EmbreeSet(RTCDevice device)
+      : scene_(rtcNewScene(device)), geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER)) {
+    rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_LOW);
+    rtcSetGeometryUserData(geometry_.get(), this);
+    rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
+    rtcAttachGeometry(scene_.get(), geometry_.get());
+  }
+  EmbreeSet(const EmbreeSet&) = delete;
+  EmbreeSet& operator=(const EmbreeSet&) = delete;
+
+  void build(std::span<const Box<D>> boxes) {
+    boxes_ = boxes;
+    // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
+    // terminates the program if all boxes are one point.
+    const Box<D>& first = boxes_.front();
+    const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
+                                 return box.min == first.min && box.max == first.max;
+                               });
+    rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
+    rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
+    rtcCommitGeometry(geometry_.get());
+    rtcCommitScene(scene_.get());
+  }
+
+  RTCScene scene() const { return scene_.get(); }
+
+ private:
+  static void bound(const RTCBoundsFunctionArguments* arguments) {
+    const auto& self = *static_cast<const EmbreeSet*>(arguments->geometryUserPtr);
+    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
+  }
+
+  EmbreeOwned<RTCScene> scene_;
+  EmbreeOwned<RTCGeometry> geometry_;
+  std::span<const Box<D>> boxes_;
+};
+
 template <int D>
 class EmbreeCollide final : public Searcher<D> {
  public:
   EmbreeCollide() : device_(rtcNewDevice("set_affinity=0")) {
     if (!device_) throw_error(nullptr);
-    scene_.reset(rtcNewScene(device_.get()));
-    geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
-    rtcSetGeometryBuildQuality(geometry_.get(), RTC_BUILD_QUALITY_LOW);
-    rtcSetGeometryUserData(geometry_.get(), this);
-    rtcSetGeometryBoundsFunction(geometry_.get(), bound, nullptr);
-    rtcAttachGeometry(scene_.get(), geometry_.get());
+    for (auto& set : sets_) set.emplace(device_.get());
     check();
   }
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     if (input.boxes.size() < 2) return std::nullopt;
     boxes_ = input.boxes;
+    left_count_ = input.left_count;
     pairs_ = &pairs;
     thrown_ = nullptr;
     // A device with one thread would restrict the whole process to one; an arena with one thread restricts
     // only the code that runs in it.
     arena_.execute([this] {
-      // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
-      // terminates the program if all boxes are one point.
-      const Box<D>& first = boxes_.front();
-      const bool all_one_point =
-          first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
-            return box.min == first.min && box.max == first.max;
-          });
-      rtcSetSceneBuildQuality(scene_.get(), all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
-      rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
-      rtcCommitGeometry(geometry_.get());
-      rtcCommitScene(scene_.get());
-      rtcCollide(scene_.get(), scene_.get(), report, this);
+      if (left_count_ > 0) sets_[1]->build(boxes_.first(left_count_));
+      sets_[0]->build(boxes_.subspan(left_count_));
+      rtcCollide(sets_[left_count_ > 0 ? 1 : 0]->scene(), sets_[0]->scene(), report, this);
     });
     if (thrown_) std::rethrow_exception(thrown_);
     check();
@@ -83,20 +111,15 @@ class EmbreeCollide final : public Searcher<D> {
   }
 
  private:
-  static void bound(const RTCBoundsFunctionArguments* arguments) {
-    const auto& self = *static_cast<const EmbreeCollide*>(arguments->geometryUserPtr);
-    *arguments->bounds_o = bounds_of(self.boxes_[arguments->primID]);
-  }
-
-  /// Receives pairs of leaves, in both orders; Embree does not guarantee that their boxes overlap.
+  /// Receives pairs of leaves, of one set in both orders; Embree does not guarantee that their boxes overlap.
   static void report(void* user, RTCCollision* collisions, unsigned count) {
     auto& self = *static_cast<EmbreeCollide*>(user);
     if (self.thrown_) return;
     try {
       for (const RTCCollision& collision : std::span(collisions, count)) {
-        const unsigned a = collision.primID0;
-        const unsigned b = collision.primID1;
-        if (a < b && overlap(self.boxes_[a], self.boxes_[b])) self.pairs_->add(BoxId{a}, BoxId{b});
+        const std::size_t a = collision.primID0;
+        const std::size_t b = collision.primID1 + self.left_count_;
+        if (a < b && overlap(self.boxes_[a], self.boxes_[b])) self.pairs_->add(BoxId(a), BoxId(b));
       }
     } catch (...) {  // must not pass through Embree
       self.thrown_ = std::current_exception();
@@ -114,9 +137,9 @@ class EmbreeCollide final : public Searcher<D> {
 
   tbb::task_arena arena_{1};
   EmbreeOwned<RTCDevice> device_;
-  EmbreeOwned<RTCScene> scene_;
-  EmbreeOwned<RTCGeometry> geometry_;
-  std::span<const Box<D>> boxes_;  // of the current search
+  std::array<std::optional<EmbreeSet<D>>, 2> sets_;  // all boxes, or the right set; the left set
+  std::span<const Box<D>> boxes_;                    // of the current search
+  std::size_t left_count_ = 0;
   PairSink* pairs_ = nullptr;
   std::exception_ptr thrown_;
 };

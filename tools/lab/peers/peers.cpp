@@ -116,6 +116,13 @@ std::string_view build_note(std::string_view peer) {
   return note == build_notes.end() ? std::string_view() : note->text;
 }
 
+bool joins_sets(std::string_view peer) {
+  constexpr std::array<std::string_view, 8> names = {
+      "boost_rtree", "bullet_dbvt",  "cgal_box_intersection", "embree_collide",
+      "geo_index",   "geos_strtree", "packed_spatial_index",  "rstar_tree"};
+  return std::ranges::find(names, peer) != names.end();
+}
+
 template <int D>
 std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes) {
   std::vector<std::unique_ptr<QueryPeer<D>>> peers;

@@ -34,10 +34,11 @@ void rust_follower_free(RustFollower* follower);
 
 /// The functions below return false on failure. `boxes` has the minimum and then the maximum of each box.
 
-/// Gives each overlapping pair once. All boxes are present. `length` is that of a typical box, 0 if not
-/// needed.
-bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, float length,
-                          RustPeerTakes takes, void* context);
+/// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, the boxes before it are
+/// the left set, and only pairs with a box of each set count: others may be given. `length` is that of a
+/// typical box, 0 if not needed.
+bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, size_t left_count,
+                          float length, RustPeerTakes takes, void* context);
 
 /// Destroys the structure that the last search left.
 bool rust_searcher_tear_down(RustSearcher* searcher);

@@ -17,6 +17,7 @@ mod rstar_tree;
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, c_void, CStr, CString};
+use std::ops::ControlFlow;
 use std::panic::{catch_unwind, set_hook, AssertUnwindSafe};
 use std::sync::Once;
 
@@ -168,11 +169,25 @@ pub unsafe extern "C" fn rust_follower_free(follower: *mut AnyFollower) {
     guarded(|| drop(Box::from_raw(follower)));
 }
 
+fn run<const D: usize>(
+    searcher: &mut dyn Searcher<D>,
+    boxes: &[Bounds<D>],
+    left_count: usize,
+    length: f32,
+    pairs: &mut Pairs,
+) -> ControlFlow<()> {
+    match left_count {
+        0 => searcher.search(boxes, length, pairs),
+        _ => searcher.join(boxes, left_count, length, pairs),
+    }
+}
+
 #[no_mangle]
 pub unsafe extern "C" fn rust_searcher_search(
     searcher: *mut AnySearcher,
     boxes: *const f32,
     count: usize,
+    left_count: usize,
     length: f32,
     takes: Takes,
     context: *mut c_void,
@@ -183,8 +198,8 @@ pub unsafe extern "C" fn rust_searcher_search(
         }
         let mut pairs = Pairs::new(takes, context);
         let found = match &mut *searcher {
-            AnySearcher::Flat(flat) => flat.search(slice(boxes.cast::<Bounds<2>>(), count), length, &mut pairs),
-            AnySearcher::Solid(solid) => solid.search(slice(boxes.cast::<Bounds<3>>(), count), length, &mut pairs),
+            AnySearcher::Flat(flat) => run(&mut **flat, slice(boxes.cast(), count), left_count, length, &mut pairs),
+            AnySearcher::Solid(solid) => run(&mut **solid, slice(boxes.cast(), count), left_count, length, &mut pairs),
         };
         if found.is_continue() {
             let _ = pairs.flush();

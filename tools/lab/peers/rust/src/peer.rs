@@ -66,6 +66,12 @@ pub trait Searcher<const D: usize> {
     /// typical box, if the description in C++ says that it is needed.
     fn search(&mut self, boxes: &[Bounds<D>], length: f32, pairs: &mut Pairs) -> ControlFlow<()>;
 
+    /// Adds each overlapping pair of the first `left_count` boxes and the others once, and may add pairs within these
+    /// sets. Neither is empty. By default, a library without a join of two sets finds all pairs.
+    fn join(&mut self, boxes: &[Bounds<D>], _left_count: usize, length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+        self.search(boxes, length, pairs)
+    }
+
     /// Destroys the structure that the last search left.
     fn tear_down(&mut self) {}
 }
