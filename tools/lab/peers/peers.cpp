@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <string_view>
 
 #include "lab/peers/queries.hpp"
@@ -129,6 +130,8 @@ std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> b
   if constexpr (BROADSIDE_HAS_BOOST) peers.push_back(boost_queries<D>(boxes));
   if constexpr (D == 2 && BROADSIDE_HAS_BOX2D) peers.push_back(box2d_queries(boxes));
   if constexpr (D == 3 && BROADSIDE_HAS_EMBREE) peers.push_back(embree_queries(boxes));
+  if constexpr (BROADSIDE_HAS_RUST_INDEXES)
+    std::ranges::move(rust_queries<D>(boxes), std::back_inserter(peers));
   return peers;
 }
 

@@ -7,7 +7,7 @@ use geo_index::rtree::{RTree, RTreeBuilder, RTreeIndex};
 
 use crate::peer::{Bounds, Pairs, Searcher};
 
-fn tree_of(boxes: &[Bounds<2>]) -> RTree<f32> {
+pub fn tree_of(boxes: &[Bounds<2>]) -> RTree<f32> {
     let mut builder = RTreeBuilder::<f32>::new(boxes.len() as u32);
     for Bounds { min, max } in boxes {
         builder.add(min[0], min[1], max[0], max[1]);

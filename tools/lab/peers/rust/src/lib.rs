@@ -10,6 +10,7 @@ mod panicking;
 #[cfg(feature = "engines")]
 mod parry_bvh;
 mod peer;
+mod queries;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
@@ -22,6 +23,7 @@ use std::panic::{catch_unwind, set_hook, AssertUnwindSafe};
 use std::sync::Once;
 
 use peer::{Bounds, Follower, Frame, Pairs, Searcher, Takes};
+use queries::{AnyIndex, Geo, Packed2, Packed3, Rstar};
 
 thread_local! {
     static PANIC_PLACE: RefCell<String> = const { RefCell::new(String::new()) };
@@ -100,6 +102,21 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
         ("rstar", 3) => Solid(Box::<rstar_tree::TreeSearcher<3>>::default()),
         ("panicking", 2) => Flat(Box::new(panicking::PanickingSearcher)),
         _ => panic!("no searcher '{name}' in {dimension}D"),
+    }
+}
+
+fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) -> AnyIndex {
+    use AnyIndex::{Flat, Solid};
+    // SAFETY: the caller of the C interface gave so many boxes.
+    let flat = || unsafe { slice(boxes.cast::<Bounds<2>>(), count) };
+    let solid = || unsafe { slice(boxes.cast::<Bounds<3>>(), count) };
+    match (name, dimension) {
+        ("packed_spatial_index", 2) => Flat(Box::new(Packed2::new(flat()))),
+        ("packed_spatial_index", 3) => Solid(Box::new(Packed3::new(solid()))),
+        ("geo_index", 2) => Flat(Box::new(Geo::new(flat()))),
+        ("rstar", 2) => Flat(Box::new(Rstar::new(flat()))),
+        ("rstar", 3) => Solid(Box::new(Rstar::new(solid()))),
+        _ => panic!("no index '{name}' in {dimension}D"),
     }
 }
 
@@ -261,4 +278,39 @@ pub unsafe extern "C" fn rust_follower_update(
         }
     };
     guarded(update).is_some()
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_new(
+    name: *const c_char,
+    dimension: c_int,
+    boxes: *const f32,
+    count: usize,
+) -> *mut AnyIndex {
+    guarded(|| Box::into_raw(Box::new(index_named(text(name), dimension, boxes, count))))
+        .unwrap_or(std::ptr::null_mut())
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_free(index: *mut AnyIndex) {
+    guarded(|| drop(Box::from_raw(index)));
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_ask(
+    index: *mut AnyIndex,
+    kind: queries::Kind,
+    queries: *const f32,
+    count: usize,
+    takes: Takes,
+    context: *mut c_void,
+) -> bool {
+    let ask = || {
+        let mut found = Pairs::new(takes, context);
+        let _ = match &mut *index {
+            AnyIndex::Flat(flat) => queries::ask(&mut **flat, kind, queries, count, &mut found),
+            AnyIndex::Solid(solid) => queries::ask(&mut **solid, kind, queries, count, &mut found),
+        };
+    };
+    guarded(ask).is_some()
 }

@@ -42,10 +42,20 @@ impl Pairs {
     /// Adds a pair of different ids; breaks if no more pairs are wanted.
     #[inline]
     pub fn add(&mut self, a: u32, b: u32) -> ControlFlow<()> {
+        if a < b {
+            self.give(a, b)
+        } else {
+            self.give(b, a)
+        }
+    }
+
+    /// Adds two numbers in this order; breaks likewise.
+    #[inline]
+    pub fn give(&mut self, a: u32, b: u32) -> ControlFlow<()> {
         if self.used == CHUNK {
             self.flush()?;
         }
-        self.ids[self.used] = if a < b { [a, b] } else { [b, a] };
+        self.ids[self.used] = [a, b];
         self.used += 1;
         ControlFlow::Continue(())
     }

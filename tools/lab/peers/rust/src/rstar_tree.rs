@@ -6,8 +6,8 @@ use rstar::{RTree, RTreeObject, AABB};
 
 use crate::peer::{Bounds, Pairs, Searcher};
 
-struct Leaf<const D: usize> {
-    id: u32,
+pub struct Leaf<const D: usize> {
+    pub id: u32,
     envelope: AABB<[f32; D]>,
 }
 
@@ -19,10 +19,10 @@ impl<const D: usize> RTreeObject for Leaf<D> {
     }
 }
 
-type Tree<const D: usize> = RTree<Leaf<D>>;
+pub type Tree<const D: usize> = RTree<Leaf<D>>;
 
 /// A tree of the boxes, whose ids count from `first`.
-fn tree_of<const D: usize>(boxes: &[Bounds<D>], first: usize) -> Tree<D> {
+pub fn tree_of<const D: usize>(boxes: &[Bounds<D>], first: usize) -> Tree<D> {
     let leaf = |(id, bounds): (usize, &Bounds<D>)| Leaf {
         id: (first + id) as u32,
         envelope: AABB::from_corners(bounds.min, bounds.max),
