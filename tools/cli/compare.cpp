@@ -40,6 +40,7 @@ struct CompareArguments {
   std::vector<int> dimensions;
   std::vector<double> moving;
   std::string frames;
+  std::optional<double> left;
   MotionOptions motion;
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
@@ -53,20 +54,21 @@ struct CompareArguments {
 /// Whether the user says what to compare, instead of taking the quick or the long comparison.
 bool names_cases(const CompareArguments& arguments) {
   return !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
-         !arguments.frames.empty() || arguments.motion.any();
+         !arguments.frames.empty() || arguments.left || arguments.motion.any();
 }
 
 std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
   if (names_cases(arguments)) {
     if (arguments.is_long)
       throw Unusable(
-          "--long is a plan of its own; expected it without --scenes, -n, --moving, --frames, "
+          "--long is a plan of its own; expected it without --scenes, -n, --left, --moving, --frames, "
           "--drift and --teleport");
     return lab::plan_of({
         .scenes = arguments.scenes,
         .boxes = read_counts("-n", arguments.boxes),
         .dimensions = arguments.dimensions,
         .moving = arguments.moving,
+        .left = arguments.left.value_or(0),
         .frames = arguments.frames.empty() ? 0 : read_count("--frames", arguments.frames),
         .drift = arguments.motion.drift_or_standard(),
         .teleport = arguments.motion.teleport_or_standard(),
@@ -81,6 +83,12 @@ void check(const CompareArguments& arguments) {
   for (const int dimension : arguments.dimensions) check_dimension(dimension);
   for (const double moving : arguments.moving) check_fraction("--moving", moving);
   check(arguments.motion);
+  if (arguments.left && !(*arguments.left > 0 && *arguments.left < 1))
+    throw Unusable(fmt::format("--left is {}; expected a fraction above 0 and below 1", *arguments.left));
+  if (arguments.left && (!arguments.moving.empty() || !arguments.frames.empty() || arguments.motion.any()))
+    throw Unusable(
+        "--left joins two sets of boxes at rest; expected it without --moving, --frames, --drift and "
+        "--teleport");
   const bool any_moves = std::ranges::any_of(arguments.moving, [](double moving) { return moving > 0; });
   if (arguments.motion.any() && !any_moves && arguments.frames.empty())
     throw Unusable("--drift and --teleport say how boxes move; expected --moving or --frames as well");
@@ -214,6 +222,10 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
       ->type_name("NUMBERS");
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (default: 20); alone, a tenth of the boxes moves");
+  verb->add_option("--left", arguments->left,
+                   "Join two sets: this fraction of the boxes, drawn at random, is the left set, the others "
+                   "are the right one, and only pairs across the two count")
+      ->type_name("FRACTION");
   add_motion_options(*verb, arguments->motion);
   add_threads(*verb, arguments->entries,
               "Number of threads to search with (0: as many as the machine has), or several, such as "

@@ -70,6 +70,30 @@ TEST(Compare, VerifiesAndTimesEveryAlgorithmOnAStillScene) {
   EXPECT_TRUE(comparison.all_verified());
 }
 
+TEST(Compare, JoinsTwoSetsByWhatHasAJoin) {
+  CaseRequest request = small_still;
+  request.left = 0.25;
+  for (const std::size_t definition_boxes : {1'000, 100}) {
+    CompareOptions options = options_for("own,terdiman_box_pruning", {request});
+    options.effort.definition_boxes = definition_boxes;
+    const CaseResult result = compare(Catalogue(), options).cases.at(0);
+    EXPECT_EQ(result.of.left, 0.25);
+    const Measurement& first = result.measurements.at(0);
+    EXPECT_GT(first.pairs.value_or(0), 0u);
+    // Boxes are drawn at random, so that 2 * 0.25 * 0.75 of all pairs are across.
+    EXPECT_NEAR(static_cast<double>(*first.pairs), 0.375 * 600, 60);
+    for (const Measurement& measurement : result.measurements) {
+      const bool joins = measurement.kind == AlgorithmKind::own;
+      EXPECT_EQ(measurement.outcome, joins ? Outcome::verified : Outcome::skipped) << measurement.reason;
+      if (joins) {
+        EXPECT_EQ(measurement.pair_hash, first.pair_hash);
+      } else {
+        EXPECT_THAT(measurement.reason, HasSubstr("has no join of two sets"));
+      }
+    }
+  }
+}
+
 TEST(Compare, TracksAMovingScene) {
   const Catalogue catalogue;
   const Comparison comparison = compare(catalogue, options_for("own", {small_moving}));

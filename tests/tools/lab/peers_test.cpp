@@ -15,6 +15,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/catalogue.hpp"
+#include "lab/peers/queries.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/scenes/scene.hpp"
 #include "tests/support/message.hpp"
@@ -85,6 +86,81 @@ TEST(Peers, FindTheSameWhetherTheyWereTornDownOrNot) {
     if (peer.has_dimension(2)) expect_the_same_after_tear_down<2>(peer);
     if (peer.has_dimension(3)) expect_the_same_after_tear_down<3>(peer);
   }
+}
+
+template <int D>
+void expect_a_join_of_two_sets(const Algorithm& peer) {
+  const Scene scene = find_scene("uniform").scene;
+  std::unique_ptr<Searcher<D>> searcher = searcher_of<D>(peer);
+  for (const std::size_t left : {40, 0, 200, 360}) {
+    const std::vector<Box<D>> boxes =
+        make_history<D>(scene, {scene.name, {}}, {.boxes = 400, .seed = left + 1}).boxes;
+    std::vector<Pair> expected = find_pairs(boxes, {.algorithm = "brute_force"});
+    if (left > 0)
+      std::erase_if(expected,
+                    [left](Pair pair) { return index(pair.first) >= left || index(pair.second) < left; });
+    std::ranges::sort(expected);
+    ASSERT_FALSE(expected.empty());
+    std::vector<Pair> found;
+    PairCollector collector(found);
+    searcher->search({.boxes = boxes, .left_count = left}, collector);
+    collector.flush();
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << peer.name << ", of which " << left << " in the left set";
+  }
+}
+
+TEST(Peers, ThatJoinTwoSetsFindNoPairsWithinASet) {
+  std::size_t count = 0;
+  for (const Algorithm& peer : peers::peers()) {
+    if (!peers::joins_sets(peer.name)) continue;
+    ++count;
+    if (peer.has_dimension(2)) expect_a_join_of_two_sets<2>(peer);
+    if (peer.has_dimension(3)) expect_a_join_of_two_sets<3>(peer);
+  }
+  EXPECT_EQ(count == 0, peers::peers().empty());
+}
+
+template <int D>
+void expect_the_answers_of_an_index() {
+  const Scene scene = find_scene("uniform").scene;
+  const std::vector<Box<D>> boxes = make_history<D>(scene, {scene.name, {}}, {.boxes = 400, .seed = 1}).boxes;
+  const std::vector<Box<D>> queries =
+      make_history<D>(scene, {scene.name, {}}, {.boxes = 50, .seed = 2}).boxes;
+  std::vector<Ray<D>> rays;
+  for (std::size_t i = 0; i + 1 < queries.size(); ++i) {
+    Ray<D> ray{.origin = queries[i].min, .direction = {}, .t_max = 1};
+    for (std::size_t axis = 0; axis < D; ++axis)
+      ray.direction[axis] = queries[i + 1].min[axis] - ray.origin[axis];
+    const auto contains = [&](const Box<D>& box) { return overlap(box, Box<D>{ray.origin, ray.origin}); };
+    if (std::ranges::none_of(boxes, contains)) rays.push_back(ray);
+  }
+  BoxIndex<D> index;
+  index.update({.boxes = boxes, .changed = {}});
+  peers::Answers overlapping;
+  peers::Answers all_hits;
+  peers::Answers first_hits;
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    index.overlapping(queries[i], [&](BoxId id) { overlapping.add(i, id); });
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    index.hits(rays[i], [&](Hit<float> hit) { all_hits.add(i, hit.box); });
+    if (const auto hit = index.first_hit(rays[i])) first_hits.add(i, hit->box);
+  }
+  EXPECT_GT(overlapping.count, 0u);
+  EXPECT_GT(all_hits.count, first_hits.count);
+  for (const auto& peer : peers::query_peers<D>(boxes)) {
+    if (peer->has_boxes()) {
+      EXPECT_EQ(peer->overlapping(queries), overlapping) << peer->name();
+    }
+    if (!peer->has_rays()) continue;
+    EXPECT_EQ(peer->all_hits(rays), all_hits) << peer->name();
+    EXPECT_EQ(peer->first_hits(rays), first_hits) << peer->name();
+  }
+}
+
+TEST(Peers, AnswerQueriesAsAnIndexDoes) {
+  expect_the_answers_of_an_index<2>();
+  expect_the_answers_of_an_index<3>();
 }
 
 TEST(Peers, ThatAreMissingAreNamedWithTheWayToGetThem) {

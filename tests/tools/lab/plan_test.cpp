@@ -45,6 +45,11 @@ TEST(QuickPlan, EndsEachCaseInTime) {
   EXPECT_LT(quick_effort().case_seconds * static_cast<double>(quick_plan().size()), 120);
 }
 
+TEST(Plans, HaveJoinsOfTwoSets) {
+  for (const auto& plan : {quick_plan(), long_plan()})
+    EXPECT_GE(std::ranges::count_if(plan, [](const CaseRequest& request) { return request.left > 0; }), 2);
+}
+
 TEST(Plans, RequireNothingThatMayBeMissing) {
   for (const auto& plan : {quick_plan(), long_plan()}) {
     EXPECT_TRUE(std::ranges::none_of(plan, &CaseRequest::required));

@@ -58,6 +58,21 @@ void check_steps(const CaseRequest& request) {
   }
 }
 
+/// Moves a fraction of the boxes, drawn at random but always the same ones, to the front.
+template <int D>
+void split(std::vector<Box<D>>& boxes, double left) {
+  std::vector<Box<D>> chosen;
+  std::vector<Box<D>> others;
+  const std::vector<std::size_t> sample = sample_of(boxes.size(), left_count(left, boxes.size()));
+  auto next = sample.begin();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const bool is_chosen = next != sample.end() && *next == i;
+    if (is_chosen) ++next;
+    (is_chosen ? chosen : others).push_back(boxes[i]);
+  }
+  std::ranges::copy(others, std::ranges::copy(chosen, boxes.begin()).out);
+}
+
 class Runner {
  public:
   Runner(const Catalogue& catalogue, const CompareOptions& options)
@@ -143,6 +158,9 @@ class Runner {
                                         .moving = request.moving,
                                         .drift = request.drift,
                                         .teleport = request.teleport}));
+      if (request.left == 0) return;
+      inputs.back().steps.clear();
+      split(inputs.back().boxes, request.left);
     };
     check_steps<D>(request);
     make(options_.seed);
@@ -155,6 +173,7 @@ class Runner {
     of.boxes = max_boxes(inputs[0]);
     of.frames = inputs[0].steps.size();
     of.moving = moving_fraction(inputs[0]);
+    of.left = request.left;
     of.mode = of.frames == 0 ? Mode::find : Mode::track;
     if (of.mode == Mode::track && request.moving > 0) {
       of.drift = request.drift;

@@ -18,6 +18,7 @@
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/measure/seen_algorithm.hpp"
+#include "lab/peers/peers.hpp"
 
 namespace broadside::lab {
 namespace {
@@ -30,6 +31,12 @@ struct NoFloor {
   template <typename Boxes>
   void run(const Boxes&, std::span<Pair>, Stores) const noexcept {}
 };
+
+/// Whether the algorithm joins two sets. One that finds the pairs of one set would be timed for pairs that
+/// nobody asked for.
+bool joins_sets(const Algorithm& algorithm) {
+  return algorithm.kind == AlgorithmKind::own || peers::joins_sets(algorithm.name);
+}
 
 /// The expected result of a search of one input.
 struct ExpectedPairs {
@@ -85,6 +92,17 @@ class FindCase {
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
+  /// The number of boxes in the left set of an input; 0 if there is one set only.
+  std::size_t left_of(std::size_t input) const { return left_count(case_.left, boxes_of(input).size()); }
+
+  /// The expected pairs, of which a case of two sets keeps those across the sets.
+  std::vector<Pair> across(std::vector<Pair> pairs, std::size_t input) const {
+    if (const std::size_t left = left_of(input); left > 0)
+      std::erase_if(pairs,
+                    [left](Pair pair) { return index(pair.second) < left || index(pair.first) >= left; });
+    return pairs;
+  }
+
   std::vector<Reference> references() const {
     std::vector<Reference> all;
     for (const auto& known : expectations_) all.push_back(known->reference);
@@ -95,20 +113,25 @@ class FindCase {
   bool is_eligible(const Entry& entry, Measurement& measurement) {
     benchmark_.watch.at(measurement.algorithm + ", checking its limits");
     measurement.reason = unfit(entry, D, extremes_);
+    if (measurement.reason.empty() && case_.left > 0 && !joins_sets(*entry.algorithm))
+      measurement.reason = "has no join of two sets here";
     if (!measurement.reason.empty()) return false;
     const double budget = benchmark_.effort.budget_seconds;
     const auto seconds_for = [&](std::size_t count) {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
-      for (const std::size_t i : sample_of(boxes_of(0).size(), count)) some.push_back(boxes_of(0)[i]);
+      const std::vector<std::size_t> sample = sample_of(boxes_of(0).size(), count);
+      for (const std::size_t i : sample) some.push_back(boxes_of(0)[i]);
+      const auto left =
+          static_cast<std::size_t>(std::ranges::lower_bound(sample, left_of(0)) - sample.begin());
       const auto tried = seen(entry);
       Finder<D, Real> finder(tried->algorithm(), entry.spec);
       benchmark_.watch.ask_within(finder);
-      const double first = call(finder, *tried, some);
+      const double first = call(finder, *tried, some, left);
       // A brief stall of the machine can make a short call seem many times as long, and the first call
       // allocates memory.
       constexpr double is_short_ms = 50;
-      return (first < is_short_ms ? std::min(first, call(finder, *tried, some)) : first) / 1e3;
+      return (first < is_short_ms ? std::min(first, call(finder, *tried, some, left)) : first) / 1e3;
     };
     attempt(measurement, [&]() -> std::string {
       touch(expectation(*entry.algorithm, 0).count);
@@ -213,20 +236,22 @@ class FindCase {
     return least;
   }
 
-  /// Times one search, in milliseconds. Sets pairs_ and statistics_.
-  double call(Finder<D, Real>& finder, const SeenAlgorithm& seen, std::span<const Box<D, Real>> boxes) {
+  /// Times one search, in milliseconds. Sets pairs_, as indexes into `boxes`, and statistics_.
+  double call(Finder<D, Real>& finder, const SeenAlgorithm& seen, std::span<const Box<D, Real>> boxes,
+              std::size_t left) {
     pairs_.clear();
     PairCollector collector(pairs_);
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
-    statistics_ = finder.find(boxes, collector);
+    statistics_ = case_.left > 0 ? finder.find_across(boxes, left, collector) : finder.find(boxes, collector);
     const double milliseconds = watch.milliseconds();
     if (seen.structure() != nullptr) seen.structure()->tear_down();
+    for (Pair& pair : pairs_) pair.second = BoxId(index(pair.second) + left);
     return milliseconds;
   }
 
   double call(FindParticipant<D, Real>& participant, std::size_t input) {
-    return call(*participant.finder, *participant.seen, boxes_of(input));
+    return call(*participant.finder, *participant.seen, boxes_of(input), left_of(input));
   }
 
   /// The fault of pairs_; empty if there is none. Pairs with the expected count and hash are the expected
@@ -239,7 +264,8 @@ class FindCase {
     if (equal && !(one_by_one && kept)) return {};
     auto divergence =
         kept ? compare_pairs(pairs_, expected.pairs)
-             : compare_pairs(pairs_, expected.reference.template pairs<D, Real>(boxes_of(input)));
+             : compare_pairs(pairs_,
+                             across(expected.reference.template pairs<D, Real>(boxes_of(input)), input));
     if (!divergence) return {};
     return explained<D, Real>(*std::move(divergence), participant.measurement->algorithm,
                               fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
@@ -255,13 +281,14 @@ class FindCase {
     }
     benchmark_.watch.at("making the reference: " + reference.text());
     std::vector<Pair> pairs = reference.pairs<D, Real>(boxes_of(input), [this] { benchmark_.watch.ask(); });
-    ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, {}};
+    std::string fault;
     if (!reference.is_definition()) {
       if (auto divergence = check_sample<D, Real>(boxes_of(input), pairs))
-        expected.fault =
-            explained<D, Real>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input))
-                .text;
+        fault = explained<D, Real>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input))
+                    .text;
     }
+    pairs = across(std::move(pairs), input);
+    ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, std::move(fault)};
     for (const auto& known : expectations_) {
       if (known->input == input && (known->count != expected.count || known->hash != expected.hash))
         expected.fault = fmt::format(

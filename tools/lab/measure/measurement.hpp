@@ -28,10 +28,17 @@ struct Case {
   std::size_t boxes = 0;             ///< the maximum number in any frame
   std::size_t frames = 0;            ///< after the first; 0 for a still scene
   double moving = 0;                 ///< mean fraction of the boxes that change from one frame to the next
+  double left = 0;                   ///< in a search between two sets: the fraction of the boxes, those in
+                                     ///< front, that are the left set; 0: pairs within one set
   std::optional<double> drift{};     ///< how a scene without its own motion was set moving, as in
   std::optional<double> teleport{};  ///< SceneRequest; otherwise empty
   Mode mode = Mode::find;
 };
+
+/// The number of boxes in the left set, which is this fraction of all.
+constexpr std::size_t left_count(double left, std::size_t boxes) noexcept {
+  return static_cast<std::size_t>(left * static_cast<double>(boxes) + 0.5);
+}
 
 /// What to measure in a case. Counts and memory are always measured.
 struct MeasureOptions {

@@ -25,10 +25,11 @@ struct PlanPart {
   std::vector<double> moving = {0};
   std::size_t frames = 0;
   std::vector<int> dimensions = {2, 3};
+  double left = 0;
 };
 
 /// Sizes from a small game to a large simulation, densities of 1, 4 and 30 neighbours, and more than a third
-/// real or recorded boxes.
+/// real or recorded boxes. Two cases are joins of two sets.
 std::vector<PlanPart> quick_parts() {
   return {
       {{"uniform"}, {100, 1'000, 10'000, 100'000}},
@@ -40,6 +41,8 @@ std::vector<PlanPart> quick_parts() {
       {{"power_law"}, {10'000}, {0}, 0, {3}},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"},
        own_count},
+      {{"uniform"}, {10'000}, {0}, 0, {3}, 0.5},
+      {{"counties"}, own_count, {0}, 0, {2}, 0.1},
       {{"uniform"}, {10'000}, {0.1}, 10, {2}},
       {{"uniform"}, {1'000}, {1}, 20, {3}},
       {{"box2d_rain", "box2d_tumbler", "box2d_pyramid", "bullet_free_fall", "bullet_moving_gravity"},
@@ -60,6 +63,9 @@ std::vector<PlanPart> long_parts() {
       {{"bullet_free_fall", "bullet_brownian", "bullet_moving_gravity"}, {1'000, 5'000}, {0}, 60},
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"},
        own_count},
+      {{"uniform", "clustered"}, {1'000, 10'000, 100'000, 1'000'000}, {0}, 0, {2, 3}, 0.5},
+      {{"uniform", "clustered"}, {10'000, 1'000'000}, {0}, 0, {2, 3}, 0.1},
+      {{"bunny", "counties", "coastlines:boxes=segments"}, own_count, {0}, 0, {2, 3}, 0.1},
   };
 }
 
@@ -86,6 +92,7 @@ std::vector<CaseRequest> plan_from(const std::vector<PlanPart>& parts) {
                               .boxes = boxes,
                               .moving = moving,
                               .frames = part.frames,
+                              .left = part.left,
                               .required = false});
           }
         }
@@ -155,8 +162,9 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& options) {
           const CaseRequest request{.scene = name,
                                     .dimension = dimension,
                                     .boxes = scene.fixed_count ? 0 : count,
-                                    .moving = moves ? 0 : moving,
-                                    .frames = moves || moving > 0 ? frames : 0,
+                                    .moving = moves || options.left > 0 ? 0 : moving,
+                                    .frames = options.left == 0 && (moves || moving > 0) ? frames : 0,
+                                    .left = options.left,
                                     .drift = options.drift,
                                     .teleport = options.teleport,
                                     .required = named};

@@ -16,9 +16,10 @@ namespace broadside::lab {
 struct CaseRequest {
   std::string scene;  ///< a spec, or the path of a file
   int dimension = 2;
-  std::size_t boxes = 0;                      ///< ignored by a scene with its own number of boxes
-  double moving = 0;                          ///< the fraction that moves; 0 for a scene with its own motion
-  std::size_t frames = 0;                     ///< 0: a still scene
+  std::size_t boxes = 0;   ///< ignored by a scene with its own number of boxes
+  double moving = 0;       ///< the fraction that moves; 0 for a scene with its own motion
+  std::size_t frames = 0;  ///< 0: a still scene
+  double left = 0;  ///< not 0: search between two sets; this fraction, drawn at random, is the left one
   double drift = SceneRequest{}.drift;        ///< as in SceneRequest
   double teleport = SceneRequest{}.teleport;  ///< likewise
   bool required = true;                       ///< whether it is an error if the scene does not exist
@@ -44,6 +45,7 @@ struct ComparePlanOptions {
   std::vector<std::size_t> boxes{};
   std::vector<int> dimensions{};
   std::vector<double> moving{};
+  double left = 0;         ///< as in CaseRequest; only the first frame of scenes that move is then searched
   std::size_t frames = 0;  ///< 0: 20 if boxes are set moving, all if they move in a file
   double drift = SceneRequest{}.drift;
   double teleport = SceneRequest{}.teleport;

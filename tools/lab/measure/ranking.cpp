@@ -65,8 +65,11 @@ std::string whole_name_of(const Case& measured) {
 }
 
 std::string name_of(const Case& measured) {
-  return fmt::format("{}, {}D, {}", measured.scene, measured.dimension,
-                     counted(measured.boxes, "box", "boxes"));
+  std::string name =
+      fmt::format("{}, {}D, {}", measured.scene, measured.dimension, counted(measured.boxes, "box", "boxes"));
+  if (measured.left > 0)
+    name += fmt::format(", {:.3g} % joined with {:.3g} %", measured.left * 100, (1 - measured.left) * 100);
+  return name;
 }
 
 }  // namespace broadside::lab

@@ -14,6 +14,7 @@
 #include <boost/iterator/function_output_iterator.hpp>
 #include <boost/version.hpp>
 
+#include "lab/peers/indexed_set.hpp"
 #include "lab/peers/peers.hpp"
 #include "lab/peers/queries.hpp"
 #include "lab/peers/tear_down.hpp"
@@ -50,12 +51,21 @@ class BoostRtree final : public Searcher<D>, public TearDown {
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
+    const IndexedSet indexed(input);
     tear_down();
     values_.clear();
-    values_.reserve(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    values_.reserve(indexed.end - indexed.begin);
+    for (std::size_t i = indexed.begin; i < indexed.end; ++i)
       values_.push_back({boost_box<D>(boxes[i]), static_cast<std::uint32_t>(i)});
     tree_.emplace(values_);  // constructed from a range, the tree is packed
+    if (input.left_count > 0) {
+      for (std::size_t i = indexed.other_begin; i < indexed.other_end; ++i) {
+        const auto report = [&pairs, i](const Value& value) { pairs.add(BoxId(i), BoxId{value.second}); };
+        tree_->query(geometry::index::intersects(boost_box<D>(boxes[i])),
+                     boost::make_function_output_iterator(report));
+      }
+      return std::nullopt;
+    }
     // In the order of the tree's leaves, so that a query finds the nodes of the previous one in the cache.
     for (const Value& value : *tree_) {
       const auto report = [&pairs, i = value.second](const Value& other) {

@@ -1,6 +1,7 @@
 // Bullet's dynamic bounding volume tree: btDbvt joined with itself, and btDbvtBroadphase, which keeps one for
 // moving boxes.
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,16 +23,21 @@ class BulletDbvt final : public Searcher<D>, public TearDown {
     tear_down();
     for (std::size_t i = 0; i < input.boxes.size(); ++i) {
       const Box<D>& box = input.boxes[i];
-      tree_.insert(btDbvtVolume::FromMM(bullet_point(box.min), bullet_point(box.max)), bullet_data(BoxId(i)));
+      tree_of(i < input.left_count)
+          .insert(btDbvtVolume::FromMM(bullet_point(box.min), bullet_point(box.max)), bullet_data(BoxId(i)));
     }
     ContactReport report(pairs);
-    tree_.collideTT(tree_.m_root, tree_.m_root, report);
+    tree_of(false).collideTT(tree_of(input.left_count > 0).m_root, tree_of(false).m_root, report);
     return std::nullopt;
   }
 
-  void tear_down() override { tree_.clear(); }
+  void tear_down() override {
+    for (btDbvt& tree : trees_) tree.clear();
+  }
 
  private:
+  btDbvt& tree_of(bool left) { return trees_[left ? 1 : 0]; }
+
   struct ContactReport final : btDbvt::ICollide {
     explicit ContactReport(PairSink& sink) : pairs(sink) {}
     void Process(const btDbvtNode* a, const btDbvtNode* b) override {
@@ -40,7 +46,7 @@ class BulletDbvt final : public Searcher<D>, public TearDown {
     PairSink& pairs;
   };
 
-  btDbvt tree_;  // of the last search
+  std::array<btDbvt, 2> trees_;  // of the last search: of all boxes or the right set, and of the left set
 };
 
 /// Bullet enlarges moving boxes by 0.05, for boxes of size about 1: this uses a twentieth of the typical

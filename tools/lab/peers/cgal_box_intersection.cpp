@@ -30,9 +30,9 @@ class CgalBoxIntersection final : public Searcher<D> {
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
+    const std::array<int, D> axes = axes_by_extent(boxes);  // CGAL sweeps along the first axis
     boxes_.clear();
     boxes_.reserve(boxes.size());
-    const std::array<int, D> axes = axes_by_extent(boxes);  // CGAL sweeps along the first axis
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       float min[D];
       float max[D];
@@ -44,9 +44,15 @@ class CgalBoxIntersection final : public Searcher<D> {
     }
     const auto report = [&pairs](const CgalBox& a, const CgalBox& b) { pairs.add(a.info(), b.info()); };
     // CGAL sorts the boxes themselves; pointers to them, which it accepts as well, are slower.
-    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
-                                  cutoff_ > 0 ? cutoff_ : cutoff_for(boxes.size()),
-                                  CGAL::Box_intersection_d::CLOSED);
+    const std::ptrdiff_t cutoff = cutoff_ > 0 ? cutoff_ : cutoff_for(boxes.size());
+    if (input.left_count > 0) {
+      const auto middle = boxes_.begin() + static_cast<std::ptrdiff_t>(input.left_count);
+      CGAL::box_intersection_d(boxes_.begin(), middle, middle, boxes_.end(), report, cutoff,
+                               CGAL::Box_intersection_d::CLOSED);
+    } else {
+      CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report, cutoff,
+                                    CGAL::Box_intersection_d::CLOSED);
+    }
     return std::nullopt;
   }
 

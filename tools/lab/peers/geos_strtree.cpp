@@ -8,6 +8,7 @@
 #include <geos/index/strtree/TemplateSTRtree.h>
 #include <geos/version.h>
 
+#include "lab/peers/indexed_set.hpp"
 #include "lab/peers/peers.hpp"
 #include "lab/peers/tear_down.hpp"
 
@@ -20,9 +21,16 @@ class GeosStrtree final : public Searcher<2>, public TearDown {
     const std::span<const Box2> boxes = input.boxes;
     constexpr std::size_t standard_capacity = 10;
     // A built tree takes no more items, and a new one cannot reuse its memory.
-    auto& tree = tree_.emplace(standard_capacity, boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    const IndexedSet indexed(input);
+    auto& tree = tree_.emplace(standard_capacity, indexed.end - indexed.begin);
+    for (std::size_t i = indexed.begin; i < indexed.end; ++i)
       tree.insert(envelope(boxes[i]), static_cast<std::uint32_t>(i));
+    if (input.left_count > 0) {
+      for (std::size_t i = indexed.other_begin; i < indexed.other_end; ++i)
+        tree.query(envelope(boxes[i]),
+                   [&pairs, i](const std::uint32_t& j) { pairs.add(BoxId(i), BoxId{j}); });
+      return std::nullopt;
+    }
     // In the order of the tree's leaves, so that a query finds the nodes of the previous one in the cache.
     for (const std::uint32_t i : tree.items()) {
       tree.query(envelope(boxes[i]), [&pairs, i](const std::uint32_t& j) {

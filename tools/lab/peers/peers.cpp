@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <string_view>
 
 #include "lab/peers/queries.hpp"
@@ -116,12 +117,21 @@ std::string_view build_note(std::string_view peer) {
   return note == build_notes.end() ? std::string_view() : note->text;
 }
 
+bool joins_sets(std::string_view peer) {
+  constexpr std::array<std::string_view, 8> names = {
+      "boost_rtree", "bullet_dbvt",  "cgal_box_intersection", "embree_collide",
+      "geo_index",   "geos_strtree", "packed_spatial_index",  "rstar_tree"};
+  return std::ranges::find(names, peer) != names.end();
+}
+
 template <int D>
 std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes) {
   std::vector<std::unique_ptr<QueryPeer<D>>> peers;
   if constexpr (BROADSIDE_HAS_BOOST) peers.push_back(boost_queries<D>(boxes));
   if constexpr (D == 2 && BROADSIDE_HAS_BOX2D) peers.push_back(box2d_queries(boxes));
   if constexpr (D == 3 && BROADSIDE_HAS_EMBREE) peers.push_back(embree_queries(boxes));
+  if constexpr (BROADSIDE_HAS_RUST_INDEXES)
+    std::ranges::move(rust_queries<D>(boxes), std::back_inserter(peers));
   return peers;
 }
 

@@ -22,6 +22,9 @@ struct MissingPeer {
 /// The peers that were left out of this build, in the same order. Thread-safe.
 std::span<const MissingPeer> missing_peers();
 
+/// Whether the peer joins two sets by its library's own means, instead of finding the pairs of one set.
+bool joins_sets(std::string_view peer);
+
 /// A sentence about the build of a peer's library that affects its times (docs/peers.md); empty if nothing is
 /// known.
 std::string_view build_note(std::string_view peer);

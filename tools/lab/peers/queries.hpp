@@ -35,6 +35,7 @@ class QueryPeer {
   virtual std::string name() const = 0;
   virtual bool has_boxes() const { return false; }
   virtual bool has_rays() const { return false; }
+  virtual bool computes_in_double() const { return false; }  ///< where it finds what rays hit
   virtual Answers overlapping(std::span<const Box<D>>) { return {}; }
   virtual Answers first_hits(std::span<const Ray<D>>) { return {}; }
   virtual Answers all_hits(std::span<const Ray<D>>) { return {}; }
@@ -50,5 +51,9 @@ template <int D>
 std::unique_ptr<QueryPeer<D>> boost_queries(std::span<const Box<D>> boxes);
 std::unique_ptr<QueryPeer<2>> box2d_queries(std::span<const Box2> boxes);
 std::unique_ptr<QueryPeer<3>> embree_queries(std::span<const Box3> boxes);
+
+/// All indexes from crates.io.
+template <int D>
+std::vector<std::unique_ptr<QueryPeer<D>>> rust_queries(std::span<const Box<D>> boxes);
 
 }  // namespace broadside::lab::peers

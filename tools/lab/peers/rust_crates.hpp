@@ -66,8 +66,8 @@ class RustCrateSearcher final : public Searcher<D>, public TearDown {
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     RustPairs found(pairs);
     const auto length = needs_length_ ? static_cast<float>(typical_extent(input.boxes)) : 0.0f;
-    found.finish(rust_searcher_search(searcher_.get(), coordinates(input.boxes), input.boxes.size(), length,
-                                      RustPairs::take, &found),
+    found.finish(rust_searcher_search(searcher_.get(), coordinates(input.boxes), input.boxes.size(),
+                                      input.left_count, length, RustPairs::take, &found),
                  name_);
     return std::nullopt;
   }

@@ -38,12 +38,13 @@ export function labelOf(measurement: Measurement): string {
 export function casesOf(measurements: readonly Measurement[]): Case[] {
   const cases = new Map<string, Case>();
   for (const measurement of measurements) {
-    const { scene, dimension, boxes, moving, mode, frames, drift, teleport, floor_ms } = measurement;
-    const key = JSON.stringify([scene, dimension, boxes, moving, mode, frames, drift, teleport, measurement.seeds]);
+    const { scene, dimension, boxes, moving, mode, frames, left, drift, teleport, floor_ms } = measurement;
+    const key = JSON.stringify([scene, dimension, boxes, moving, mode, frames, left, drift, teleport, measurement.seeds]);
     let found = cases.get(key);
     if (found === undefined) {
       const moves = mode === "track" ? `, ${percent(moving)} moving` : "";
-      const name = `${scene}, ${dimension}D, ${grouped(boxes)} boxes${moves}`;
+      const sets = left === undefined ? "" : `, ${percent(left)} joined with ${percent(1 - left)}`;
+      const name = `${scene}, ${dimension}D, ${grouped(boxes)} boxes${sets}${moves}`;
       found = { name, scene, dimension, boxes, moving, mode, floor_ms, measurements: [] };
       cases.set(key, found);
     }

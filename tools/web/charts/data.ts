@@ -37,6 +37,8 @@ export interface Measurement {
   boxes: number;
   frames: number;
   moving: number;
+  /** Where two sets are joined: the fraction of the boxes that is the left set. */
+  left?: number;
   drift: number | null;
   teleport: number | null;
   algorithm: string;

@@ -34,10 +34,11 @@ void rust_follower_free(RustFollower* follower);
 
 /// The functions below return false on failure. `boxes` has the minimum and then the maximum of each box.
 
-/// Gives each overlapping pair once. All boxes are present. `length` is that of a typical box, 0 if not
-/// needed.
-bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, float length,
-                          RustPeerTakes takes, void* context);
+/// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, the boxes before it are
+/// the left set, and only pairs with a box of each set count: others may be given. `length` is that of a
+/// typical box, 0 if not needed.
+bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, size_t left_count,
+                          float length, RustPeerTakes takes, void* context);
 
 /// Destroys the structure that the last search left.
 bool rust_searcher_tear_down(RustSearcher* searcher);
@@ -49,6 +50,21 @@ bool rust_follower_build(RustFollower* follower, const float* boxes, size_t coun
 /// and overlapped before or overlaps now, and may give other pairs.
 bool rust_follower_update(RustFollower* follower, const float* boxes, size_t count, const uint32_t* changed,
                           size_t changed_count, const uint8_t* flags, RustPeerTakes takes, void* context);
+
+/// An index of boxes, which answers queries.
+typedef struct RustIndex RustIndex;
+
+/// What is asked: the boxes that overlap a box; the first box that a ray hits, or all that it hits. Rays are
+/// an origin, a direction and the greatest t.
+typedef enum RustQueries { RUST_BOXES, RUST_FIRST_HITS, RUST_ALL_HITS } RustQueries;
+
+/// Null on failure. All boxes are present.
+RustIndex* rust_index_new(const char* name, int dimension, const float* boxes, size_t count);
+void rust_index_free(RustIndex* index);
+
+/// Gives the number of each query with each box found, as a pair in this order.
+bool rust_index_ask(RustIndex* index, RustQueries kind, const float* queries, size_t count,
+                    RustPeerTakes takes, void* context);
 
 #ifdef __cplusplus
 }

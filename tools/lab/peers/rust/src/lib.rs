@@ -10,6 +10,7 @@ mod panicking;
 #[cfg(feature = "engines")]
 mod parry_bvh;
 mod peer;
+mod queries;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
@@ -17,10 +18,12 @@ mod rstar_tree;
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, c_void, CStr, CString};
+use std::ops::ControlFlow;
 use std::panic::{catch_unwind, set_hook, AssertUnwindSafe};
 use std::sync::Once;
 
 use peer::{Bounds, Follower, Frame, Pairs, Searcher, Takes};
+use queries::{AnyIndex, Geo, Packed2, Packed3, Rstar};
 
 thread_local! {
     static PANIC_PLACE: RefCell<String> = const { RefCell::new(String::new()) };
@@ -102,6 +105,21 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
     }
 }
 
+fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) -> AnyIndex {
+    use AnyIndex::{Flat, Solid};
+    // SAFETY: the caller of the C interface gave so many boxes.
+    let flat = || unsafe { slice(boxes.cast::<Bounds<2>>(), count) };
+    let solid = || unsafe { slice(boxes.cast::<Bounds<3>>(), count) };
+    match (name, dimension) {
+        ("packed_spatial_index", 2) => Flat(Box::new(Packed2::new(flat()))),
+        ("packed_spatial_index", 3) => Solid(Box::new(Packed3::new(solid()))),
+        ("geo_index", 2) => Flat(Box::new(Geo::new(flat()))),
+        ("rstar", 2) => Flat(Box::new(Rstar::new(flat()))),
+        ("rstar", 3) => Solid(Box::new(Rstar::new(solid()))),
+        _ => panic!("no index '{name}' in {dimension}D"),
+    }
+}
+
 fn follower_named(name: &str, dimension: c_int) -> AnyFollower {
     match (name, dimension) {
         #[cfg(feature = "engines")]
@@ -168,11 +186,25 @@ pub unsafe extern "C" fn rust_follower_free(follower: *mut AnyFollower) {
     guarded(|| drop(Box::from_raw(follower)));
 }
 
+fn run<const D: usize>(
+    searcher: &mut dyn Searcher<D>,
+    boxes: &[Bounds<D>],
+    left_count: usize,
+    length: f32,
+    pairs: &mut Pairs,
+) -> ControlFlow<()> {
+    match left_count {
+        0 => searcher.search(boxes, length, pairs),
+        _ => searcher.join(boxes, left_count, length, pairs),
+    }
+}
+
 #[no_mangle]
 pub unsafe extern "C" fn rust_searcher_search(
     searcher: *mut AnySearcher,
     boxes: *const f32,
     count: usize,
+    left_count: usize,
     length: f32,
     takes: Takes,
     context: *mut c_void,
@@ -183,8 +215,8 @@ pub unsafe extern "C" fn rust_searcher_search(
         }
         let mut pairs = Pairs::new(takes, context);
         let found = match &mut *searcher {
-            AnySearcher::Flat(flat) => flat.search(slice(boxes.cast::<Bounds<2>>(), count), length, &mut pairs),
-            AnySearcher::Solid(solid) => solid.search(slice(boxes.cast::<Bounds<3>>(), count), length, &mut pairs),
+            AnySearcher::Flat(flat) => run(&mut **flat, slice(boxes.cast(), count), left_count, length, &mut pairs),
+            AnySearcher::Solid(solid) => run(&mut **solid, slice(boxes.cast(), count), left_count, length, &mut pairs),
         };
         if found.is_continue() {
             let _ = pairs.flush();
@@ -246,4 +278,39 @@ pub unsafe extern "C" fn rust_follower_update(
         }
     };
     guarded(update).is_some()
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_new(
+    name: *const c_char,
+    dimension: c_int,
+    boxes: *const f32,
+    count: usize,
+) -> *mut AnyIndex {
+    guarded(|| Box::into_raw(Box::new(index_named(text(name), dimension, boxes, count))))
+        .unwrap_or(std::ptr::null_mut())
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_free(index: *mut AnyIndex) {
+    guarded(|| drop(Box::from_raw(index)));
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_ask(
+    index: *mut AnyIndex,
+    kind: queries::Kind,
+    queries: *const f32,
+    count: usize,
+    takes: Takes,
+    context: *mut c_void,
+) -> bool {
+    let ask = || {
+        let mut found = Pairs::new(takes, context);
+        let _ = match &mut *index {
+            AnyIndex::Flat(flat) => queries::ask(&mut **flat, kind, queries, count, &mut found),
+            AnyIndex::Solid(solid) => queries::ask(&mut **solid, kind, queries, count, &mut found),
+        };
+    };
+    guarded(ask).is_some()
 }

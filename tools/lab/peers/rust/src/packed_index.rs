@@ -1,4 +1,4 @@
-//! packed_spatial_index: an R-tree packed along a Hilbert curve, joined with itself. It stores doubles.
+//! packed_spatial_index: an R-tree packed along a Hilbert curve, joined with itself or with another. It stores doubles.
 
 use std::ops::ControlFlow;
 
@@ -6,40 +6,53 @@ use packed_spatial_index::{Box2D, Box3D, Index2D, Index2DBuilder, Index3D, Index
 
 use crate::peer::{Bounds, Pairs, Searcher};
 
-#[derive(Default)]
-pub struct Searcher2(Option<Index2D>);
-
-impl Searcher<2> for Searcher2 {
-    fn search(&mut self, boxes: &[Bounds<2>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
-        let mut builder = Index2DBuilder::new(boxes.len());
-        for Bounds { min, max } in boxes {
-            builder.add(Box2D::new(min[0].into(), min[1].into(), max[0].into(), max[1].into()));
-        }
-        let index = self.0.insert(builder.finish().expect("an index of valid boxes"));
-        index.pairs_each(|a, b| pairs.add(a as u32, b as u32))
+fn index_2d(boxes: &[Bounds<2>]) -> Index2D {
+    let mut builder = Index2DBuilder::new(boxes.len());
+    for Bounds { min, max } in boxes {
+        builder.add(Box2D::new(min[0].into(), min[1].into(), max[0].into(), max[1].into()));
     }
-
-    fn tear_down(&mut self) {
-        self.0 = None;
-    }
+    builder.finish().expect("an index of valid boxes")
 }
 
-#[derive(Default)]
-pub struct Searcher3(Option<Index3D>);
-
-impl Searcher<3> for Searcher3 {
-    fn search(&mut self, boxes: &[Bounds<3>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
-        let mut builder = Index3DBuilder::new(boxes.len());
-        for Bounds { min, max } in boxes {
-            let [min_x, min_y, min_z] = min.map(f64::from);
-            let [max_x, max_y, max_z] = max.map(f64::from);
-            builder.add(Box3D::new(min_x, min_y, min_z, max_x, max_y, max_z));
-        }
-        let index = self.0.insert(builder.finish().expect("an index of valid boxes"));
-        index.pairs_each(|a, b| pairs.add(a as u32, b as u32))
+fn index_3d(boxes: &[Bounds<3>]) -> Index3D {
+    let mut builder = Index3DBuilder::new(boxes.len());
+    for Bounds { min, max } in boxes {
+        let [min_x, min_y, min_z] = min.map(f64::from);
+        let [max_x, max_y, max_z] = max.map(f64::from);
+        builder.add(Box3D::new(min_x, min_y, min_z, max_x, max_y, max_z));
     }
-
-    fn tear_down(&mut self) {
-        self.0 = None;
-    }
+    builder.finish().expect("an index of valid boxes")
 }
+
+macro_rules! packed_index {
+    ($searcher:ident, $index:ident, $build:ident, $dimension:literal) => {
+        #[derive(Default)]
+        pub struct $searcher(Vec<$index>); // of the last search
+
+        impl Searcher<$dimension> for $searcher {
+            fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+                self.0 = vec![$build(boxes)];
+                self.0[0].pairs_each(|a, b| pairs.add(a as u32, b as u32))
+            }
+
+            fn join(
+                &mut self,
+                boxes: &[Bounds<$dimension>],
+                left_count: usize,
+                _: f32,
+                pairs: &mut Pairs,
+            ) -> ControlFlow<()> {
+                let (left, right) = boxes.split_at(left_count);
+                self.0 = vec![$build(left), $build(right)];
+                self.0[0].join_each(&self.0[1], |a, b| pairs.add(a as u32, (left_count + b) as u32))
+            }
+
+            fn tear_down(&mut self) {
+                self.0.clear();
+            }
+        }
+    };
+}
+
+packed_index!(Searcher2, Index2D, index_2d, 2);
+packed_index!(Searcher3, Index3D, index_3d, 3);

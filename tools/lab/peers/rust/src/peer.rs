@@ -42,10 +42,20 @@ impl Pairs {
     /// Adds a pair of different ids; breaks if no more pairs are wanted.
     #[inline]
     pub fn add(&mut self, a: u32, b: u32) -> ControlFlow<()> {
+        if a < b {
+            self.give(a, b)
+        } else {
+            self.give(b, a)
+        }
+    }
+
+    /// Adds two numbers in this order; breaks likewise.
+    #[inline]
+    pub fn give(&mut self, a: u32, b: u32) -> ControlFlow<()> {
         if self.used == CHUNK {
             self.flush()?;
         }
-        self.ids[self.used] = if a < b { [a, b] } else { [b, a] };
+        self.ids[self.used] = [a, b];
         self.used += 1;
         ControlFlow::Continue(())
     }
@@ -65,6 +75,12 @@ pub trait Searcher<const D: usize> {
     /// Adds each overlapping pair once. All boxes are present, and there are at least two. `length` is that of a
     /// typical box, if the description in C++ says that it is needed.
     fn search(&mut self, boxes: &[Bounds<D>], length: f32, pairs: &mut Pairs) -> ControlFlow<()>;
+
+    /// Adds each overlapping pair of the first `left_count` boxes and the others once, and may add pairs within these
+    /// sets. Neither is empty. By default, a library without a join of two sets finds all pairs.
+    fn join(&mut self, boxes: &[Bounds<D>], _left_count: usize, length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+        self.search(boxes, length, pairs)
+    }
 
     /// Destroys the structure that the last search left.
     fn tear_down(&mut self) {}
