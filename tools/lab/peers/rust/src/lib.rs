@@ -13,6 +13,8 @@ mod peer;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
+#[cfg(feature = "engines")]
+mod simulations;
 
 use std::any::Any;
 use std::cell::RefCell;
