@@ -52,15 +52,16 @@ class World {
   float between(double low, double high) { return static_cast<float>(random_.between(low, high)); }
   std::uint32_t any_slot() { return static_cast<std::uint32_t>(random_.below(bodies_.size())); }
 
-  /// The first body's distance from the origin, on each axis, in all that is added.
+  /// Where the scene has its origin on each axis.
   void set_origin(float origin) { origin_ = {origin, origin, origin}; }
 
   void set_gravity(RustVector gravity) { check(rust_simulation_set_gravity(simulation(), &gravity)); }
 
-  void add(const RustBody& body) {
-    bodies_.push_back(body);
+  void add(RustBodyKind kind, RustVector position, RustVector half, bool is_ball = false, float angle = 0,
+           float spin = 0) {
+    bodies_.push_back({position, half, angle, spin, kind, is_ball});
     is_there_.push_back(false);
-    add_again(static_cast<std::uint32_t>(bodies_.size() - 1), body.position);
+    add_again(static_cast<std::uint32_t>(bodies_.size() - 1), position);
   }
 
   void add_again(std::uint32_t slot, RustVector position) {
@@ -71,15 +72,13 @@ class World {
   }
 
   void add_static(RustVector position, RustVector half, float angle = 0) {
-    add({.position = position, .half = half, .angle = angle, .kind = rust_body_static});
+    add(rust_body_static, position, half, false, angle);
   }
 
-  void add_box(RustVector position, RustVector half) {
-    add({.position = position, .half = half, .kind = rust_body_dynamic});
-  }
+  void add_box(RustVector position, RustVector half) { add(rust_body_dynamic, position, half); }
 
   void add_ball(RustVector position, float radius) {
-    add({.position = position, .half = {radius, radius, radius}, .kind = rust_body_dynamic, .is_ball = true});
+    add(rust_body_dynamic, position, {radius, radius, radius}, true);
   }
 
   /// A box, or every third time a ball.
@@ -169,10 +168,7 @@ Script tumbler(World& world) {
   world.set_gravity({0, -10, 0});
   const float half =
       std::pow(static_cast<float>(world.wanted()), 1.0F / static_cast<float>(world.dimension())) / 2;
-  world.add({.position = {0, -1.5F * half, 0},
-             .half = {1.4F * half, 0.3F, 1.2F * half},
-             .spin = 1,
-             .kind = rust_body_kinematic});
+  world.add(rust_body_kinematic, {0, -1.5F * half, 0}, {1.4F * half, 0.3F, 1.2F * half}, false, 0, 1);
   fill_container(world, 3 * half);
   return [](std::size_t) {};
 }

@@ -198,7 +198,7 @@ class RecordedCheck {
   std::string reason() const {
     std::string text = first_text_;
     if (text.empty()) {
-      text = fmt::format("margin {:g}, of which {:.3g} was needed", margin_, needed_margin_);
+      text = fmt::format("margin {:g}, needed {:.3g}", margin_, needed_margin_);
       return stopped_.empty() ? text : text + "; " + stopped_;
     }
     text += fmt::format("\n  in all, over the {}: {} missed, {} stale, {} reported more than once",
@@ -206,7 +206,7 @@ class RecordedCheck {
                         grouped(counts_[1]), grouped(counts_[2]));
     if (has_other_pairs_ && !common_.empty())
       text += fmt::format("; all name box {}", index(common_.front()));
-    if (counts_[1] > 0) text += fmt::format("; with a margin of {:.3g}, none would be stale", needed_margin_);
+    if (counts_[1] > 0) text += fmt::format("; a margin of {:.3g} allows all that are stale", needed_margin_);
     if (!stopped_.empty()) text += "; " + stopped_;
     for (const RecordedFault& fault : faults_) text += "\n    " + text_of(fault);
     if (is_cut_) text += fmt::format("\n    ... only the first {} are listed", max_told);

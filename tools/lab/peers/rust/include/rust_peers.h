@@ -63,7 +63,6 @@ enum RustBodyKind { rust_body_static, rust_body_kinematic, rust_body_dynamic };
 /// A box, whose lengths are twice `half`, or a ball of radius half.at[0]. Angle and spin are about z.
 typedef struct RustBody {
   RustVector position;
-  RustVector velocity;
   RustVector half;
   float angle;
   float spin;

@@ -97,7 +97,6 @@ impl Simulation for Box2d {
             };
             definition.position = vector(body.position);
             definition.rotation = rotation(body.angle);
-            definition.linearVelocity = vector(body.velocity);
             definition.angularVelocity = body.spin;
             let handle = b2CreateBody(self.world, &definition);
 

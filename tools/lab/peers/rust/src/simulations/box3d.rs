@@ -92,7 +92,6 @@ impl Simulation for Box3d {
             };
             definition.position = vector(body.position);
             definition.rotation = rotation(body.angle);
-            definition.linearVelocity = vector(body.velocity);
             definition.angularVelocity = vector([0.0, 0.0, body.spin]);
             let handle = b3CreateBody(self.world, &definition);
 

@@ -1,9 +1,17 @@
 //! Engines that run scenes, for tools/bench/engines/record_engine.cpp to record what their broad phases do:
 //! include/rust_peers.h describes the functions.
 
+mod box2d;
+mod box3d;
+mod contacts;
+#[cfg(feature = "physx-sys")]
+mod physx;
 mod rapier;
 
 use std::ffi::{c_char, c_int, c_void};
+
+#[cfg(feature = "physx-sys")]
+use physx_sys::PxBroadPhaseType;
 
 use crate::peer::{Bounds, Pairs, Takes};
 use crate::{guarded, text};
@@ -20,7 +28,6 @@ pub enum Kind {
 #[repr(C)]
 pub struct Body {
     pub position: [f32; 3],
-    pub velocity: [f32; 3],
     pub half: [f32; 3], // of a ball: three times its radius
     pub angle: f32,     // about z, in radians
     pub spin: f32,      // about z, in radians per second
@@ -53,6 +60,14 @@ pub trait Simulation {
 
 fn simulation_named(name: &str) -> Box<dyn Simulation> {
     match name {
+        "box2d" => Box::<box2d::Box2d>::default(),
+        "box3d" => Box::<box3d::Box3d>::default(),
+        #[cfg(feature = "physx-sys")]
+        "physx_abp" => Box::new(physx::PhysX::new(PxBroadPhaseType::Abp)),
+        #[cfg(feature = "physx-sys")]
+        "physx_pabp" => Box::new(physx::PhysX::new(PxBroadPhaseType::Pabp)),
+        #[cfg(feature = "physx-sys")]
+        "physx_sap" => Box::new(physx::PhysX::new(PxBroadPhaseType::Sap)),
         "rapier2d" => Box::<rapier::flat::Rapier>::default(),
         "rapier3d" => Box::<rapier::solid::Rapier>::default(),
         _ => panic!("no engine '{name}'"),

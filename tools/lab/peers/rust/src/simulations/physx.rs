@@ -162,7 +162,6 @@ impl Simulation for PhysX {
                 Kind::Kinematic => phys_PxCreateKinematic(physics(), &at, geometry, self.material, 1.0, &none).cast(),
                 Kind::Dynamic => {
                     let dynamic = phys_PxCreateDynamic(physics(), &at, geometry, self.material, 1.0, &none);
-                    PxRigidDynamic_setLinearVelocity_mut(dynamic, &vector(body.velocity), true);
                     PxRigidDynamic_setAngularVelocity_mut(dynamic, &vector([0.0, 0.0, body.spin]), true);
                     dynamic.cast()
                 }

@@ -53,7 +53,6 @@ macro_rules! rapier {
                         builder
                             .translation(vector(body.position))
                             .rotation($turn(body.angle))
-                            .linvel(vector(body.velocity))
                             .angvel($turn(body.spin)),
                         shape.user_data(slot.into()),
                     );
