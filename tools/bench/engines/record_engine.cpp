@@ -1,5 +1,5 @@
 // Records physics engines from crates.io (tools/lab/peers/rust) that run scenes, with the pairs of their
-// broad phases, for `broadside verify` to check. Usage: record_engine ENGINE SCENE FILE [BODIES [STEPS
+// broad phases, for `broadside verify` to check. Usage: record_engine ENGINE SCENE NAME [BODIES [STEPS
 // [DROP]]]. From step DROP on, one pair is left out, as if the broad phase had missed it.
 //
 // Bodies are boxes and balls of about 1 m; a step takes 1/60 s. Each scene is for 2D and 3D.
@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -266,57 +267,95 @@ Script begin(const std::string& scene, World& world) {
   throw std::runtime_error("no scene '" + scene + "'; there are" + names);
 }
 
-/// Passes the pairs of a step to a recorder.
+/// Records the boxes of bodies in NAME.btrace. If the engine keeps enlarged boxes, records these in
+/// NAME.enlarged.btrace, with the same pairs and a margin of 0.
 template <int D>
-struct PairTaker {
-  broadside::Recorder<D>& recorder;
-  std::size_t count;
-  bool drops;
+class Recording {
+ public:
+  Recording(World& world, const std::string& name, std::size_t drop) : world_(world), drop_(drop) {
+    recorder_.open(name + ".btrace", rust_simulation_margin(world.simulation()));
+    enlarged_name_ = name + ".enlarged.btrace";
+  }
 
-  static bool take(void* context, const std::uint32_t* ids, std::size_t count) {
-    auto& self = *static_cast<PairTaker*>(context);
-    for (std::size_t i = 0; i < count; ++i) {
-      // The pair that is left out is the first.
-      if (!(self.drops && self.count == 0)) self.recorder.add_pair(ids[2 * i], ids[2 * i + 1]);
-      ++self.count;
+  void step(const Script& script) {
+    script(steps_);
+    // A step finds pairs before it moves bodies, so these are the boxes that it uses.
+    put_boxes(recorder_, [this](std::uint32_t slot) { return world_.bounds(slot); });
+    pairs_.clear();
+    check(rust_simulation_step(world_.simulation(), take, this));
+    count_ += pairs_.size() / 2;
+    put_pairs(recorder_);
+    RustBounds bounds;
+    if (steps_ == 0 && rust_simulation_enlarged(world_.simulation(), 0, &bounds))
+      enlarged_.emplace().open(enlarged_name_, 0);
+    if (enlarged_) {
+      put_boxes(*enlarged_, [&](std::uint32_t slot) {
+        check(rust_simulation_enlarged(world_.simulation(), slot, &bounds));
+        return bounds;
+      });
+      put_pairs(*enlarged_);
     }
+    ++steps_;
+  }
+
+  /// The number of pairs, over all steps.
+  std::size_t close() {
+    for (broadside::Recorder<D>* const recorder : {&recorder_, enlarged_ ? &*enlarged_ : nullptr}) {
+      if (recorder != nullptr && !recorder->close()) throw std::runtime_error(recorder->error());
+    }
+    return count_;
+  }
+
+ private:
+  static bool take(void* context, const std::uint32_t* ids, std::size_t count) {
+    auto& self = *static_cast<Recording*>(context);
+    self.pairs_.insert(self.pairs_.end(), ids, ids + 2 * count);
     return true;
   }
-};
 
-template <int D>
-void record(World& world, const Script& script, const char* file, std::size_t steps, std::size_t drop) {
-  broadside::Recorder<D> recorder;
-  recorder.open(file, rust_simulation_margin(world.simulation()));
-  std::size_t pairs = 0;
-  for (std::size_t step = 0; step < steps; ++step) {
-    script(step);
-    // A step finds pairs before it moves bodies, so these are the boxes that it uses.
-    for (std::uint32_t slot = 0; slot < world.bodies().size(); ++slot) {
-      if (!world.is_there(slot)) {
+  template <typename BoundsOf>
+  void put_boxes(broadside::Recorder<D>& recorder, BoundsOf bounds_of) {
+    for (std::uint32_t slot = 0; slot < world_.bodies().size(); ++slot) {
+      if (!world_.is_there(slot)) {
         recorder.remove(slot);
         continue;
       }
-      const RustBounds bounds = world.bounds(slot);
+      const RustBounds bounds = bounds_of(slot);
       recorder.set(slot, bounds.min.at, bounds.max.at);
-      const bool is_static = world.bodies()[slot].kind != rust_body_dynamic;
+      const bool is_static = world_.bodies()[slot].kind != rust_body_dynamic;
       recorder.set_filter(slot, 1, std::numeric_limits<std::uint64_t>::max(), 0, is_static);
     }
-    PairTaker<D> taker{recorder, 0, step >= drop};
-    check(rust_simulation_step(world.simulation(), PairTaker<D>::take, &taker));
-    pairs += taker.count;
+  }
+
+  void put_pairs(broadside::Recorder<D>& recorder) {
+    for (std::size_t i = steps_ >= drop_ ? 2 : 0; i < pairs_.size(); i += 2)
+      recorder.add_pair(pairs_[i], pairs_[i + 1]);
     recorder.end_frame();
   }
-  if (!recorder.close()) throw std::runtime_error(recorder.error());
-  std::printf("%s: %zu bodies, %zu steps, %zu pairs a step on average\n", file, world.bodies().size(), steps,
-              pairs / std::max<std::size_t>(steps, 1));
+
+  World& world_;
+  std::size_t drop_;
+  broadside::Recorder<D> recorder_;
+  std::optional<broadside::Recorder<D>> enlarged_;
+  std::string enlarged_name_;
+  std::vector<std::uint32_t> pairs_;  // of the last step, two slots each
+  std::size_t count_ = 0;
+  std::size_t steps_ = 0;
+};
+
+template <int D>
+void record(World& world, const Script& script, const char* name, std::size_t steps, std::size_t drop) {
+  Recording<D> recording(world, name, drop);
+  for (std::size_t step = 0; step < steps; ++step) recording.step(script);
+  std::printf("%s: %zu bodies, %zu steps, %zu pairs\n", name, world.bodies().size(), steps,
+              recording.close());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 4) {
-    std::fprintf(stderr, "usage: record_engine ENGINE SCENE FILE [BODIES [STEPS [DROP]]]\n");
+    std::fprintf(stderr, "usage: record_engine ENGINE SCENE NAME [BODIES [STEPS [DROP]]]\n");
     return 2;
   }
   const auto number = [&](int at, std::size_t otherwise) {

@@ -80,7 +80,7 @@ RustSimulation* rust_simulation_new(const char* engine);
 void rust_simulation_free(RustSimulation* simulation);
 int rust_simulation_dimension(const RustSimulation* simulation);
 
-/// The margin that the engine promises for boxes that do not turn: see Recorder.
+/// The margin that the engine promises (see Recorder) for boxes that keep their sizes.
 float rust_simulation_margin(const RustSimulation* simulation);
 
 /// The functions below return false on failure. Slots number bodies.
@@ -94,6 +94,9 @@ bool rust_simulation_place(RustSimulation* simulation, uint32_t slot, const Rust
 
 /// The box that the broad phase is given if the next step begins now.
 bool rust_simulation_bounds(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
+
+/// The enlarged box by which the broad phase found the body's pairs in the last step; false if it keeps none.
+bool rust_simulation_enlarged(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
 
 /// Steps, and gives the pairs that the broad phase held after it had found pairs and before bodies moved.
 bool rust_simulation_step(RustSimulation* simulation, RustPeerTakes takes, void* context);

@@ -136,6 +136,10 @@ impl Simulation for Box2d {
         bounds_of(unsafe { b2Shape_GetAABB(self.handles[slot as usize].1) })
     }
 
+    fn enlarged(&self, slot: u32) -> Option<Bounds<3>> {
+        Some(self.contacts.enlarged(slot))
+    }
+
     fn step(&mut self, pairs: &mut Pairs) {
         unsafe {
             let mut draw = b2DefaultDebugDraw();

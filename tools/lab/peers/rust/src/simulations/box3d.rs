@@ -41,6 +41,9 @@ unsafe extern "C" fn name_shape(shape: *const b3DebugShape, _: *mut c_void) -> *
     b3Shape_GetUserData((*shape).shapeId).wrapping_byte_add(1)
 }
 
+/// Without it, the engine would call a null pointer.
+unsafe extern "C" fn forget_shape(_: *mut c_void, _: *mut c_void) {}
+
 unsafe extern "C" fn draw_shape(shape: *mut c_void, _: b3WorldTransform, _: b3HexColor, contacts: *mut c_void) {
     (*contacts.cast::<Contacts>()).drawn = shape as usize - 1;
 }
@@ -55,6 +58,7 @@ impl Default for Box3d {
         let world = unsafe {
             let mut definition = b3DefaultWorldDef();
             definition.createDebugShape = Some(name_shape);
+            definition.destroyDebugShape = Some(forget_shape);
             let world = b3CreateWorld(&definition);
             b3World_SetCustomFilterCallback(world, Some(begins), from_mut(&mut *contacts).cast());
             world
@@ -104,7 +108,8 @@ impl Simulation for Box3d {
                 b3CreateSphereShape(handle, &shape, &sphere)
             } else {
                 let [x, y, z] = body.half;
-                b3CreateHullShape(handle, &shape, &b3MakeBoxHull(x, y, z).base)
+                let hull = b3MakeBoxHull(x, y, z); // whose parts lie behind its base
+                b3CreateHullShape(handle, &shape, (&raw const hull).cast())
             };
             let slots = self.handles.len().max(slot as usize + 1);
             self.handles.resize(slots, (handle, shape));
@@ -129,6 +134,10 @@ impl Simulation for Box3d {
 
     fn bounds(&self, slot: u32) -> Bounds<3> {
         bounds_of(unsafe { b3Shape_GetAABB(self.handles[slot as usize].1) })
+    }
+
+    fn enlarged(&self, slot: u32) -> Option<Bounds<3>> {
+        Some(self.contacts.enlarged(slot))
     }
 
     fn step(&mut self, pairs: &mut Pairs) {

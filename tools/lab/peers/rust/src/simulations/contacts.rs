@@ -30,6 +30,10 @@ impl Contacts {
         self.enlarged[self.drawn] = bounds;
     }
 
+    pub fn enlarged(&self, slot: u32) -> Bounds<3> {
+        self.enlarged[slot as usize]
+    }
+
     /// Ends pairs as the engine does: a pair of which a body was awake, and whose enlarged boxes did not overlap when
     /// the step began. Panics if the engine then holds another number of pairs.
     pub fn finish_step(&mut self, awake: &[bool], count: usize, pairs: &mut Pairs) {

@@ -4,20 +4,19 @@
 mod box2d;
 mod box3d;
 mod contacts;
-#[cfg(feature = "physx-sys")]
 mod physx;
 mod rapier;
 
 use std::ffi::{c_char, c_int, c_void};
 
-#[cfg(feature = "physx-sys")]
 use physx_sys::PxBroadPhaseType;
 
 use crate::peer::{Bounds, Pairs, Takes};
 use crate::{guarded, text};
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(PartialEq)]
 #[repr(C)]
+#[allow(dead_code)] // made in C++
 pub enum Kind {
     Fixed,
     Kinematic,
@@ -39,8 +38,7 @@ pub struct Body {
 pub trait Simulation {
     fn dimension(&self) -> c_int;
 
-    /// What the engine's documentation or source says of how far apart the boxes of a pair may be: each of them is
-    /// enlarged by this at most. Boxes that turn may become smaller within an enlarged box, which is not counted.
+    /// The margin that the engine promises (see Recorder) for boxes that keep their sizes.
     fn margin(&self) -> f32;
 
     fn set_gravity(&mut self, gravity: [f32; 3]);
@@ -53,6 +51,9 @@ pub trait Simulation {
     /// The body's box that the engine passes to its broad phase, if the next step begins now.
     fn bounds(&self, slot: u32) -> Bounds<3>;
 
+    /// The enlarged box of this body by which the last step found pairs, if the broad phase keeps such boxes.
+    fn enlarged(&self, slot: u32) -> Option<Bounds<3>>;
+
     /// Steps, and gives the pairs that the broad phase held in this step, when it had found pairs and not yet moved
     /// bodies.
     fn step(&mut self, pairs: &mut Pairs);
@@ -62,11 +63,8 @@ fn simulation_named(name: &str) -> Box<dyn Simulation> {
     match name {
         "box2d" => Box::<box2d::Box2d>::default(),
         "box3d" => Box::<box3d::Box3d>::default(),
-        #[cfg(feature = "physx-sys")]
         "physx_abp" => Box::new(physx::PhysX::new(PxBroadPhaseType::Abp)),
-        #[cfg(feature = "physx-sys")]
         "physx_pabp" => Box::new(physx::PhysX::new(PxBroadPhaseType::Pabp)),
-        #[cfg(feature = "physx-sys")]
         "physx_sap" => Box::new(physx::PhysX::new(PxBroadPhaseType::Sap)),
         "rapier2d" => Box::<rapier::flat::Rapier>::default(),
         "rapier3d" => Box::<rapier::solid::Rapier>::default(),
@@ -128,6 +126,16 @@ pub unsafe extern "C" fn rust_simulation_bounds(
     bounds: &mut Bounds<3>,
 ) -> bool {
     guarded(|| *bounds = (*simulation).0.bounds(slot)).is_some()
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_simulation_enlarged(
+    simulation: *const AnySimulation,
+    slot: u32,
+    bounds: &mut Bounds<3>,
+) -> bool {
+    let enlarged = guarded(|| (*simulation).0.enlarged(slot)).flatten();
+    enlarged.inspect(|found| *bounds = *found).is_some()
 }
 
 #[no_mangle]

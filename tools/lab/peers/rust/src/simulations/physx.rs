@@ -209,6 +209,10 @@ impl Simulation for PhysX {
         }
     }
 
+    fn enlarged(&self, _: u32) -> Option<Bounds<3>> {
+        None
+    }
+
     fn step(&mut self, pairs: &mut Pairs) {
         unsafe {
             for body in self.bodies.iter_mut().flatten().filter(|body| body.spin != 0.0) {
