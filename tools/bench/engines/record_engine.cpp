@@ -200,7 +200,8 @@ Script pyramids(World& world) {
   world.set_gravity({0, -10, 0});
   constexpr int rows = 10;
   constexpr std::size_t bodies = 1 + rows * (rows + 1) / 2;
-  const float length = 20 * static_cast<float>(world.wanted() / bodies + 1);
+  const std::size_t pyramids = world.wanted() / bodies + 1;
+  const float length = 20 * static_cast<float>(pyramids);
   world.add_static({length / 2, -1, 0}, {length, 1, 10});
   std::vector<std::pair<std::uint32_t, RustVector>> balls;
   for (float x = 0; world.wanted() > 0; x += 20) {

@@ -107,6 +107,7 @@ fn pose(position: PxVec3, angle: f32) -> PxTransform {
 
 impl PhysX {
     pub fn new(broad_phase: PxBroadPhaseType) -> Self {
+        assert!(cfg!(all(unix, target_arch = "x86_64")), "PhysX's filter callback is laid out for x86-64 and Unix");
         let mut log = Box::new(PairLog { functions: &FUNCTIONS.0, held: HashMap::new() });
         unsafe {
             let mut description = PxSceneDesc_new(PxPhysics_getTolerancesScale(physics()));
