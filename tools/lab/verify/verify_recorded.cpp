@@ -204,9 +204,9 @@ class RecordedCheck {
     text += fmt::format("\n  in all, over the {}: {} missed, {} stale, {} reported more than once",
                         counted(frames_at_fault_, "frame at fault", "frames at fault"), grouped(counts_[0]),
                         grouped(counts_[1]), grouped(counts_[2]));
+    if (counts_[1] > 0) text += fmt::format("; a margin of {:.3g} allows all that are stale", needed_margin_);
     if (has_other_pairs_ && !common_.empty())
       text += fmt::format("; all name box {}", index(common_.front()));
-    if (counts_[1] > 0) text += fmt::format("; a margin of {:.3g} allows all that are stale", needed_margin_);
     if (!stopped_.empty()) text += "; " + stopped_;
     for (const RecordedFault& fault : faults_) text += "\n    " + text_of(fault);
     if (is_cut_) text += fmt::format("\n    ... only the first {} are listed", max_told);
