@@ -82,8 +82,9 @@ const std::vector<Rule>& rules() {
       {"tools/lab/", lab},
       {"tools/cli/", lab + R"(|"paper/plain/plain\.hpp"|"cli/[a-z_]+\.hpp"|<CLI/.*>)"},
       {"tools/bench/distributed/", lab + R"(|"bench/[a-z_]+\.hpp"|<CLI/.*>)"},
-      {"tools/bench/engines/",
-       lab + engines + R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)"},
+      {"tools/bench/engines/", lab + engines +
+                                   R"(|"broadside/bullet\.hpp"|"bench/(engines/)?[a-z_]+\.hpp"|<CLI/.*>)" +
+                                   R"(|"lab/peers/rust/include/rust_peers\.h")"},
       {"tools/bench/motion/", lab + R"(|"bench/(motion/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"tools/bench/worst/", lab + R"(|"bench/(worst/)?[a-z_]+\.hpp"|<CLI/.*>)"},
       {"tools/bench/fcl_manager", lab + R"(|"bench/[a-z_]+\.hpp"|<broadside/fcl\.hpp>|<fcl/.*>)"},

@@ -68,7 +68,8 @@ TEST(VerifyVerb, ChecksTheRecordedPairsOfAnEngine) {
   const std::string right = folder.put("right.btrace", falling_box(report_rightly));
   const Ended fine = run({"verify", right, "--algorithms", "grid"});
   EXPECT_EQ(fine.status, 0) << fine.output;
-  EXPECT_THAT(fine.output, HasSubstr("  recorded pairs  verified  against the definition; margin 0.25\n"));
+  EXPECT_THAT(fine.output,
+              HasSubstr("  recorded pairs  verified  against the definition; margin 0.25, needed 0\n"));
 
   const std::string wrong = folder.put("wrong.btrace", falling_box([](Recorder2&, std::size_t) {}));
   const std::string small = folder.file("small.btrace");

@@ -105,9 +105,12 @@ TEST_F(VerifyRecorded, TakesAPairWithinTheMarginAndNoneBeyondIt) {
     if (frame > 1 && frame < 5) recorder.add_pair(0, 1);  // in frame 2, the boxes are 1 apart
   };
   put("exact.btrace", falling_box(early, 0.5));
-  EXPECT_TRUE(verified(path("exact.btrace")).all_verified());
+  const Verification exact = verified(path("exact.btrace"));
+  EXPECT_TRUE(exact.all_verified());
+  EXPECT_EQ(exact.verdicts[0].reason, "margin 0.5, needed 0.5");
   put("less.btrace", falling_box(early, 0.4999));
-  EXPECT_THAT(verified(path("less.btrace")).verdicts[0].reason, HasSubstr("frame 2, pair (0, 1) is stale"));
+  EXPECT_THAT(verified(path("less.btrace")).verdicts[0].reason,
+              names("frame 2, pair (0, 1) is stale", "a margin of 0.5 allows all that are stale"));
 }
 
 TEST_F(VerifyRecorded, NamesAPairThatIsReportedTwice) {
@@ -274,7 +277,7 @@ TEST_F(VerifyRecorded, StopsWhereTheBudgetIsUsedUp) {
   options_.budget_seconds = 1e-9;
   put("falling.btrace", falling_box(report_rightly));
   EXPECT_THAT(verified(path("falling.btrace")).verdicts[0].reason,
-              HasSubstr("margin 0.25; frames 0 to 0 of 5; budget 1e-09 s"));
+              HasSubstr("margin 0.25, needed 0; frames 0 to 0 of 5; budget 1e-09 s"));
 }
 
 TEST_F(VerifyRecorded, RefusesACounterexampleInAFormatWithoutPairs) {

@@ -42,19 +42,21 @@ Box<D, Real> enlarged_outward(const Box<D, Real>& box, double margin) {
   return result;
 }
 
-/// The maximum gap between two boxes over the axes: "0.25 apart along y".
+struct Gap {
+  double length;
+  std::size_t axis;
+};
+
+/// The widest gap between two boxes over the axes; negative if they overlap.
 template <int D, typename Real>
-std::string distance_text(const Box<D, Real>& a, const Box<D, Real>& b) {
-  double furthest = -std::numeric_limits<double>::infinity();
-  std::size_t along = 0;
+Gap gap_between(const Box<D, Real>& a, const Box<D, Real>& b) {
+  Gap widest{-std::numeric_limits<double>::infinity(), 0};
   for (std::size_t axis = 0; axis < D; ++axis) {
     const double apart = std::max(static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]),
                                   static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]));
-    if (apart <= furthest) continue;
-    furthest = apart;
-    along = axis;
+    if (apart > widest.length) widest = {apart, axis};
   }
-  return fmt::format("{:g} apart along {}", furthest, "xyz"[along]);
+  return widest;
 }
 
 std::string name_of(Kind kind) {
@@ -133,8 +135,9 @@ class RecordedCheck {
         if (i < 2 || pair != reported[i - 2]) add(Kind::repeated, pair, playback);
         continue;
       }
-      if (!std::ranges::binary_search(expected, pair) &&
-          !overlap(enlarged_outward(box(pair.first), margin_), enlarged_outward(box(pair.second), margin_)))
+      if (std::ranges::binary_search(expected, pair)) continue;
+      needed_margin_ = std::max(needed_margin_, gap_between(box(pair.first), box(pair.second)).length / 2);
+      if (!overlap(enlarged_outward(box(pair.first), margin_), enlarged_outward(box(pair.second), margin_)))
         add(Kind::stale, pair, playback);
     }
   }
@@ -171,9 +174,9 @@ class RecordedCheck {
     if (fault.kind == Kind::missed) {
       text += fmt::format(": its boxes overlap; it was {}", last_report(fault));
     } else if (fault.kind == Kind::stale) {
-      text += fmt::format(": its boxes are {}, and a margin of {:g} allows {:g}",
-                          distance_text(boxes[index(pair.first)], boxes[index(pair.second)]), margin_,
-                          2 * margin_);
+      const Gap gap = gap_between(boxes[index(pair.first)], boxes[index(pair.second)]);
+      text += fmt::format(": its boxes are {:g} apart along {}, and a margin of {:g} allows {:g}", gap.length,
+                          "xyz"[gap.axis], margin_, 2 * margin_);
     } else {
       text += fmt::format(": {} times", playback.pairs().times_reported(pair));
     }
@@ -195,12 +198,13 @@ class RecordedCheck {
   std::string reason() const {
     std::string text = first_text_;
     if (text.empty()) {
-      text = fmt::format("margin {:g}", margin_);
+      text = fmt::format("margin {:g}, needed {:.3g}", margin_, needed_margin_);
       return stopped_.empty() ? text : text + "; " + stopped_;
     }
     text += fmt::format("\n  in all, over the {}: {} missed, {} stale, {} reported more than once",
                         counted(frames_at_fault_, "frame at fault", "frames at fault"), grouped(counts_[0]),
                         grouped(counts_[1]), grouped(counts_[2]));
+    if (counts_[1] > 0) text += fmt::format("; a margin of {:.3g} allows all that are stale", needed_margin_);
     if (has_other_pairs_ && !common_.empty())
       text += fmt::format("; all name box {}", index(common_.front()));
     if (!stopped_.empty()) text += "; " + stopped_;
@@ -222,6 +226,7 @@ class RecordedCheck {
   const Recording<D, Real>& recording_;
   const VerifyOptions& options_;
   double margin_;
+  double needed_margin_ = 0;  // for no pair to be stale
   Reference reference_;
 
   std::vector<RecordedFault> faults_;  // the first ones, by their first frames

@@ -66,6 +66,57 @@ void rust_index_free(RustIndex* index);
 bool rust_index_ask(RustIndex* index, RustQueries kind, const float* queries, size_t count,
                     RustPeerTakes takes, void* context);
 
+/// A physics engine that runs a scene: see Simulation in src/simulations/mod.rs. Only in builds with engines.
+typedef struct RustSimulation RustSimulation;
+
+/// In 2D, z counts for nothing.
+typedef struct RustVector {
+  float at[3];
+} RustVector;
+
+enum RustBodyKind { rust_body_static, rust_body_kinematic, rust_body_dynamic };
+
+/// A box, whose lengths are twice `half`, or a ball of radius half.at[0]. Angle and spin are about z.
+typedef struct RustBody {
+  RustVector position;
+  RustVector half;
+  float angle;
+  float spin;
+  enum RustBodyKind kind;
+  bool is_ball;
+} RustBody;
+
+typedef struct RustBounds {
+  RustVector min;
+  RustVector max;
+} RustBounds;
+
+/// Null on failure.
+RustSimulation* rust_simulation_new(const char* engine);
+void rust_simulation_free(RustSimulation* simulation);
+int rust_simulation_dimension(const RustSimulation* simulation);
+
+/// The margin that the engine promises (see Recorder) for boxes that keep their sizes.
+float rust_simulation_margin(const RustSimulation* simulation);
+
+/// The functions below return false on failure. Slots number bodies.
+bool rust_simulation_set_gravity(RustSimulation* simulation, const RustVector* gravity);
+bool rust_simulation_add(RustSimulation* simulation, uint32_t slot, const RustBody* body);
+bool rust_simulation_remove(RustSimulation* simulation, uint32_t slot);
+
+/// Puts a body elsewhere, upright, and wakes it.
+bool rust_simulation_place(RustSimulation* simulation, uint32_t slot, const RustVector* position,
+                           const RustVector* velocity);
+
+/// The box that the broad phase is given if the next step begins now.
+bool rust_simulation_bounds(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
+
+/// The enlarged box by which the broad phase found the body's pairs in the last step; false if it keeps none.
+bool rust_simulation_enlarged(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
+
+/// Steps, and gives the pairs that the broad phase held after it had found pairs and before bodies moved.
+bool rust_simulation_step(RustSimulation* simulation, RustPeerTakes takes, void* context);
+
 #ifdef __cplusplus
 }
 #endif

@@ -14,6 +14,8 @@ mod queries;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
+#[cfg(feature = "engines")]
+mod simulations;
 
 use std::any::Any;
 use std::cell::RefCell;
