@@ -1,6 +1,6 @@
 //! The dynamic trees of Box2D 3 and Box3D, driven as their `b2FinalizeBodies` and `b2UpdateBroadPhasePairs` do: a box
-//! that leaves its margin has its leaf enlarged, the tree is asked with each enlarged box, and then what was enlarged
-//! is built anew. The pairs of boxes with margins are kept, as their contacts are.
+//! that leaves its margin has its leaf enlarged, what was enlarged is built anew, and the tree is asked with each of
+//! these boxes. The pairs of boxes with margins are kept, as their contacts are.
 
 /// `B2_MAX_AABB_MARGIN`, in lengths of a typical box, which is a metre long.
 const MAX_MARGIN: f32 = 0.05;
@@ -58,8 +58,8 @@ macro_rules! dynamic_tree {
                     unsafe { $enlarge_proxy(&mut self.0, proxy, aabb_of(bounds)) };
                 }
 
-                fn rebuild(&mut self, all: bool) {
-                    unsafe { $rebuild(&mut self.0, all) };
+                fn rebuild_enlarged(&mut self) {
+                    unsafe { $rebuild(&mut self.0, false) };
                 }
 
                 /// The ids of all boxes, in the order of the leaves.
@@ -103,12 +103,8 @@ macro_rules! dynamic_tree {
                     for (id, &bounds) in (0..).zip(boxes) {
                         self.0.create_proxy(id, bounds);
                     }
-                    if std::env::var("RB").is_ok() {
-                        self.0.rebuild(true);
-                    }
-                    let order = if std::env::var("LV").is_ok() { self.0.leaves() } else { (0..boxes.len() as u32).collect() };
                     let mut flow = ControlFlow::Continue(());
-                    for a in order {
+                    for a in self.0.leaves() {
                         self.0.query(aabb_of(boxes[a as usize]), |b| {
                             if a < b {
                                 flow = pairs.add(a, b);
@@ -178,6 +174,8 @@ macro_rules! dynamic_tree {
 
                 /// Finds the pairs of moved boxes anew, and passes them on.
                 fn update_pairs(&mut self, mut found: impl FnMut(u32, u32)) {
+                    // Box2D does this after the queries, beside its narrow phase; before them was up to a tenth faster.
+                    self.tree.rebuild_enlarged();
                     for &a in &self.moved {
                         self.tree.query(aabb_of(self.proxies[a as usize].enlarged), |b| {
                             if a < b || a > b && !self.proxies[b as usize].moved {
@@ -190,7 +188,6 @@ macro_rules! dynamic_tree {
                     for id in self.moved.drain(..) {
                         self.proxies[id as usize].moved = false;
                     }
-                    self.tree.rebuild(false);
                 }
             }
 
@@ -238,12 +235,35 @@ macro_rules! dynamic_tree {
 }
 
 dynamic_tree!(
-    box2d, 2, boxdd_sys, b2AABB, b2DynamicTree, b2DynamicTree_Create, b2DynamicTree_Destroy,
-    b2DynamicTree_CreateProxy, b2DynamicTree_DestroyProxy, b2DynamicTree_MoveProxy, b2DynamicTree_EnlargeProxy,
-    b2DynamicTree_Rebuild, b2DynamicTree_GetRootBounds, b2DynamicTree_Query
+    box2d,
+    2,
+    boxdd_sys,
+    b2AABB,
+    b2DynamicTree,
+    b2DynamicTree_Create,
+    b2DynamicTree_Destroy,
+    b2DynamicTree_CreateProxy,
+    b2DynamicTree_DestroyProxy,
+    b2DynamicTree_MoveProxy,
+    b2DynamicTree_EnlargeProxy,
+    b2DynamicTree_Rebuild,
+    b2DynamicTree_GetRootBounds,
+    b2DynamicTree_Query
 );
 dynamic_tree!(
-    box3d, 3, boxddd_sys, b3AABB, b3DynamicTree, b3DynamicTree_Create, b3DynamicTree_Destroy,
-    b3DynamicTree_CreateProxy, b3DynamicTree_DestroyProxy, b3DynamicTree_MoveProxy, b3DynamicTree_EnlargeProxy,
-    b3DynamicTree_Rebuild, b3DynamicTree_GetRootBounds, b3DynamicTree_Query, false
+    box3d,
+    3,
+    boxddd_sys,
+    b3AABB,
+    b3DynamicTree,
+    b3DynamicTree_Create,
+    b3DynamicTree_Destroy,
+    b3DynamicTree_CreateProxy,
+    b3DynamicTree_DestroyProxy,
+    b3DynamicTree_MoveProxy,
+    b3DynamicTree_EnlargeProxy,
+    b3DynamicTree_Rebuild,
+    b3DynamicTree_GetRootBounds,
+    b3DynamicTree_Query,
+    false
 );

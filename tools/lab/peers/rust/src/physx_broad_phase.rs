@@ -56,7 +56,8 @@ impl Phase {
         self.bounds.resize(count + 1, Bounds { min: [0.0; 3], max: [0.0; 3] });
         self.distances.resize(count + 1, 0.0);
         // Boxes of one group form no pairs. SAFETY: a function of the id alone.
-        self.groups.extend((self.groups.len()..=count).map(|id| unsafe { phys_PxGetBroadPhaseDynamicFilterGroup(id as u32) }));
+        self.groups
+            .extend((self.groups.len()..=count).map(|id| unsafe { phys_PxGetBroadPhaseDynamicFilterGroup(id as u32) }));
     }
 
     fn set(&mut self, id: u32, bounds: &Bounds<3>) {
