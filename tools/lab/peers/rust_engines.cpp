@@ -25,7 +25,7 @@ Algorithm physx(const std::string& name) {
   algorithm.version = "PhysX 5.1.3 (" + algorithm.version + ")";
   algorithm.in_3d = {.searcher = rust_searcher<3>(name),
                      .followers = {rust_follower<3>(name, "PxBroadPhase")}};
-  algorithm.limits.max_coordinate = 1e29f;
+  algorithm.limits.max_coordinate = 1e37f;
   return algorithm;
 }
 

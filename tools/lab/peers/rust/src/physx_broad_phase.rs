@@ -14,9 +14,6 @@ use physx_sys::{
 use crate::kept_pairs::KeptPairs;
 use crate::peer::{Bounds, Follower, Frame, Pairs, Searcher};
 
-/// Beyond the coordinates that the description in C++ allows.
-const FAR_AWAY: f32 = 1e30;
-
 fn ids(pair: &PxBroadPhasePair) -> (u32, u32) {
     (pair.mID0.min(pair.mID1), pair.mID0.max(pair.mID1))
 }
@@ -139,7 +136,7 @@ pub struct PhaseFollower {
     created: Vec<u32>,
     updated: Vec<u32>,
     removed: Vec<u32>,
-    kept: Option<KeptPairs>, // of rounded bounds
+    pairs: KeptPairs,
 }
 
 impl PhaseFollower {
@@ -150,7 +147,7 @@ impl PhaseFollower {
             created: Vec::new(),
             updated: Vec::new(),
             removed: Vec::new(),
-            kept: (kind == PxBroadPhaseType::Sap).then(KeptPairs::default),
+            pairs: KeptPairs::default(),
         }
     }
 
@@ -160,11 +157,6 @@ impl PhaseFollower {
             self.phase.set(id, bounds);
             if known { &mut self.updated } else { &mut self.created }.push(id);
         } else if known {
-            // PhysX does not report the pairs of removed boxes, so they are moved away first, each to a place of its own.
-            let at = f32::from_bits(FAR_AWAY.to_bits() + 64 * self.removed.len() as u32);
-            let away = &mut self.phase.bounds[id as usize];
-            (away.min[0], away.max[0]) = (at, at);
-            self.updated.push(id);
             self.removed.push(id);
         }
     }
@@ -180,9 +172,7 @@ impl Follower<3> for PhaseFollower {
             self.put(id, bounds);
         }
         let [begun, _] = self.phase.update(&self.created, &[], &[]);
-        if let Some(kept) = &mut self.kept {
-            begun.iter().map(ids).for_each(|pair| kept.begin(pair));
-        }
+        begun.iter().map(ids).for_each(|pair| self.pairs.begin(pair));
     }
 
     fn update(&mut self, frame: &Frame<3>, pairs: &mut Pairs) -> ControlFlow<()> {
@@ -194,23 +184,19 @@ impl Follower<3> for PhaseFollower {
         for &id in frame.changed {
             self.put(id, &frame.boxes[id as usize]);
         }
-        let [begun, ended] = self.phase.update(&self.created, &self.updated, &[]);
-        for (a, b) in begun.iter().map(ids) {
+        for &(a, b) in self.pairs.iter().filter(|&&pair| frame.has_changed(pair)) {
             pairs.add(a, b)?;
         }
-        if let Some(kept) = &mut self.kept {
-            for &(a, b) in kept.iter().filter(|&&pair| frame.has_changed(pair)) {
-                pairs.add(a, b)?;
-            }
-            ended.iter().map(ids).for_each(|pair| kept.end(pair));
-            begun.iter().map(ids).for_each(|pair| kept.begin(pair));
-        } else {
-            for (a, b) in ended.iter().map(ids) {
-                pairs.add(a, b)?;
-            }
-        }
         if !self.removed.is_empty() {
-            self.phase.update(&[], &[], &self.removed);
+            // There are no events of these.
+            let is_there = |id: u32| self.is_there[id as usize];
+            self.pairs.retain(|(a, b)| is_there(a) && is_there(b));
+        }
+        let [begun, ended] = self.phase.update(&self.created, &self.updated, &self.removed);
+        ended.iter().map(ids).for_each(|pair| self.pairs.end(pair));
+        for (a, b) in begun.iter().map(ids) {
+            self.pairs.begin((a, b));
+            pairs.add(a, b)?;
         }
         ControlFlow::Continue(())
     }
