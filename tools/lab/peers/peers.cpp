@@ -62,9 +62,11 @@ struct PeerList {
     else
       miss_because(BROADSIDE_RUST_INDEXES_MISSING, {"packed_spatial_index", "geo_index", "rstar_tree"});
     if constexpr (BROADSIDE_HAS_RUST_ENGINES)
-      add({parry_bvh(), rapier_broad_phase(), obvhs_bvh()});
+      add({parry_bvh(), rapier_broad_phase(), obvhs_bvh(), box2d3_tree(), box3d_tree(), physx_abp(),
+           physx_sap()});
     else
-      miss_because(BROADSIDE_RUST_ENGINES_MISSING, {"parry_bvh", "rapier_broad_phase", "obvhs_bvh"});
+      miss_because(BROADSIDE_RUST_ENGINES_MISSING, {"parry_bvh", "rapier_broad_phase", "obvhs_bvh",
+                                                    "box2d3_tree", "box3d_tree", "physx_abp", "physx_sap"});
   }
 
   void add(std::initializer_list<Algorithm> algorithms) {

@@ -54,5 +54,9 @@ Algorithm rstar_tree();
 Algorithm parry_bvh();
 Algorithm rapier_broad_phase();
 Algorithm obvhs_bvh();
+Algorithm box2d3_tree();
+Algorithm box3d_tree();
+Algorithm physx_abp();
+Algorithm physx_sap();
 
 }  // namespace broadside::lab::peers

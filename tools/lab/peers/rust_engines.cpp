@@ -14,6 +14,21 @@ FollowerChoice<D> rust_follower(const std::string& name, const std::string& show
           .make = [name](const Settings&) { return std::make_unique<RustCrateFollower<D>>(name); }};
 }
 
+/// Boxes beyond this overflow when a tree squares a distance or multiplies sides.
+constexpr float max_tree_coordinate = 1e18f;
+
+/// One of PhysX's broad phases.
+Algorithm physx(const std::string& name) {
+  Algorithm algorithm = rust_crate("physx-sys");
+  algorithm.name = name;
+  // The version of PhysX is in the crate's sources.
+  algorithm.version = "PhysX 5.1.3 (" + algorithm.version + ")";
+  algorithm.in_3d = {.searcher = rust_searcher<3>(name),
+                     .followers = {rust_follower<3>(name, "PxBroadPhase")}};
+  algorithm.limits.max_coordinate = 1e37f;
+  return algorithm;
+}
+
 }  // namespace
 
 Algorithm parry_bvh() {
@@ -45,6 +60,45 @@ Algorithm obvhs_bvh() {
   algorithm.source = "obvhs, Bvh2 and PlocBuilder, after Meister and Bittner 2018";
   algorithm.in_2d = {.searcher = rust_searcher<2>("obvhs")};
   algorithm.in_3d = {.searcher = rust_searcher<3>("obvhs")};
+  return algorithm;
+}
+
+Algorithm box2d3_tree() {
+  Algorithm algorithm = rust_crate("boxdd-sys");
+  algorithm.name = "box2d3_tree";
+  algorithm.summary = "Box2D 3's dynamic tree of boxes with margins, whose enlarged parts are built anew";
+  algorithm.source = "Box2D 3, b2DynamicTree";
+  algorithm.version = "Box2D 3.2.0 (" + algorithm.version + ")";
+  algorithm.in_2d = {.searcher = rust_searcher<2>("box2d3"),
+                     .followers = {rust_follower<2>("box2d3", "b2DynamicTree")}};
+  algorithm.limits.max_coordinate = max_tree_coordinate;
+  return algorithm;
+}
+
+Algorithm box3d_tree() {
+  Algorithm algorithm = rust_crate("boxddd-sys");
+  algorithm.name = "box3d_tree";
+  algorithm.summary = "Box3D's dynamic tree of boxes with margins, whose enlarged parts are built anew";
+  algorithm.source = "Box3D, b3DynamicTree";
+  algorithm.version = "Box3D 0.1.0 (" + algorithm.version + ")";
+  algorithm.in_3d = {.searcher = rust_searcher<3>("box3d"),
+                     .followers = {rust_follower<3>("box3d", "b3DynamicTree")}};
+  algorithm.limits.max_coordinate = max_tree_coordinate;
+  return algorithm;
+}
+
+Algorithm physx_abp() {
+  Algorithm algorithm = physx("physx_abp");
+  algorithm.summary =
+      "PhysX's automatic box pruning: sorted boxes in five buckets, swept, and a table of pairs";
+  algorithm.source = "PhysX, PxBroadPhaseType::eABP, after Terdiman's box pruning";
+  return algorithm;
+}
+
+Algorithm physx_sap() {
+  Algorithm algorithm = physx("physx_sap");
+  algorithm.summary = "PhysX's sweep and prune: sorted bounds on three axes, and a table of pairs";
+  algorithm.source = "PhysX, PxBroadPhaseType::eSAP";
   return algorithm;
 }
 

@@ -2,7 +2,11 @@
 //!
 //! No panic leaves it: a function whose crate panics fails, and `rust_peer_error` has the message.
 
+#[cfg(feature = "engines")]
+mod dynamic_tree;
 mod geo_index_tree;
+#[cfg(feature = "engines")]
+mod kept_pairs;
 #[cfg(feature = "engines")]
 mod obvhs_bvh;
 mod packed_index;
@@ -11,6 +15,8 @@ mod panicking;
 mod parry_bvh;
 mod peer;
 mod queries;
+#[cfg(feature = "engines")]
+mod physx_broad_phase;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
@@ -23,6 +29,9 @@ use std::ffi::{c_char, c_int, c_void, CStr, CString};
 use std::ops::ControlFlow;
 use std::panic::{catch_unwind, set_hook, AssertUnwindSafe};
 use std::sync::Once;
+
+#[cfg(feature = "engines")]
+use physx_sys::PxBroadPhaseType;
 
 use peer::{Bounds, Follower, Frame, Pairs, Searcher, Takes};
 use queries::{AnyIndex, Geo, Packed2, Packed3, Rstar};
@@ -99,6 +108,14 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
         ("obvhs", 2) => Flat(Box::<obvhs_bvh::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
         ("obvhs", 3) => Solid(Box::<obvhs_bvh::BvhSearcher>::default()),
+        #[cfg(feature = "engines")]
+        ("box2d3", 2) => Flat(Box::<dynamic_tree::box2d::TreeSearcher>::default()),
+        #[cfg(feature = "engines")]
+        ("box3d", 3) => Solid(Box::<dynamic_tree::box3d::TreeSearcher>::default()),
+        #[cfg(feature = "engines")]
+        ("physx_abp", 3) => Solid(Box::new(physx_broad_phase::PhaseSearcher::new(PxBroadPhaseType::Abp))),
+        #[cfg(feature = "engines")]
+        ("physx_sap", 3) => Solid(Box::new(physx_broad_phase::PhaseSearcher::new(PxBroadPhaseType::Sap))),
         ("geo_index", 2) => Flat(Box::<geo_index_tree::TreeSearcher>::default()),
         ("rstar", 2) => Flat(Box::<rstar_tree::TreeSearcher<2>>::default()),
         ("rstar", 3) => Solid(Box::<rstar_tree::TreeSearcher<3>>::default()),
@@ -132,6 +149,14 @@ fn follower_named(name: &str, dimension: c_int) -> AnyFollower {
         ("rapier", 2) => AnyFollower::Flat(Box::<rapier_broad_phase::flat::BroadPhaseFollower>::default()),
         #[cfg(feature = "engines")]
         ("rapier", 3) => AnyFollower::Solid(Box::<rapier_broad_phase::solid::BroadPhaseFollower>::default()),
+        #[cfg(feature = "engines")]
+        ("box2d3", 2) => AnyFollower::Flat(Box::<dynamic_tree::box2d::TreeFollower>::default()),
+        #[cfg(feature = "engines")]
+        ("box3d", 3) => AnyFollower::Solid(Box::<dynamic_tree::box3d::TreeFollower>::default()),
+        #[cfg(feature = "engines")]
+        ("physx_abp", 3) => AnyFollower::Solid(Box::new(physx_broad_phase::PhaseFollower::new(PxBroadPhaseType::Abp))),
+        #[cfg(feature = "engines")]
+        ("physx_sap", 3) => AnyFollower::Solid(Box::new(physx_broad_phase::PhaseFollower::new(PxBroadPhaseType::Sap))),
         _ => panic!("no follower '{name}' in {dimension}D"),
     }
 }

@@ -17,6 +17,10 @@ impl<const D: usize> Bounds<D> {
         (0..D).all(|axis| self.min[axis] <= self.max[axis])
     }
 
+    pub fn contains(&self, other: &Self) -> bool {
+        (0..D).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
+    }
+
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
     }

@@ -11,8 +11,8 @@ macro_rules! rapier_broad_phase {
                 Aabb, ActiveCollisionTypes, BroadPhaseBvh, BroadPhasePairEvent, ColliderBuilder, ColliderHandle,
                 ColliderPair, ColliderSet,
             };
-            use $rapier::parry::utils::hashmap::HashMap;
 
+            use crate::kept_pairs::KeptPairs;
             use crate::peer::{Bounds, Follower, Frame, Pairs, Searcher};
 
             /// The broad phase, and a collider for each id, without a body.
@@ -101,26 +101,15 @@ macro_rules! rapier_broad_phase {
             #[derive(Default)]
             pub struct BroadPhaseFollower {
                 colliders: Colliders,
-                pairs: Vec<(u32, u32)>,
-                places: HashMap<(u32, u32), u32>, // in pairs
+                pairs: KeptPairs,
             }
 
             impl BroadPhaseFollower {
                 fn take_events(&mut self) {
                     for event in &self.colliders.events {
                         match event {
-                            BroadPhasePairEvent::AddPair(pair) => {
-                                self.places.insert(ids(pair), self.pairs.len() as u32);
-                                self.pairs.push(ids(pair));
-                            }
-                            BroadPhasePairEvent::DeletePair(pair) => {
-                                if let Some(place) = self.places.remove(&ids(pair)) {
-                                    self.pairs.swap_remove(place as usize);
-                                    if let Some(moved) = self.pairs.get(place as usize) {
-                                        self.places.insert(*moved, place);
-                                    }
-                                }
-                            }
+                            BroadPhasePairEvent::AddPair(pair) => self.pairs.begin(ids(pair)),
+                            BroadPhasePairEvent::DeletePair(pair) => self.pairs.end(ids(pair)),
                         }
                     }
                 }
@@ -129,7 +118,6 @@ macro_rules! rapier_broad_phase {
             impl Follower<$dimension> for BroadPhaseFollower {
                 fn build(&mut self, boxes: &[Bounds<$dimension>], length: f32) {
                     self.pairs.clear();
-                    self.places.clear();
                     self.colliders.clear(length);
                     self.colliders.set_all(boxes);
                     self.take_events();
@@ -154,9 +142,7 @@ macro_rules! rapier_broad_phase {
                     if removes {
                         // There are no events of these.
                         let is_there = |id: u32| frame.boxes[id as usize].is_present();
-                        self.pairs.retain(|&(a, b)| is_there(a) && is_there(b));
-                        self.places.clear();
-                        self.places.extend(self.pairs.iter().zip(0..).map(|(&pair, place)| (pair, place)));
+                        self.pairs.retain(|(a, b)| is_there(a) && is_there(b));
                     }
                     self.take_events();
                     for event in &self.colliders.events {
