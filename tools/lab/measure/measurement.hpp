@@ -1,6 +1,7 @@
 // The lab's records: cases, and measurements of algorithms on them.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -36,8 +37,8 @@ struct Case {
 };
 
 /// The number of boxes in the left set, which is this fraction of all.
-constexpr std::size_t left_count(double left, std::size_t boxes) noexcept {
-  return static_cast<std::size_t>(left * static_cast<double>(boxes) + 0.5);
+inline std::size_t left_count(double left, std::size_t boxes) noexcept {
+  return static_cast<std::size_t>(std::llround(left * static_cast<double>(boxes)));
 }
 
 /// What to measure in a case. Counts and memory are always measured.
