@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -45,6 +46,21 @@ RTCBounds bounds_of(const Box<D>& box) {
           .align1 = 0};
 }
 
+/// Whether the present boxes are all at one point, as far as Embree sees: it takes subnormal numbers for 0.
+template <int D>
+bool are_one_point(std::span<const Box<D>> boxes) {
+  const auto first = std::ranges::find_if(boxes, is_present<D, float>);
+  return std::all_of(first, boxes.end(), [&](const Box<D>& box) {
+    if (!is_present(box)) return true;
+    for (int axis = 0; axis < D; ++axis) {
+      constexpr float least = std::numeric_limits<float>::min();
+      if (box.max[axis] - first->min[axis] >= least || first->min[axis] - box.min[axis] >= least)
+        return false;
+    }
+    return true;
+  });
+}
+
 /// A scene of one user geometry, the boxes of a set.
 template <int D>
 class EmbreeSet {
@@ -64,10 +80,7 @@ class EmbreeSet {
     boxes_ = boxes;
     // For a single search, a fast build is worth more than a good hierarchy. But the fast builder
     // terminates the program if all boxes are one point.
-    const Box<D>& first = boxes_.front();
-    const bool all_one_point = first.min == first.max && std::ranges::all_of(boxes_, [&](const Box<D>& box) {
-                                 return box.min == first.min && box.max == first.max;
-                               });
+    const bool all_one_point = are_one_point(boxes_);
     const RTCBuildQuality quality = all_one_point ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW;
     rtcSetSceneBuildQuality(scene_.get(), quality);
     rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(boxes_.size()));
@@ -181,7 +194,8 @@ class EmbreeFollower final : public PeerFollower<D> {
 
   void move(const Change<D>& change) override {
     // A box that jumped, or came or went, spoils a hierarchy that is fitted.
-    is_steady_ = !change.rebuild && change.before.size() == change.now.size() &&
+    // The builder of dynamic scenes terminates the program if all boxes are one point.
+    is_steady_ = !change.rebuild && !are_one_point(change.now) && change.before.size() == change.now.size() &&
                  change.changed.size() <= change.now.size() / 4 &&
                  std::ranges::all_of(change.changed, [&](BoxId id) {
                    return overlap(change.before[index(id)], change.now[index(id)]);
