@@ -52,6 +52,19 @@ TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
     EXPECT_EQ(chosen_for("one_line", 100'000, seed), "sweep_and_prune") << seed;
 }
 
+TEST(Auto, TakesATreeForTwoSetsIfOneIsSmall) {
+  const lab::NamedScene uniform = lab::find_scene("uniform");
+  const lab::History<2> history = lab::make_history<2>(uniform.scene, uniform.spec, {.boxes = 10'000});
+  Finder<2> finder("auto");
+  PairCounter pairs;
+  for (const std::size_t left : {1, 2'500, 7'500, 9'999}) {
+    finder.find_across(history.boxes, left, pairs);
+    EXPECT_THAT(finder.explanation(), testing::StartsWith("bvh, since one set has only ")) << left;
+  }
+  finder.find_across(history.boxes, 5'000, pairs);
+  EXPECT_THAT(finder.explanation(), testing::StartsWith("grid"));
+}
+
 /// What auto's tracker says after some frames of a pile at rest.
 template <int D>
 std::string chosen_for_a_pile() {

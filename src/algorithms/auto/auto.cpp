@@ -30,10 +30,10 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, clusters, cells };
+enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, uneven_sets, clusters, cells };
 
-constexpr std::array<std::string_view, 8> chosen_algorithm = {
-    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "grid"};
+constexpr std::array<std::string_view, 9> chosen_algorithm = {
+    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "bvh", "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
@@ -109,7 +109,7 @@ class AutoSearcher final : public Searcher<D> {
 
  public:
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
-    choose(input.boxes);
+    choose(input);
     has_handed_over_ = false;
     if (choice_ == AutoReason::tile) {
       RefusedTile<D> refused;
@@ -168,6 +168,9 @@ class AutoSearcher final : public Searcher<D> {
         return text + boxes + " fit in a core's cache, where sorting them into cells costs least";
       case AutoReason::dense:
         return text + "a box overlaps some " + rounded(overlaps_) + " others, which cells would only repeat";
+      case AutoReason::uneven_sets:
+        return text + "one set has only " + std::to_string(smaller_set_) + " of " + boxes +
+               ": a tree passes over others that are far from these";
       case AutoReason::clusters:
         return text + "boxes form clusters: " + rounded(clustering_) +
                " times as many are near each other as evenly spread ones would be";
@@ -190,9 +193,10 @@ class AutoSearcher final : public Searcher<D> {
     return chosen->search({input.boxes, input.left_count, input.doubles, &successor, input.workers}, pairs);
   }
 
-  void choose(std::span<const Box<D>> boxes) {
-    count_ = boxes.size();
-    choice_ = choice_for(boxes);
+  void choose(const SearchInput<D>& input) {
+    count_ = input.boxes.size();
+    smaller_set_ = std::min(input.left_count, count_ - input.left_count);
+    choice_ = choice_for(input.boxes);
   }
 
   void take_sample(std::span<const Box<D>> boxes) {
@@ -217,6 +221,8 @@ class AutoSearcher final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;
     if (overlaps_ >= Limits::many_overlaps) return AutoReason::dense;
+    if (smaller_set_ > 0 && static_cast<double>(smaller_set_) <= Limits::share_of_a_small_set * count)
+      return AutoReason::uneven_sets;
     std::array<float, D> reach;
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *
@@ -231,6 +237,7 @@ class AutoSearcher final : public Searcher<D> {
   std::unique_ptr<SegmentJoin<D>> segments_;  // null until a search is handed over
   AutoReason choice_ = AutoReason::few;
   std::size_t count_ = 0;
+  std::size_t smaller_set_ = 0;  // of a search between two sets
   bool has_handed_over_ = false;
   double tests_ = 0;
   double overlaps_ = 0;

@@ -30,6 +30,9 @@ struct AutoThresholds {
   /// cells only repeats tests.
   static constexpr double many_overlaps = D == 2 ? 6 : 200;
 
+  /// Up to this share of the boxes in one of two sets, most of the others end their search high up in a tree.
+  static constexpr double share_of_a_small_set = 0.25;
+
   /// From this clustering() on, the cells that suit the clusters would be too many.
   static constexpr double clustered = D == 2 ? 2.2 : 3;
 
