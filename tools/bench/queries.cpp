@@ -1,6 +1,6 @@
 // Queries to an index of boxes, compared with other libraries: queries [BOXES [QUERIES [ROUNDS]]]. Without
-// numbers, of 1,000, 10,000, 100,000 and 1,000,000 boxes. Batches have 10,000 queries, and fewer of more than
-// 100,000 boxes, since Box2D's tree takes milliseconds for a ray.
+// BOXES, it measures 1,000, 10,000, 100,000 and 1,000,000 boxes. A batch has 10,000 queries, or fewer if
+// there are more than 100,000 boxes, since Box2D's tree takes milliseconds for a ray.
 //
 // All libraries answer the same batches of queries in turns, in one thread. Their results must agree, as
 // sets, before anything is timed. Building is excluded from the query times and has a line of its own.

@@ -223,8 +223,8 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   verb->add_option("--frames", arguments->frames,
                    "Frames of a moving scene (default: 20); alone, a tenth of the boxes moves");
   verb->add_option("--left", arguments->left,
-                   "Join two sets: this fraction of the boxes, drawn at random, is the left set, the others "
-                   "are the right one, and only pairs across the two count")
+                   "Join two sets: this fraction of the boxes, drawn at random, is the left set, and the "
+                   "others are the right set; only pairs across the two count")
       ->type_name("FRACTION");
   add_motion_options(*verb, arguments->motion);
   add_threads(*verb, arguments->entries,

@@ -80,7 +80,7 @@ TEST(Compare, JoinsTwoSetsByWhatHasAJoin) {
     EXPECT_EQ(result.of.left, 0.25);
     const Measurement& first = result.measurements.at(0);
     EXPECT_GT(first.pairs.value_or(0), 0u);
-    // Boxes are drawn at random, so that 2 * 0.25 * 0.75 of all pairs are across.
+    // Boxes are drawn at random, so 2 * 0.25 * 0.75 of all pairs are across the sets.
     EXPECT_NEAR(static_cast<double>(*first.pairs), 0.375 * 600, 60);
     for (const Measurement& measurement : result.measurements) {
       const bool joins = measurement.kind == AlgorithmKind::own;

@@ -1,4 +1,5 @@
-// Peers that are broken on purpose: each has failed with its message, and the others are measured.
+// Peers that are broken on purpose: each is reported as failed, with its message, and the others are
+// measured.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

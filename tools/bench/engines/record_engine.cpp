@@ -2,7 +2,7 @@
 // broad phases, for `broadside verify` to check. Usage: record_engine ENGINE SCENE NAME [BODIES [STEPS
 // [DROP]]]. From step DROP on, one pair is left out, as if the broad phase had missed it.
 //
-// Bodies are boxes and balls of about 1 m; a step takes 1/60 s. Each scene is for 2D and 3D.
+// Bodies are boxes and balls of about 1 m; a step takes 1/60 s. Every scene works in 2D and in 3D.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -53,7 +53,7 @@ class World {
   float between(double low, double high) { return static_cast<float>(random_.between(low, high)); }
   std::uint32_t any_slot() { return static_cast<std::uint32_t>(random_.below(bodies_.size())); }
 
-  /// Where the scene has its origin on each axis.
+  /// Sets the coordinate of the scene's origin, the same on each axis.
   void set_origin(float origin) { origin_ = {origin, origin, origin}; }
 
   void set_gravity(RustVector gravity) { check(rust_simulation_set_gravity(simulation(), &gravity)); }
@@ -122,8 +122,8 @@ class World {
 /// What a scene does to its world before each step.
 using Script = std::function<void(std::size_t step)>;
 
-/// The bodies that are missing, on a lattice above y = 0, in a container that reaches down to y = -room.
-/// Returns half of the container's width.
+/// Adds the missing bodies on a lattice above y = 0, in a container that reaches down to y = -room. Returns
+/// half of the container's width.
 float fill_container(World& world, float room = 0) {
   const int dimension = world.dimension();
   const float spacing = dimension == 2 ? 1.6F : 1.8F;
@@ -224,8 +224,8 @@ Script pyramids(World& world) {
   };
 }
 
-/// Bodies in a container, as far from the coordinates' origin as `origin`. In every 150 steps there are 20 in
-/// which some, static ones among them, jump into others or far away, vanish, and come back.
+/// Bodies in a container that is `origin` away from 0 on each axis. In the first 20 of every 150 steps, some
+/// bodies, static ones among them, jump into others or far away, vanish, and come back.
 Script hostile(World& world, float origin) {
   world.set_origin(origin);
   world.set_gravity({0, -10, 0});
@@ -265,7 +265,7 @@ Script begin(const std::string& scene, World& world) {
   if (found != scenes.end()) return found->second(world);
   std::string names;
   for (const auto& [name, make] : scenes) names += " " + name;
-  throw std::runtime_error("no scene '" + scene + "'; there are" + names);
+  throw std::runtime_error("no scene '" + scene + "'; expected one of" + names);
 }
 
 /// Records the boxes of bodies in NAME.btrace. If the engine keeps enlarged boxes, records these in

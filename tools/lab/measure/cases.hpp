@@ -47,10 +47,10 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
   return thin;
 }
 
-/// Measures the case, by measure_find() or measure_track(). If peers take part, in a child process, on
-/// systems that can copy a process: an algorithm that ends the process, or of which one call takes longer
-/// than the effort's limit, has then failed, and the others are measured again without it. `hung` collects
-/// algorithms that did not return; these are skipped.
+/// Measures the case by measure_find() or measure_track(). If peers take part, this runs in a child process,
+/// on systems that can copy a process. An algorithm that ends the child, or whose call takes longer than the
+/// effort's limit, has failed, and the others are measured again without it. `hung` collects the algorithms
+/// that did not return; these are skipped.
 ///
 /// Throws Stopped; std::runtime_error if the child process ended while it ran no algorithm.
 template <int D, typename Real = float>

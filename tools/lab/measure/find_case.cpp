@@ -32,8 +32,8 @@ struct NoFloor {
   void run(const Boxes&, std::span<Pair>, Stores) const noexcept {}
 };
 
-/// Whether the algorithm joins two sets. One that finds the pairs of one set would be timed for pairs that
-/// nobody asked for.
+/// Whether the algorithm joins two sets. An algorithm that finds the pairs of one set would be timed for
+/// pairs that do not count.
 bool joins_sets(const Algorithm& algorithm) {
   return algorithm.kind == AlgorithmKind::own || peers::joins_sets(algorithm.name);
 }
@@ -92,10 +92,10 @@ class FindCase {
  private:
   std::span<const Box<D, Real>> boxes_of(std::size_t input) const { return inputs_[input].boxes; }
 
-  /// The number of boxes in the left set of an input; 0 if there is one set only.
+  /// The number of boxes in the left set of an input; 0 if there is only one set.
   std::size_t left_of(std::size_t input) const { return left_count(case_.left, boxes_of(input).size()); }
 
-  /// The expected pairs, of which a case of two sets keeps those across the sets.
+  /// The pairs that count: all of them, or in a case of two sets, those across the sets.
   std::vector<Pair> across(std::vector<Pair> pairs, std::size_t input) const {
     if (const std::size_t left = left_of(input); left > 0)
       std::erase_if(pairs,

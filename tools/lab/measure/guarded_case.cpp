@@ -1,5 +1,5 @@
-// Measures a case in a child process, so that an algorithm that ends the process or never returns has failed
-// and the comparison goes on.
+// Measures a case in a child process. An algorithm that ends the process or never returns has failed, and the
+// comparison goes on.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -17,7 +17,7 @@
 namespace broadside::lab {
 namespace {
 
-/// The bytes of values, for another process of the same program: writes values, or reads them back.
+/// Serializes values for another process of the same program: writes them, or reads them back.
 class ValueBytes {
  public:
   ValueBytes() = default;
@@ -64,7 +64,7 @@ class ValueBytes {
   std::size_t at_ = 0;
 };
 
-/// All but the ratios, which are added after the measurement.
+/// Passes all fields but the ratios, which are added after the measurement.
 void pass(ValueBytes& bytes, Measurement& measurement) {
   // Names every field, so that a new one cannot be forgotten.
   auto& [algorithm, version, kind, threads, target, outcome, evidence, reason, estimated_ms, samples_ms,
@@ -80,7 +80,7 @@ void pass(ValueBytes& bytes, std::vector<Measurement>& measurements, std::vector
   bytes.pass(floor_ms);
 }
 
-/// What a child process sends after its first byte.
+/// What a child process sends, as its first byte.
 enum class Sent : char { result = 'r', exception = 'e', out_of_memory = 'm' };
 
 std::string sent(Sent what, std::string_view bytes = {}) {
@@ -128,7 +128,7 @@ class ChildWatch {
   const Watch& watch_;
   double limit_seconds_;
   std::uint32_t changes_ = 0;
-  double ticks_ = 0;  // for which the step has been the same
+  double ticks_ = 0;  // during which the step has not changed
   bool hangs_ = false;
 };
 
@@ -150,7 +150,7 @@ std::string measure_in_child(Benchmark benchmark, platform::ChildNote& note, con
   }
 }
 
-/// Stores what the child process sent in those measurements of the result that have no reason.
+/// Stores what the child process sent in the result's measurements that have no reason yet.
 void receive(std::string_view what, CaseResult& result) {
   const std::string_view bytes = what.substr(1);
   if (Sent(what[0]) == Sent::out_of_memory) throw std::bad_alloc();
@@ -201,7 +201,7 @@ CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std
                       : fmt::format("ended the process: {}{}{}", end->how, text.empty() ? "" : ": ", text);
     const auto culprit = std::ranges::find(result.measurements, algorithm, &Measurement::algorithm);
     if (culprit == result.measurements.end())
-      throw std::runtime_error(fmt::format("the process that measures ended at '{}': {}{}{}", end->last_step,
+      throw std::runtime_error(fmt::format("the measuring process ended at '{}': {}{}{}", end->last_step,
                                            end->how, text.empty() ? "" : ": ", text));
     culprit->outcome = Outcome::failed;
     culprit->reason = fmt::format("{} {} (in '{}')", algorithm, how, end->last_step);

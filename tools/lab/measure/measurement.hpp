@@ -30,13 +30,13 @@ struct Case {
   std::size_t frames = 0;            ///< after the first; 0 for a still scene
   double moving = 0;                 ///< mean fraction of the boxes that change from one frame to the next
   double left = 0;                   ///< in a search between two sets: the fraction of the boxes, those in
-                                     ///< front, that are the left set; 0: pairs within one set
+                                     ///< front, that is the left set; 0: pairs within one set
   std::optional<double> drift{};     ///< how a scene without its own motion was set moving, as in
   std::optional<double> teleport{};  ///< SceneRequest; otherwise empty
   Mode mode = Mode::find;
 };
 
-/// The number of boxes in the left set, which is this fraction of all.
+/// The number of boxes in a left set that is this fraction of all boxes.
 inline std::size_t left_count(double left, std::size_t boxes) noexcept {
   return static_cast<std::size_t>(std::llround(left * static_cast<double>(boxes)));
 }
@@ -152,7 +152,7 @@ struct Effort {
       20'000;  ///< searches of more boxes are not checked by brute force; nor are histories that
                ///< need more than four times the tests of such a search
   double limit_seconds =
-      10;  ///< a call that takes longer than this, and than ten times its budget, does not return
+      10;  ///< a call that takes longer than this and than ten times its budget counts as hanging
   double far_ratio = 1.5;  ///< an algorithm that takes more than this many times the time of both the fastest
                            ///< other library and our fastest (and more than far_from_seconds) has far_rounds
                            ///< rounds

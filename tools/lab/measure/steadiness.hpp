@@ -14,9 +14,8 @@
 
 namespace broadside::lab {
 
-/// The fraction of the time since construction in which this process, or a child process of it that has
-/// ended, had a processor: 1 for one thread that always runs, more for several. Waiting counts as not having
-/// one.
+/// The fraction of the time since construction in which this process, or one of its children that have ended,
+/// had a processor: 1 for one thread that always runs, more for several. Waiting counts as not having one.
 class ProcessorShare {
  public:
   double value() const;

@@ -46,7 +46,7 @@ RTCBounds bounds_of(const Box<D>& box) {
           .align1 = 0};
 }
 
-/// Whether the present boxes are all at one point, as far as Embree sees: it takes subnormal numbers for 0.
+/// Whether all present boxes are at one point for Embree, which treats subnormal numbers as 0.
 template <int D>
 bool are_one_point(std::span<const Box<D>> boxes) {
   const auto first = std::ranges::find_if(boxes, is_present<D, float>);
@@ -61,7 +61,7 @@ bool are_one_point(std::span<const Box<D>> boxes) {
   });
 }
 
-/// A scene of one user geometry, the boxes of a set.
+/// A scene of one user geometry: the boxes of a set.
 template <int D>
 class EmbreeSet {
  public:
@@ -87,7 +87,7 @@ class EmbreeSet {
     commit(quality);
   }
 
-  /// Fits the hierarchy of a dynamic scene to as many boxes, of which the same are present.
+  /// Refits the hierarchy of a dynamic scene to the same number of boxes; the same ones must be present.
   void refit(std::span<const Box<D>> boxes) {
     boxes_ = boxes;
     commit(RTC_BUILD_QUALITY_REFIT);
@@ -120,8 +120,8 @@ class EmbreeJoin {
 
   RTCDevice device() const { return device_.get(); }
 
-  /// Calls `prepare`, which builds sets and returns the left and the right one, and collides these. If there
-  /// are flags, leaves out pairs of boxes that both have none.
+  /// Calls `prepare`, which builds the sets and returns the left and the right scene, and collides these. If
+  /// `flags` is not empty, leaves out pairs of boxes that both have no flag.
   template <typename Prepare>
   void collide(std::span<const Box<D>> boxes, std::size_t left_count, std::span<const std::uint8_t> flags,
                PairSink& pairs, const Prepare& prepare) {
@@ -141,7 +141,8 @@ class EmbreeJoin {
   }
 
  private:
-  /// Receives pairs of leaves, of one set in both orders; Embree does not guarantee that their boxes overlap.
+  /// Receives pairs of leaves, in both orders if there is one set. Embree does not guarantee that their boxes
+  /// overlap.
   static void report(void* user, RTCCollision* collisions, unsigned count) {
     const auto& self = *static_cast<const EmbreeJoin*>(user);
     for (const RTCCollision& collision : std::span(collisions, count)) {
@@ -187,14 +188,14 @@ class EmbreeCollide final : public Searcher<D> {
   EmbreeSet<D> right_{join_.device()};
 };
 
-/// Fits the hierarchy to the boxes if few moved a little, and builds it anew otherwise.
+/// Refits the hierarchy if few boxes moved, each only a little; rebuilds it otherwise.
 template <int D>
 class EmbreeFollower final : public PeerFollower<D> {
   void build(std::span<const Box<D>>, std::span<const Box<D>>) override { is_built_ = false; }
 
   void move(const Change<D>& change) override {
-    // A box that jumped, or came or went, spoils a hierarchy that is fitted.
-    // The builder of dynamic scenes terminates the program if all boxes are one point.
+    // A box that jumped, appeared or vanished spoils a refitted hierarchy. The builder of dynamic scenes
+    // terminates the program if all boxes are at one point.
     is_steady_ = !change.rebuild && !are_one_point(change.now) && change.before.size() == change.now.size() &&
                  change.changed.size() <= change.now.size() / 4 &&
                  std::ranges::all_of(change.changed, [&](BoxId id) {

@@ -1,4 +1,4 @@
-// Which boxes an index holds, and which query it, if the library has no join of two indexes.
+// Which boxes an index holds and which boxes query it, if the library has no join of two indexes.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace broadside::lab::peers {
 
-/// Of two sets the larger one is indexed: a box costs less in a packed index than as a query. Of one set, all
-/// boxes are.
+/// Of two sets, the larger one is indexed, since a box costs less in a packed index than as a query. If there
+/// is only one set, all of its boxes are indexed.
 struct IndexedSet {
   template <int D>
   explicit IndexedSet(const SearchInput<D>& input) : end(input.boxes.size()) {

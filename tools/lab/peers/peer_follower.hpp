@@ -38,7 +38,7 @@ class PeerFollower : public Follower<D> {
     const auto rested = [&change](Pair pair) {
       return (change.flags[index(pair.first)] | change.flags[index(pair.second)]) == 0;
     };
-    // Without filters, what is in a list overlapped in that frame, so only the other frame is looked at.
+    // Without filters, a pair in a list overlapped in the list's frame, so only the other frame is checked.
     const bool unfiltered = change.filters_before.empty() && change.filters_now.empty();
     auto kept = pairs_.begin();
     for (const Pair pair : pairs_) {

@@ -1,4 +1,4 @@
-// Queries of the spatial indexes from crates.io; how each is asked is in rust/src/queries.rs.
+// Queries to the spatial indexes from crates.io; rust/src/queries.rs asks each of them.
 #include <memory>
 #include <string>
 #include <utility>

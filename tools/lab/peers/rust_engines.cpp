@@ -66,7 +66,7 @@ Algorithm obvhs_bvh() {
 Algorithm box2d3_tree() {
   Algorithm algorithm = rust_crate("boxdd-sys");
   algorithm.name = "box2d3_tree";
-  algorithm.summary = "Box2D 3's dynamic tree of boxes with margins, whose enlarged parts are built anew";
+  algorithm.summary = "Box2D 3's dynamic tree of boxes with margins, whose enlarged parts are rebuilt";
   algorithm.source = "Box2D 3, b2DynamicTree";
   algorithm.version = "Box2D 3.2.0 (" + algorithm.version + ")";
   algorithm.in_2d = {.searcher = rust_searcher<2>("box2d3"),
@@ -78,7 +78,7 @@ Algorithm box2d3_tree() {
 Algorithm box3d_tree() {
   Algorithm algorithm = rust_crate("boxddd-sys");
   algorithm.name = "box3d_tree";
-  algorithm.summary = "Box3D's dynamic tree of boxes with margins, whose enlarged parts are built anew";
+  algorithm.summary = "Box3D's dynamic tree of boxes with margins, whose enlarged parts are rebuilt";
   algorithm.source = "Box3D, b3DynamicTree";
   algorithm.version = "Box3D 0.1.0 (" + algorithm.version + ")";
   algorithm.in_3d = {.searcher = rust_searcher<3>("box3d"),

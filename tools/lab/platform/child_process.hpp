@@ -12,7 +12,7 @@
 namespace broadside::lab::platform {
 
 /// What a child process is doing: a text in memory that it shares with its parent, so that writing it wakes
-/// nobody.
+/// no process.
 class ChildNote {
  public:
   /// For the child. Keeps the first 500 bytes.
@@ -32,15 +32,15 @@ class ChildNote {
 /// How a child process ended.
 struct ChildEnd {
   std::optional<std::string> result;  ///< what its work returned; empty if the process ended otherwise
-  std::string how;                    ///< then: "signal 6, Aborted", "exit status 0"
+  std::string how;                    ///< such as "signal 6, Aborted" or "exit status 0"
   std::string last_step;              ///< the last text of its note
   std::string output;                 ///< the last part of what it wrote to standard output and error
 };
 
-/// Runs `work` in a copy of this process that has only the calling thread, waits for it, and calls `goes_on`
-/// ten times a second meanwhile; if that returns false or throws, kills the child. Time in which this process
-/// is stopped, as by Ctrl-Z, does not count. Signals such as Ctrl-C end the child, and so does the end of
-/// this process on Linux. Empty if the system cannot copy processes; then nothing was run.
+/// Runs `work` in a copy of this process that has only the calling thread, and waits for it. Meanwhile calls
+/// `goes_on` ten times a second, and kills the child if that returns false or throws. Time in which this
+/// process is stopped, as by Ctrl-Z, does not count. Signals such as Ctrl-C end the child; on Linux, so does
+/// the end of this process. Empty if the system cannot copy processes; then `work` did not run.
 ///
 /// `work` must not throw.
 std::optional<ChildEnd> run_in_child(const std::function<std::string(ChildNote&)>& work,

@@ -47,7 +47,7 @@ struct Gap {
   std::size_t axis;
 };
 
-/// The widest gap between two boxes over the axes; negative if they overlap.
+/// The widest gap between two boxes along any axis; negative if they overlap.
 template <int D, typename Real>
 Gap gap_between(const Box<D, Real>& a, const Box<D, Real>& b) {
   Gap widest{-std::numeric_limits<double>::infinity(), 0};
@@ -226,7 +226,7 @@ class RecordedCheck {
   const Recording<D, Real>& recording_;
   const VerifyOptions& options_;
   double margin_;
-  double needed_margin_ = 0;  // for no pair to be stale
+  double needed_margin_ = 0;  // the smallest with which no pair is stale
   Reference reference_;
 
   std::vector<RecordedFault> faults_;  // the first ones, by their first frames

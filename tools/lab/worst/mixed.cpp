@@ -8,7 +8,7 @@
 namespace broadside::lab::worst {
 namespace {
 
-/// core::sampled_place().
+/// As core::sampled_place().
 std::size_t golden_place(std::size_t i, std::size_t count) {
   const auto fraction = static_cast<std::uint32_t>(i * 0x9e3779b9U);
   return static_cast<std::size_t>(fraction * std::uint64_t{count} >> 32);
@@ -38,7 +38,7 @@ std::vector<bool> sampled_places(const std::string& places, std::size_t count, s
   return sampled;
 }
 
-/// core::sample_shift() of the boxes as floats, with as many hashed as auto hashes.
+/// As core::sample_shift() of the boxes as floats, which hashes as many boxes as `auto` does.
 template <int D>
 std::uint32_t shift_of_auto(const DoubleBoxes<D>& boxes) {
   std::uint64_t hash = boxes.size();
@@ -72,7 +72,7 @@ struct Fooled {
     for (std::size_t i = 0; i < count; ++i) boxes.push_back(sampled[i] ? harmless() : *other++);
     if (const std::string& places = settings.text("places"); places == "even" || places == "ends")
       return boxes;
-    // Auto's places depend on the boxes at the first ones, which keep theirs.
+    // Where `auto` samples depends on the boxes at the first sampled places, which stay as they are.
     const std::uint32_t shift = shift_of_auto<D>(boxes);
     for (std::size_t i = 0; i < samples; ++i) {
       const std::size_t place = golden_place(i + shift, count);

@@ -37,7 +37,7 @@ export interface Measurement {
   boxes: number;
   frames: number;
   moving: number;
-  /** Where two sets are joined: the fraction of the boxes that is the left set. */
+  /** In a join of two sets: the fraction of the boxes that is the left set. */
   left?: number;
   drift: number | null;
   teleport: number | null;

@@ -109,7 +109,7 @@ struct Child {
     if (count <= 0) _exit(1);
     done += static_cast<std::size_t>(count);
   }
-  // Not exit(): what was registered to run at the end is the parent's.
+  // Not exit(): what is registered to run at exit belongs to the parent.
   _exit(0);
 }
 
@@ -142,7 +142,7 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string(ChildNote&)
   Pipe results;
   Pipe output;
   if (shared.note == nullptr || results.ends[0] < 0 || output.ends[0] < 0) return std::nullopt;
-  std::fflush(nullptr);  // or the child would write it as well
+  std::fflush(nullptr);  // otherwise the child would write it as well
   const pid_t parent = getpid();
   Child child(fork());
   if (child.id < 0) return std::nullopt;

@@ -34,8 +34,8 @@ void rust_follower_free(RustFollower* follower);
 
 /// The functions below return false on failure. `boxes` has the minimum and then the maximum of each box.
 
-/// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, the boxes before it are
-/// the left set, and only pairs with a box of each set count: others may be given. `length` is that of a
+/// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, that many boxes at the
+/// front are the left set, and only pairs across the sets count; others may be given. `length` is that of a
 /// typical box, 0 if not needed.
 bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, size_t left_count,
                           float length, RustPeerTakes takes, void* context);
@@ -51,25 +51,25 @@ bool rust_follower_build(RustFollower* follower, const float* boxes, size_t coun
 bool rust_follower_update(RustFollower* follower, const float* boxes, size_t count, const uint32_t* changed,
                           size_t changed_count, const uint8_t* flags, RustPeerTakes takes, void* context);
 
-/// An index of boxes, which answers queries.
+/// An index of boxes that answers queries.
 typedef struct RustIndex RustIndex;
 
-/// What is asked: the boxes that overlap a box; the first box that a ray hits, or all that it hits. Rays are
-/// an origin, a direction and the greatest t.
+/// What a query finds: the boxes that overlap a box, the first box that a ray hits, or all boxes that it
+/// hits. A ray is an origin, a direction and the maximum t.
 typedef enum RustQueries { RUST_BOXES, RUST_FIRST_HITS, RUST_ALL_HITS } RustQueries;
 
 /// Null on failure. All boxes are present.
 RustIndex* rust_index_new(const char* name, int dimension, const float* boxes, size_t count);
 void rust_index_free(RustIndex* index);
 
-/// Gives the number of each query with each box found, as a pair in this order.
+/// Gives each box found as a pair: the number of the query, then the box.
 bool rust_index_ask(RustIndex* index, RustQueries kind, const float* queries, size_t count,
                     RustPeerTakes takes, void* context);
 
 /// A physics engine that runs a scene: see Simulation in src/simulations/mod.rs. Only in builds with engines.
 typedef struct RustSimulation RustSimulation;
 
-/// In 2D, z counts for nothing.
+/// In 2D, z is ignored.
 typedef struct RustVector {
   float at[3];
 } RustVector;
@@ -108,13 +108,14 @@ bool rust_simulation_remove(RustSimulation* simulation, uint32_t slot);
 bool rust_simulation_place(RustSimulation* simulation, uint32_t slot, const RustVector* position,
                            const RustVector* velocity);
 
-/// The box that the broad phase is given if the next step begins now.
+/// The box that the broad phase would be given if the next step began now.
 bool rust_simulation_bounds(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
 
-/// The enlarged box by which the broad phase found the body's pairs in the last step; false if it keeps none.
+/// The enlarged box with which the broad phase found the body's pairs in the last step; false if it keeps
+/// none.
 bool rust_simulation_enlarged(const RustSimulation* simulation, uint32_t slot, RustBounds* bounds);
 
-/// Steps, and gives the pairs that the broad phase held after it had found pairs and before bodies moved.
+/// Runs a step, and gives the pairs that the broad phase held after it found pairs and before bodies moved.
 bool rust_simulation_step(RustSimulation* simulation, RustPeerTakes takes, void* context);
 
 #ifdef __cplusplus

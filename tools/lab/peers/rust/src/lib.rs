@@ -126,7 +126,7 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
 
 fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) -> AnyIndex {
     use AnyIndex::{Flat, Solid};
-    // SAFETY: the caller of the C interface gave so many boxes.
+    // SAFETY: the caller of the C interface gave this many boxes.
     let flat = || unsafe { slice(boxes.cast::<Bounds<2>>(), count) };
     let solid = || unsafe { slice(boxes.cast::<Bounds<3>>(), count) };
     match (name, dimension) {

@@ -1,5 +1,5 @@
-//! PhysX's broad phases by their low-level interface, `PxBroadPhase`: batches of boxes that come, move and go, and
-//! events of pairs that begin and end.
+//! PhysX's broad phases through their low-level interface, `PxBroadPhase`: batches of boxes that are added, moved and
+//! removed, and events of pairs that begin and end.
 
 use std::ops::ControlFlow;
 use std::slice;
@@ -188,7 +188,7 @@ impl Follower<3> for PhaseFollower {
             pairs.add(a, b)?;
         }
         if !self.removed.is_empty() {
-            // There are no events of these.
+            // PhysX reports no end for their pairs.
             let is_there = |id: u32| self.is_there[id as usize];
             self.pairs.retain(|(a, b)| is_there(a) && is_there(b));
         }

@@ -117,7 +117,7 @@ pub enum AnyIndex {
     Solid(Box<dyn Index<3>>),
 }
 
-/// Which queries `ask` asks, of boxes or rays as numbers.
+/// What `ask` finds. Queries are boxes or rays, given as numbers.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub enum Kind {
@@ -127,7 +127,7 @@ pub enum Kind {
 }
 
 /// # Safety
-/// `queries` has `count` boxes or rays, by `kind`.
+/// `queries` has `count` boxes or rays, depending on `kind`.
 pub unsafe fn ask<const D: usize>(
     index: &mut dyn Index<D>,
     kind: Kind,

@@ -1,5 +1,5 @@
 //! Box2D 3. A step finds pairs, ends those whose enlarged boxes have parted, and then moves bodies. There is no list of
-//! pairs, and no event where one ends, so `Contacts` finds them: debug drawing tells the enlarged boxes, the custom
+//! pairs, and no event when one ends, so `Contacts` works them out: debug drawing shows the enlarged boxes, the custom
 //! filter is asked about each pair that begins, and the number of contacts confirms the result.
 
 use std::ffi::{c_int, c_void};

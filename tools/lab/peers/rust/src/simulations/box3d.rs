@@ -1,4 +1,4 @@
-//! Box3D, whose pairs are found as those of Box2D are.
+//! Box3D. Its pairs are found in the same way as Box2D's.
 
 use std::ffi::{c_int, c_void};
 use std::ptr::from_mut;
@@ -36,7 +36,7 @@ unsafe extern "C" fn begins(a: b3ShapeId, b: b3ShapeId, contacts: *mut c_void) -
     true
 }
 
-/// What debug drawing calls the shape: its slot, and one.
+/// The shape's name in debug drawing: its slot plus one.
 unsafe extern "C" fn name_shape(shape: *const b3DebugShape, _: *mut c_void) -> *mut c_void {
     b3Shape_GetUserData((*shape).shapeId).wrapping_byte_add(1)
 }

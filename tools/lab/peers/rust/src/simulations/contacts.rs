@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::peer::{Bounds, Pairs};
 
-pub const EVERYWHERE: f32 = 1e9; // the half of what debug drawing draws
+pub const EVERYWHERE: f32 = 1e9; // half the width of what debug drawing draws
 
 #[derive(Default)]
 pub struct Contacts {
@@ -14,7 +14,8 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// The engine asks whether it may make a pair. It also asks before it sweeps a fast body; `finish_step` drops those.
+    /// Called when the engine asks whether it may make a pair. It also asks before it sweeps a fast body; `finish_step`
+    /// drops those pairs.
     pub fn begin(&mut self, a: u32, b: u32) {
         self.held.insert((a.min(b), a.max(b)));
     }
@@ -34,8 +35,8 @@ impl Contacts {
         self.enlarged[slot as usize]
     }
 
-    /// Ends pairs as the engine does: a pair of which a body was awake, and whose enlarged boxes did not overlap when
-    /// the step began. Panics if the engine then holds another number of pairs.
+    /// Ends pairs as the engine does: a pair with an awake body ends if its enlarged boxes did not overlap when the
+    /// step began. Panics if the engine then holds a different number of pairs.
     pub fn finish_step(&mut self, awake: &[bool], count: usize, pairs: &mut Pairs) {
         let Self { held, enlarged, .. } = self;
         held.retain(|&(a, b)| {

@@ -1,4 +1,4 @@
-//! Engines that run scenes, for tools/bench/engines/record_engine.cpp to record what their broad phases do:
+//! Engines that run scenes, so that tools/bench/engines/record_engine.cpp can record what their broad phases do.
 //! include/rust_peers.h describes the functions.
 
 mod box2d;
@@ -48,14 +48,13 @@ pub trait Simulation {
     /// Puts a body elsewhere, upright, and wakes it.
     fn place(&mut self, slot: u32, position: [f32; 3], velocity: [f32; 3]);
 
-    /// The body's box that the engine passes to its broad phase, if the next step begins now.
+    /// The body's box that the engine would pass to its broad phase if the next step began now.
     fn bounds(&self, slot: u32) -> Bounds<3>;
 
-    /// The enlarged box of this body by which the last step found pairs, if the broad phase keeps such boxes.
+    /// The enlarged box of this body with which the last step found pairs, if the broad phase keeps such boxes.
     fn enlarged(&self, slot: u32) -> Option<Bounds<3>>;
 
-    /// Steps, and gives the pairs that the broad phase held in this step, when it had found pairs and not yet moved
-    /// bodies.
+    /// Runs a step, and gives the pairs that the broad phase held after it found pairs and before bodies moved.
     fn step(&mut self, pairs: &mut Pairs);
 }
 

@@ -1,6 +1,6 @@
-//! Rapier. A step finds pairs for the boxes of the bodies as they are, enlarged by half of the prediction distance,
-//! and then moves bodies; the narrow phase has a contact pair for each pair that the broad phase holds. The broad
-//! phase keeps a box enlarged by its skin until the body's box leaves it, which `follow` does likewise.
+//! Rapier. A step finds pairs for the current boxes of the bodies, enlarged by half of the prediction distance, and
+//! then moves bodies. The narrow phase has a contact pair for each pair that the broad phase holds. The broad phase
+//! keeps a box enlarged by its skin until the body's box leaves it; `follow` does the same.
 
 macro_rules! rapier {
     ($module:ident, $rapier:ident, $dimension:literal, [$($axis:literal),*], $turn:expr) => {
@@ -30,14 +30,14 @@ macro_rules! rapier {
 
             impl Rapier {
                 fn aabb(&self, slot: u32) -> Aabb {
-                    // The collider itself follows a body that was placed elsewhere only in the next step.
+                    // If a body was placed elsewhere, the collider itself follows only in the next step.
                     let (body, collider) = self.handles[slot as usize];
                     let prediction = self.world.integration_parameters.prediction_distance();
                     let shape = self.world.colliders[collider].shape();
                     shape.compute_aabb(self.world.bodies[body].position()).loosened(prediction / 2.0)
                 }
 
-                /// Enlarges the boxes anew that bodies have left. The first box of a body is not enlarged.
+                /// Makes new enlarged boxes for bodies that have left theirs. The first box of a body is not enlarged.
                 fn follow(&mut self) {
                     for slot in 0..self.handles.len() {
                         if !self.world.bodies.contains(self.handles[slot].0) {
