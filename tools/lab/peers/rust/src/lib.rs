@@ -14,9 +14,9 @@ mod panicking;
 #[cfg(feature = "engines")]
 mod parry_bvh;
 mod peer;
-mod queries;
 #[cfg(feature = "engines")]
 mod physx_broad_phase;
+mod queries;
 #[cfg(feature = "engines")]
 mod rapier_broad_phase;
 mod rstar_tree;
