@@ -14,7 +14,7 @@ namespace {
 /// A number that differs in a forked child.
 long this_process() noexcept {
 #ifdef _WIN32
-  return 0;
+  return 1;
 #else
   return getpid();
 #endif
@@ -29,7 +29,7 @@ struct ThreadPool::Job {
   std::size_t helpers = 0;  // threads that take part, besides the caller's
 };
 
-ThreadPool::ThreadPool(std::size_t threads) : threads_(threads), process_(this_process()) {}
+ThreadPool::ThreadPool(std::size_t threads) : threads_(threads) {}
 
 ThreadPool::~ThreadPool() {
   {
@@ -42,8 +42,7 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& task) {
   Job job{task, count};
-  // In a forked child the mutex may stay locked for ever, if a thread of the parent held it.
-  if (count < 2 || threads_ < 2 || process_ != this_process()) return take_part(job);
+  if (count < 2 || threads_ < 2 || !is_of_this_process()) return take_part(job);
   {
     const std::lock_guard lock(mutex_);
     start_helpers();
@@ -57,6 +56,11 @@ void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& 
   std::unique_lock lock(mutex_);
   std::erase(jobs_, &job);
   done_.wait(lock, [&] { return job.helpers == 0; });
+}
+
+bool ThreadPool::is_of_this_process() noexcept {
+  long none = 0;
+  return process_.compare_exchange_strong(none, this_process()) || none == this_process();
 }
 
 void ThreadPool::take_part(Job& job) {

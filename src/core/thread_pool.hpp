@@ -1,6 +1,7 @@
 // ThreadPool: an executor on threads of the standard library, for a library built without oneTBB.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -14,8 +15,8 @@ namespace broadside::core {
 
 /// Threads that sleep until there is something to run. run() may be called from several threads and from
 /// within tasks. The calling thread takes part, so run() needs no other thread to end. In a forked child of
-/// the process that made the pool, the threads are gone, and the calling thread runs all tasks itself. But a
-/// run() that is in progress in the forking thread does not end in the child.
+/// the process whose run() started the threads, these are gone, and the calling thread runs all tasks itself.
+/// But a run() that is in progress in the forking thread does not end in the child.
 class ThreadPool final : public Executor {
  public:
   /// `threads` includes the calling thread, and is at least 1. The others start with the first run() that can
@@ -34,12 +35,16 @@ class ThreadPool final : public Executor {
   /// Runs tasks of the job until all are taken.
   static void take_part(Job& job);
 
+  /// Whether the threads are those of this process, or none has started them yet, so that this one will. In a
+  /// forked child of another the mutex may stay locked for ever, if a thread of the parent held it.
+  bool is_of_this_process() noexcept;
+
   void start_helpers();
   void help();
 
   std::size_t threads_;
-  long process_;      // this_process() of the process that made the pool
-  std::mutex mutex_;  // guards all below, and a job's helpers
+  std::atomic<long> process_ = 0;  // this_process() of the process that starts the threads; 0: none has yet
+  std::mutex mutex_;               // guards all below, and a job's helpers
   std::condition_variable wake_;
   std::condition_variable done_;
   std::vector<std::thread> helpers_;

@@ -9,6 +9,11 @@
 #include <thread>
 #include <vector>
 
+#if defined(__unix__)
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <gtest/gtest.h>
 
 #include "broadside/finder.hpp"
@@ -37,11 +42,11 @@ TEST(ThreadPool, CallsEachTaskOnceForAnyNumberOfThreads) {
   }
 }
 
-TEST(ThreadPool, RunsTasksInOtherThreadsAtTheSameTime) {
-  ThreadPool pool(2);
+/// How many threads take part in two tasks, each of which takes until the other one has begun, or has had
+/// long enough to.
+std::size_t threads_of_two_tasks(ThreadPool& pool) {
   std::mutex mutex;
   std::set<std::thread::id> threads;
-  // Each of the two tasks takes until the other one has begun, or has had long enough to.
   pool.run(2, [&](std::size_t) {
     const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     for (bool both = false; !both && std::chrono::steady_clock::now() < latest; std::this_thread::yield()) {
@@ -50,8 +55,24 @@ TEST(ThreadPool, RunsTasksInOtherThreadsAtTheSameTime) {
       both = threads.size() == 2;
     }
   });
-  EXPECT_EQ(threads.size(), 2u);
+  return threads.size();
 }
+
+TEST(ThreadPool, RunsTasksInOtherThreadsAtTheSameTime) {
+  ThreadPool pool(2);
+  EXPECT_EQ(threads_of_two_tasks(pool), 2u);
+}
+
+#if defined(__unix__) && !defined(__SANITIZE_THREAD__)
+TEST(ThreadPool, StartsItsThreadsInTheProcessThatUsesItFirst) {
+  ThreadPool pool(2);
+  const pid_t child = fork();
+  if (child == 0) _exit(threads_of_two_tasks(pool) == 2 ? 0 : 1);
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+#endif
 
 TEST(ThreadPool, RunsTasksWithinTasksAndForSeveralCallersAtOnce) {
   ThreadPool pool(3);

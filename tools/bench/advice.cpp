@@ -89,6 +89,7 @@ double measure(const lab::Catalogue& catalogue, const lab::CaseRequest& request,
 bool is_wanted(const lab::CaseRequest& request, bool is_long, const std::string& scenes) {
   if (!scenes.empty() && ("," + scenes + ",").find("," + request.scene + ",") == std::string::npos)
     return false;
+  if (request.left > 0) return false;  // there is no advice for two sets
   return !is_long || (request.boxes >= 5'000 && request.boxes <= 100'000);
 }
 

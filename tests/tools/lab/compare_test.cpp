@@ -94,6 +94,16 @@ TEST(Compare, JoinsTwoSetsByWhatHasAJoin) {
   }
 }
 
+TEST(Compare, JoinsAnEmptySet) {
+  CaseRequest request = small_still;
+  request.left = 0.0001;
+  const CaseResult result = compare(Catalogue(), options_for("own", {request})).cases.at(0);
+  for (const Measurement& measurement : result.measurements) {
+    EXPECT_EQ(measurement.outcome, Outcome::verified) << measurement.reason;
+    EXPECT_EQ(measurement.pairs, 0u);
+  }
+}
+
 TEST(Compare, TracksAMovingScene) {
   const Catalogue catalogue;
   const Comparison comparison = compare(catalogue, options_for("own", {small_moving}));

@@ -24,8 +24,8 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const CaseRequest small_still{.scene = "uniform", .dimension = 2, .boxes = 300};
-const CaseRequest small_moving{.scene = "uniform", .dimension = 2, .boxes = 300, .moving = 0.2, .frames = 5};
+const CaseRequest broken_still{.scene = "uniform", .dimension = 2, .boxes = 300};
+const CaseRequest broken_moving{.scene = "uniform", .dimension = 2, .boxes = 300, .moving = 0.2, .frames = 5};
 
 bool has_child_processes() {
   return platform::run_in_child([](platform::ChildNote&) { return "x"; },
@@ -108,7 +108,7 @@ TEST(GuardedCase, ReportsEveryWayInWhichAPeerCanFailAndMeasuresTheOthers) {
   Algorithm in_the_end = peer(spoilt("aborts_in_the_end", [](std::vector<Pair>&, std::size_t) {}));
   in_the_end.in_2d.searcher = make_strategy<AbortsInTheEnd>;
   catalogue.add(in_the_end);
-  const Comparison comparison = compare(catalogue, quick_options(algorithms, {small_moving, small_still}));
+  const Comparison comparison = compare(catalogue, quick_options(algorithms, {broken_moving, broken_still}));
   ASSERT_EQ(comparison.cases.size(), 2u);
   for (const CaseResult& result : comparison.cases) {
     const std::vector<Measurement>& measurements = result.measurements;
@@ -138,7 +138,7 @@ TEST(GuardedCase, ReportsEveryWayInWhichAPeerCanFailAndMeasuresTheOthers) {
 TEST(GuardedCase, ReportsADoubledPairOfAPeer) {
   Catalogue catalogue;
   catalogue.add(peer(repeats_a_pair()));
-  const Comparison comparison = compare(catalogue, quick_options("grid,repeats", {small_still}));
+  const Comparison comparison = compare(catalogue, quick_options("grid,repeats", {broken_still}));
   EXPECT_THAT(comparison.cases.at(0).measurements.at(1).reason, HasSubstr("is reported more than once"));
   EXPECT_EQ(comparison.cases[0].measurements[0].outcome, Outcome::verified);
 }
@@ -147,7 +147,7 @@ TEST(GuardedCase, StopsWhileAPeerDoesNotReturn) {
   if (!has_child_processes()) GTEST_SKIP() << "this system cannot copy a process";
   Catalogue catalogue;
   catalogue.add(broken("loops", loop_for_ever));
-  CompareOptions options = quick_options("grid,loops", {small_still});
+  CompareOptions options = quick_options("grid,loops", {broken_still});
   options.effort.limit_seconds = 1e9;
   bool loops = false;
   options.watch.progress = [&](std::string_view what) { loops |= what.find("loops, ") != what.npos; };
@@ -158,7 +158,7 @@ TEST(GuardedCase, StopsWhileAPeerDoesNotReturn) {
 TEST(GuardedCase, BringsBackAllThatIsMeasuredWithoutPeers) {
   Catalogue catalogue;
   catalogue.add(peer(spoilt("peer", [](std::vector<Pair>&, std::size_t) {})));
-  for (CaseRequest request : {small_still, small_moving}) {
+  for (CaseRequest request : {broken_still, broken_moving}) {
     request.boxes = 1'000;  // the fewest with a floor
     CompareOptions options = quick_options("auto,paper_grid", {request});
     options.measure_options = {.times = false, .phases = true};

@@ -47,12 +47,12 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
   return thin;
 }
 
-/// Measures the case by measure_find() or measure_track(). If peers take part, this runs in a child process,
-/// on systems that can copy a process. An algorithm that ends the child, or whose call takes longer than the
-/// effort's limit, has failed, and the others are measured again without it. `hung` collects the algorithms
-/// that did not return; these are skipped.
+/// Measures the case by measure_find() or measure_track(). If peers or several threads take part, this runs
+/// in a child process, on systems that can copy a process. An algorithm that ends the child, or whose call
+/// takes longer than the effort's limit, has failed, and the others are measured again without it. `hung`
+/// collects the algorithms that did not return; these are skipped.
 ///
-/// Throws Stopped; std::runtime_error if the child process ended while it ran no algorithm.
+/// Throws Stopped.
 template <int D, typename Real = float>
 CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const Benchmark& benchmark,
                         std::vector<std::string>& hung);

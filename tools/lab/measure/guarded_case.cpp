@@ -150,6 +150,14 @@ std::string measure_in_child(Benchmark benchmark, platform::ChildNote& note, con
   }
 }
 
+/// Stores the measurements of those entries that have no reason yet.
+void fill(CaseResult& result, std::vector<Measurement> measured) {
+  std::size_t next = 0;
+  for (Measurement& measurement : result.measurements) {
+    if (measurement.reason.empty()) measurement = std::move(measured[next++]);
+  }
+}
+
 /// Stores what the child process sent in the result's measurements that have no reason yet.
 void receive(std::string_view what, CaseResult& result) {
   const std::string_view bytes = what.substr(1);
@@ -159,10 +167,7 @@ void receive(std::string_view what, CaseResult& result) {
       static_cast<std::size_t>(std::ranges::count(result.measurements, "", &Measurement::reason)));
   ValueBytes values(bytes);
   pass(values, received, result.floor_ms);
-  std::size_t next = 0;
-  for (Measurement& measurement : result.measurements) {
-    if (measurement.reason.empty()) measurement = std::move(received[next++]);
-  }
+  fill(result, std::move(received));
 }
 
 CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std::vector<std::string>& hung,
@@ -188,7 +193,12 @@ CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std
         [&](platform::ChildNote& note) { return measure_in_child(some, note, measure); },
         [&](const platform::ChildNote& note) { return watch.goes_on(note); });
     benchmark.watch.ask();  // Ctrl-C ends the child as well
-    if (!end) return measure(benchmark);
+    if (!end) {
+      CaseResult rest = measure(some);
+      result.floor_ms = std::move(rest.floor_ms);
+      fill(result, std::move(rest.measurements));
+      return result;
+    }
     if (end->result) {
       std::fputs(end->output.c_str(), stderr);  // warnings, for example
       receive(*end->result, result);
@@ -200,9 +210,15 @@ CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std
         watch.hangs() ? fmt::format("did not return within {}", duration(limit_seconds))
                       : fmt::format("ended the process: {}{}{}", end->how, text.empty() ? "" : ": ", text);
     const auto culprit = std::ranges::find(result.measurements, algorithm, &Measurement::algorithm);
-    if (culprit == result.measurements.end())
-      throw std::runtime_error(fmt::format("the measuring process ended at '{}': {}{}{}", end->last_step,
-                                           end->how, text.empty() ? "" : ": ", text));
+    if (culprit == result.measurements.end()) {
+      for (Measurement& measurement : result.measurements) {
+        if (!measurement.reason.empty()) continue;
+        measurement.outcome = Outcome::failed;
+        measurement.reason = fmt::format("the measuring process ended at '{}': {}{}{}", end->last_step,
+                                         end->how, text.empty() ? "" : ": ", text);
+      }
+      return result;
+    }
     culprit->outcome = Outcome::failed;
     culprit->reason = fmt::format("{} {} (in '{}')", algorithm, how, end->last_step);
     if (watch.hangs()) hung.push_back(algorithm);
@@ -218,9 +234,13 @@ CaseResult measure_case(const Case& measured, Histories<D, Real> inputs, const B
     if (measured.mode == Mode::find) return measure_find<D, Real>(measured, inputs, some);
     return CaseResult{measured, measure_track<D, Real>(measured, inputs, some)};
   };
-  const auto is_peer = [](const Entry& entry) { return entry.algorithm->kind == AlgorithmKind::peer; };
-  return std::ranges::any_of(benchmark.entries, is_peer) ? measure_guarded(measured, benchmark, hung, measure)
-                                                         : measure(benchmark);
+  // Threads that the parent had started would be missing in a later child.
+  const auto needs_child = [](const Entry& entry) {
+    return entry.algorithm->kind == AlgorithmKind::peer || measurement_of(entry).threads != 1;
+  };
+  return std::ranges::any_of(benchmark.entries, needs_child)
+             ? measure_guarded(measured, benchmark, hung, measure)
+             : measure(benchmark);
 }
 
 template CaseResult measure_case<2, float>(const Case&, Histories<2, float>, const Benchmark&,

@@ -191,7 +191,7 @@ class EmbreeCollide final : public Searcher<D> {
 /// Refits the hierarchy if few boxes moved, each only a little; rebuilds it otherwise.
 template <int D>
 class EmbreeFollower final : public PeerFollower<D> {
-  void build(std::span<const Box<D>>, std::span<const Box<D>>) override { is_built_ = false; }
+  void build(std::span<const Box<D>>, std::span<const Box<D>>) override { is_built_ = is_steady_ = false; }
 
   void move(const Change<D>& change) override {
     // A box that jumped, appeared or vanished spoils a refitted hierarchy. The builder of dynamic scenes

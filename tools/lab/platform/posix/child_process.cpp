@@ -28,6 +28,7 @@ namespace {
 struct Pipe {
   Pipe() {
     if (::pipe(ends.data()) != 0) ends = {-1, -1};
+    for (const int end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);
   }
   ~Pipe() {
     close_end(0);
@@ -91,21 +92,24 @@ struct Child {
   pid_t id;
 };
 
-[[noreturn]] void be_child(pid_t parent, int results, int output, ChildNote& note,
-                           const std::function<std::string(ChildNote&)>& work) {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+/// Ends the process if `work` throws: it must not unwind into the parent's code.
+[[noreturn]] void be_child(pid_t parent, Pipe& results, Pipe& output, ChildNote& note,
+                           const std::function<std::string(ChildNote&)>& work) noexcept {
+  results.close_end(0);  // so that writing ends this process once the parent is gone
+  output.close_end(0);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     if (std::signal(number, SIG_DFL) == SIG_IGN) std::signal(number, SIG_IGN);
   }
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
   if (getppid() != parent) _exit(1);
-  dup2(output, standard_output);
-  dup2(output, standard_error);
+  dup2(output.ends[1], standard_output);
+  dup2(output.ends[1], standard_error);
   const std::string result = work(note);
   std::fflush(nullptr);
   for (std::size_t done = 0; done < result.size();) {
-    const std::int64_t count = write(results, result.data() + done, result.size() - done);
+    const std::int64_t count = write(results.ends[1], result.data() + done, result.size() - done);
     if (count <= 0) _exit(1);
     done += static_cast<std::size_t>(count);
   }
@@ -146,7 +150,7 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string(ChildNote&)
   const pid_t parent = getpid();
   Child child(fork());
   if (child.id < 0) return std::nullopt;
-  if (child.id == 0) be_child(parent, results.ends[1], output.ends[1], *shared.note, work);
+  if (child.id == 0) be_child(parent, results, output, *shared.note, work);
   results.close_end(1);
   output.close_end(1);
   ChildEnd end;
