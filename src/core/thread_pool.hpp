@@ -14,9 +14,10 @@
 namespace broadside::core {
 
 /// Threads that sleep until there is something to run. run() may be called from several threads and from
-/// within tasks. The calling thread takes part, so run() needs no other thread to end. In a forked child of
-/// the process whose run() started the threads, these are gone, and the calling thread runs all tasks itself.
-/// But a run() that is in progress in the forking thread does not end in the child.
+/// within tasks. The calling thread takes part, so run() needs no other thread to end. The threads
+/// belong to the process that first calls run(). A forked child of that process does not have them: there,
+/// the calling thread runs all tasks itself. A run() that is in progress in the forking thread does not end
+/// in the child.
 class ThreadPool final : public Executor {
  public:
   /// `threads` includes the calling thread, and is at least 1. The others start with the first run() that can
@@ -35,15 +36,15 @@ class ThreadPool final : public Executor {
   /// Runs tasks of the job until all are taken.
   static void take_part(Job& job);
 
-  /// Whether the threads are those of this process, or none has started them yet, so that this one will. In a
-  /// forked child of another the mutex may stay locked for ever, if a thread of the parent held it.
+  /// Whether this process owns the threads; the first process that asks becomes their owner. A forked child
+  /// of the owner must not lock the mutex: a thread of the parent may have held it, and then it stays locked.
   bool is_of_this_process() noexcept;
 
   void start_helpers();
   void help();
 
   std::size_t threads_;
-  std::atomic<long> process_ = 0;  // this_process() of the process that starts the threads; 0: none has yet
+  std::atomic<long> process_ = 0;  // this_process() of the owner of the threads; 0: no owner yet
   std::mutex mutex_;               // guards all below, and a job's helpers
   std::condition_variable wake_;
   std::condition_variable done_;

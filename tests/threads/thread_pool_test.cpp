@@ -42,8 +42,7 @@ TEST(ThreadPool, CallsEachTaskOnceForAnyNumberOfThreads) {
   }
 }
 
-/// How many threads take part in two tasks, each of which takes until the other one has begun, or has had
-/// long enough to.
+/// The number of threads that run two tasks. Each task waits for the other one to begin, at most 20 seconds.
 std::size_t threads_of_two_tasks(ThreadPool& pool) {
   std::mutex mutex;
   std::set<std::thread::id> threads;

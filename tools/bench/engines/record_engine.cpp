@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
@@ -20,6 +19,7 @@
 
 #include "broadside/recorder.hpp"
 
+#include "bench/guarded.hpp"
 #include "lab/peers/rust/include/rust_peers.h"
 #include "lab/scenes/random.hpp"
 
@@ -355,23 +355,20 @@ void record(World& world, const Script& script, const char* name, std::size_t st
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) {
-    std::fprintf(stderr, "usage: record_engine ENGINE SCENE NAME [BODIES [STEPS [DROP]]]\n");
-    return 2;
-  }
-  const auto number = [&](int at, std::size_t otherwise) {
-    return argc > at ? std::strtoul(argv[at], nullptr, 10) : otherwise;
-  };
-  try {
+  return broadside::bench::guarded("record_engine", 1, [&] {
+    if (argc < 4 || argc > 7)
+      throw std::invalid_argument("expected ENGINE SCENE NAME [BODIES [STEPS [DROP]]]");
+    const auto number = [&](int place, std::size_t default_value) {
+      return broadside::bench::number_at(argc, argv, place, default_value);
+    };
     World world(argv[1], number(4, 1000));
-    const Script script = begin(argv[2], world);
+    const std::size_t steps = number(5, 450);
     const std::size_t drop = number(6, std::numeric_limits<std::size_t>::max());
+    const Script script = begin(argv[2], world);
     if (world.dimension() == 2)
-      record<2>(world, script, argv[3], number(5, 450), drop);
+      record<2>(world, script, argv[3], steps, drop);
     else
-      record<3>(world, script, argv[3], number(5, 450), drop);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "record_engine: %s\n", error.what());
-    return 1;
-  }
+      record<3>(world, script, argv[3], steps, drop);
+    return 0;
+  });
 }

@@ -48,8 +48,8 @@ History<D, Real> thinned(const History<D, Real>& history, std::size_t count, std
 }
 
 /// Measures the case by measure_find() or measure_track(). If peers or several threads take part, this runs
-/// in a child process, on systems that can copy a process. An algorithm that ends the child, or whose call
-/// takes longer than the effort's limit, has failed, and the others are measured again without it. `hung`
+/// in a child process if the system can copy a process. An algorithm fails if it ends the child or if a call
+/// takes longer than the limit of the effort. The others are then measured again without it. `hung`
 /// collects the algorithms that did not return; these are skipped.
 ///
 /// Throws Stopped.

@@ -97,9 +97,10 @@ class FindCase {
 
   /// The pairs that count: all of them, or in a case of two sets, those across the sets.
   std::vector<Pair> across(std::vector<Pair> pairs, std::size_t input) const {
-    if (const std::size_t left = left_of(input); case_.left > 0)
-      std::erase_if(pairs,
-                    [left](Pair pair) { return index(pair.second) < left || index(pair.first) >= left; });
+    if (case_.left == 0) return pairs;
+    const std::size_t left = left_of(input);
+    std::erase_if(pairs,
+                  [left](Pair pair) { return index(pair.second) < left || index(pair.first) >= left; });
     return pairs;
   }
 

@@ -101,7 +101,7 @@ std::string last_lines(std::string_view text) {
   return lines;
 }
 
-/// The algorithm whose code runs in this step; empty for none.
+/// The name of the algorithm whose code this step runs; empty if the step runs no algorithm.
 std::string_view algorithm_of(std::string_view step) {
   const std::size_t comma = step.find(", ");
   return comma == step.npos ? std::string_view() : step.substr(0, comma);
@@ -206,16 +206,15 @@ CaseResult measure_guarded(const Case& measured, const Benchmark& benchmark, std
     }
     const std::string algorithm(algorithm_of(end->last_step));
     const std::string text = last_lines(end->output);
-    const std::string how =
-        watch.hangs() ? fmt::format("did not return within {}", duration(limit_seconds))
-                      : fmt::format("ended the process: {}{}{}", end->how, text.empty() ? "" : ": ", text);
+    const std::string ended = end->how + (text.empty() ? "" : ": ") + text;
+    const std::string how = watch.hangs() ? fmt::format("did not return within {}", duration(limit_seconds))
+                                          : "ended the process: " + ended;
     const auto culprit = std::ranges::find(result.measurements, algorithm, &Measurement::algorithm);
     if (culprit == result.measurements.end()) {
       for (Measurement& measurement : result.measurements) {
         if (!measurement.reason.empty()) continue;
         measurement.outcome = Outcome::failed;
-        measurement.reason = fmt::format("the measuring process ended at '{}': {}{}{}", end->last_step,
-                                         end->how, text.empty() ? "" : ": ", text);
+        measurement.reason = fmt::format("the measuring process ended at '{}': {}", end->last_step, ended);
       }
       return result;
     }

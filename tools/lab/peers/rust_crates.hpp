@@ -136,8 +136,8 @@ class RustCrateFollower final : public Follower<D> {
   std::unique_ptr<RustFollower, Free> follower_;
 };
 
-/// The description of a library that does not take infinite boxes: what its peers have in common.
-Algorithm rust_crate(const char* crate_name);
+/// The description of a peer without its strategies. The library does not take infinite boxes.
+Algorithm rust_crate(const char* crate_name, std::string name, std::string summary, std::string source);
 
 template <int D>
 MakeSearcher<D> rust_searcher(std::string name, bool needs_length = false) {

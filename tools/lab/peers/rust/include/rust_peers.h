@@ -76,7 +76,7 @@ typedef struct RustVector {
 
 enum RustBodyKind { rust_body_static, rust_body_kinematic, rust_body_dynamic };
 
-/// A box, whose lengths are twice `half`, or a ball of radius half.at[0]. Angle and spin are about z.
+/// A box with sides of twice `half`, or a ball with the radius half.at[0]. The axis of angle and spin is z.
 typedef struct RustBody {
   RustVector position;
   RustVector half;
