@@ -74,8 +74,8 @@ TEST(CompareVerb, JoinsTwoSets) {
   const Ended ended = run(with(small, {"--left", "0.1", "--json", folder.file("out.json")}));
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("\nuniform, 2D, 200 boxes, 10 % joined with 90 %  "));
-  for (const Json& measurement : Json::parse(text_of(folder.file("out.json")))["measurements"])
-    EXPECT_EQ(measurement["left"], 0.1);
+  const Json json = Json::parse(text_of(folder.file("out.json")));
+  for (const Json& measurement : json["measurements"]) EXPECT_EQ(measurement["left"], 0.1);
   EXPECT_THAT(run(with(small, {"--left", "1"})).errors,
               HasSubstr("--left is 1; expected a fraction above 0"));
   EXPECT_THAT(run(with(small, {"--left", "0.5", "--moving", "0.1"})).errors,
