@@ -148,6 +148,7 @@ typedef struct broadside_find_options {
   size_t ignored_count;
   const broadside_executor* executor; /**< runs searches if the spec allows several threads; null: the library's */
   int quarantines; /**< 1: invalid boxes pair with nothing, instead of being refused */
+  int leaves_out_touching; /**< 1: boxes that only touch do not overlap: see half_open() in box.hpp */
 } broadside_find_options;
 
 BROADSIDE_API void broadside_find_options_init(broadside_find_options* options);
@@ -179,8 +180,8 @@ BROADSIDE_API broadside_status broadside_for_each_pairs(const broadside_boxes* b
 /** Finds pairs repeatedly, and keeps its memory from call to call. */
 typedef struct broadside_finder broadside_finder;
 
-/** Makes a finder for boxes of a kind. Of `options`, which may be null, only `algorithm`, `executor` and
- * `quarantines` count here; the executor must live as long as the finder. */
+/** Makes a finder for boxes of a kind. Of `options`, which may be null, only `algorithm`, `executor`,
+ * `quarantines` and `leaves_out_touching` count here; the executor must live as long as the finder. */
 BROADSIDE_API broadside_status broadside_finder_create(int api_version, broadside_kind kind,
                                                        const broadside_find_options* options,
                                                        broadside_finder** finder, broadside_error* error);

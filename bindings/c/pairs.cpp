@@ -22,6 +22,7 @@ template <typename Searching>
 void set_up(Searching& searching, const broadside_find_options& options, Executor* executor) {
   use(searching, executor);
   if (options.quarantines != 0) searching.set_bad_input(BadInput::quarantine);
+  searching.set_touching(options.leaves_out_touching == 0);
 }
 
 template <int D, typename Real>

@@ -37,9 +37,9 @@ enum class ResultForm { array, table, count };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
-                nb::handle quarantine) {
+                nb::handle quarantine, nb::handle touching) {
   const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
-                               ignored, truth(quarantine));
+                               ignored, truth(quarantine), truth(touching));
   const bool sorts = truth(sort);
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   std::vector<Pair> pairs = found(search, sorts);
@@ -72,7 +72,7 @@ void add_pairs(nb::module_& module) {
   module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
-             nb::arg("quarantine").none());
+             nb::arg("quarantine").none(), nb::arg("touching").none());
   module.def("invalid_rows", &invalid_rows, nb::arg("boxes").none());
 }
 

@@ -54,6 +54,7 @@ struct SearchArguments {
   std::vector<Filter> other_filters;
   IgnoredPairs ignored;
   bool quarantine = false;
+  bool touching = true;
 
   /// For boxes that are of the same kind.
   SearchArguments(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
@@ -64,12 +65,13 @@ struct SearchArguments {
 
   SearchArguments(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
                   nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs,
-                  bool quarantines)
+                  bool quarantines, bool counts_touching)
       : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
         threads(threads_of(max_threads, algorithm)),
         filters(python::filters(first_filters, boxes.size(), "filters")),
-        quarantine(quarantines) {
+        quarantine(quarantines),
+        touching(counts_touching) {
     if (!second.is_none()) take_other(first, second, second_filters);
     if (other && !ignored_pairs.is_none())
       throw std::invalid_argument("ignored pairs are given with two sets; expected them with one set alone");
@@ -89,6 +91,7 @@ struct SearchArguments {
       std::optional<ScopedWorkers<Finder<D, Real>>> use;
       if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(finder, threads, released);
       if (quarantine) finder.set_bad_input(BadInput::quarantine);
+      finder.set_touching(touching);
       const PairFilters which{filters, other_filters, &ignored};
       if (other)
         find_between(finder, pairs, which);

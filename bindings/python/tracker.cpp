@@ -19,8 +19,9 @@ namespace {
 /// Threads take turns.
 template <int D, typename Real>
 struct PyTracker {
-  PyTracker(const std::string& algorithm, std::size_t max_threads, bool quarantine)
+  PyTracker(const std::string& algorithm, std::size_t max_threads, bool quarantine, bool touching)
       : tracker(algorithm), threads(max_threads) {
+    tracker.set_touching(touching);
     if (quarantine) tracker.set_bad_input(BadInput::quarantine);
   }
 
@@ -70,12 +71,13 @@ void add_tracker(nb::module_& module) {
       });
   module.def(
       "make_tracker",
-      [](int dimension, bool has_doubles, const std::string& algorithm, nb::handle threads, bool quarantine) {
+      [](int dimension, bool has_doubles, const std::string& algorithm, nb::handle threads, bool quarantine,
+         bool touching) {
         return std::make_unique<AnyTracker>(bindings::kind_with(dimension, has_doubles), algorithm,
-                                            threads_of(threads, algorithm), quarantine);
+                                            threads_of(threads, algorithm), quarantine, touching);
       },
       nb::arg("dimension"), nb::arg("has_doubles"), nb::arg("algorithm"), nb::arg("threads").none(),
-      nb::arg("quarantine"));
+      nb::arg("quarantine"), nb::arg("touching"));
 }
 
 }  // namespace broadside::python

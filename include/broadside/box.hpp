@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -32,7 +33,8 @@ struct SupportedBox {
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
-/// Boxes are closed: two boxes that only touch overlap, and a degenerate box (min = max) is a valid point.
+/// Boxes are closed: two boxes that only touch overlap, unless half_open() or an option `touching` says
+/// otherwise, and a degenerate box (min = max) is a valid point.
 /// Coordinates are in the caller's unit, float or double. Infinite coordinates are allowed and have their
 /// usual meaning.
 ///
@@ -144,6 +146,29 @@ template <int D, typename Real>
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
     box.min[axis] -= margin;
     box.max[axis] += margin;
+  }
+  return box;
+}
+
+namespace detail {
+/// The greatest number below a finite number or +infinity.
+template <typename Real>
+[[nodiscard]] constexpr Real next_below(Real number) noexcept {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+  if (number == 0) return -std::numeric_limits<Real>::denorm_min();
+  const Bits bits = __builtin_bit_cast(Bits, number);
+  return __builtin_bit_cast(Real, number > 0 ? bits - 1 : bits + 1);
+}
+}  // namespace detail
+
+/// The box that stands for a half-open one, with the points min[a] <= p[a] < max[a] on every axis a: each max
+/// above min becomes the next lower number. So boxes that only touch do not overlap, and a point belongs to
+/// just one of the boxes that tile a region. On an axis with min = max, the box keeps its one coordinate.
+/// NaNs and absent boxes do not change.
+template <int D, typename Real>
+[[nodiscard]] constexpr Box<D, Real> half_open(Box<D, Real> box) noexcept {
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
+    if (box.min[axis] < box.max[axis]) box.max[axis] = detail::next_below(box.max[axis]);
   }
   return box;
 }

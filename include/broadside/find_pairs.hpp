@@ -26,6 +26,7 @@ struct BROADSIDE_CALLERS_VECTOR FindOptions {
   std::span<const Filter> right_filters{};  ///< as in PairFilters
   const IgnoredPairs* ignored = nullptr;    ///< as in PairFilters
   Executor* executor = nullptr;             ///< as in Workers
+  bool touching = true;                     ///< as Finder::set_touching()
 
   /// If not null, invalid boxes count as absent and are listed here, instead of being refused: see BadInput.
   std::vector<BoxId>* quarantined = nullptr;
@@ -40,6 +41,7 @@ void find_with(const FindOptions& options, const Search& search) {
   Workers workers = finder.workers();
   workers.executor = options.executor;
   finder.set_workers(workers);
+  finder.set_touching(options.touching);
   if (options.quarantined != nullptr) finder.set_bad_input(BadInput::quarantine);
   search(finder, PairFilters{options.filters, options.right_filters, options.ignored});
   if (options.quarantined != nullptr)
@@ -115,9 +117,10 @@ concept OtherBoxes = NoOptions<T> && !PairTarget<T>;
 /// or a function of a Pair or of a std::span<const Pair>. An exception from it ends the search. The spec and
 /// the boxes determine the order of pairs.
 ///
-/// Boxes are closed: touching counts. Exact in the precision of the boxes. Throws InvalidInput, naming the
-/// first box with a NaN or with min > max; InvalidFrame if there are filters, but not one for each box; and
-/// InvalidSpec. Thread-safe. For many calls, keep a Finder, which keeps its memory.
+/// Boxes are closed: touching counts, unless `options` say otherwise. Exact in the precision of the boxes.
+/// Throws InvalidInput, naming the first box with a NaN or with min > max; InvalidFrame if there are filters,
+/// but not one for each box; and InvalidSpec. Thread-safe. For many calls, keep a Finder, which keeps its
+/// memory.
 template <typename Boxes, PairTarget Target>
 void find_pairs(const Boxes& boxes, Target&& pairs, const FindOptions& options = {}) {
   if constexpr (BoxRange<Boxes>)

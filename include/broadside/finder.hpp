@@ -96,6 +96,11 @@ class BROADSIDE_PUBLIC Finder final {
   /// of the left set. Valid until the next call.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
+  /// Whether boxes that only touch overlap: they do, unless set_touching(false) was called. Each search then
+  /// takes a copy of the boxes as half_open() makes them. Exact. Costs one pass over the boxes.
+  [[nodiscard]] bool touching() const noexcept;
+  void set_touching(bool touching) noexcept;
+
   /// The threads to search with: one, unless the spec or set_workers() says otherwise. An algorithm without
   /// the tunable `threads` uses the calling thread alone.
   [[nodiscard]] const Workers& workers() const noexcept;

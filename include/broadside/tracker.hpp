@@ -108,6 +108,11 @@ class BROADSIDE_PUBLIC Tracker final {
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
+  /// Whether boxes that only touch overlap, as Finder::touching(). Applies to boxes as an update takes them,
+  /// so set it before the first one; last_frame() and box_index() have the boxes as half_open() makes them.
+  [[nodiscard]] bool touching() const noexcept;
+  void set_touching(bool touching) noexcept;
+
   /// The indexes, ascending, of the boxes that were invalid when they last changed. They count as absent.
   /// Valid until the next update.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;

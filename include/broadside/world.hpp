@@ -135,6 +135,10 @@ struct WorldOptions {
   /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
 
+  /// Whether boxes that only touch overlap. If not, the world keeps boxes as half_open() makes them, and
+  /// treats the boxes of overlapping() alike: box() returns the next lower maximum.
+  bool touching = true;
+
   /// Whether add() and move() reject invalid boxes or quarantine them. A quarantined box counts as absent
   /// until it is moved to a valid box; quarantined() lists these boxes.
   BadInput bad_input = BadInput::reject;
@@ -322,7 +326,7 @@ class BROADSIDE_PUBLIC World {
   /// changes since the query before.
   template <typename Function>
   bool overlapping(const Box<D, Real>& box, Function&& function, const QueryOptions& options = {}) const {
-    return box_index().overlapping(box, [&](BoxId id) { return function(handle_of(id)); },
+    return box_index().overlapping(as_kept(box), [&](BoxId id) { return function(handle_of(id)); },
                                    {options.filter, slot_of(options.except)});
   }
   template <typename Function>
@@ -432,6 +436,9 @@ class BROADSIDE_PUBLIC World {
   void join_into(const World& other, detail::Output<HandlePair>& pairs) const;
   void list_quarantined(detail::Output<Handle>& handles) const;
   void write_snapshot(detail::Output<std::byte>& bytes) const;
+
+  /// The box as the world keeps it: see WorldOptions::touching.
+  [[nodiscard]] Box<D, Real> as_kept(const Box<D, Real>& box) const noexcept;
 
   /// The slot; nothing if the box is not in the world.
   std::optional<BoxId> slot_of(const std::optional<Handle>& handle) const noexcept {

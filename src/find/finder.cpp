@@ -1,6 +1,7 @@
 // Finder: checks boxes before it searches, and delivers the pairs.
 #include "broadside/finder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <stdexcept>
@@ -95,9 +96,12 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
       throw InvalidFrame(core::message(
           {filters.right_filters.size(), " right filters for a search in one set; expected none"}));
     check_filters(filters.filters, view.size(), "");
-    const std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
+    std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
+    // Half-open boxes are checked before they are made, for messages to have the caller's numbers.
+    std::size_t absent = touching ? 0 : check(boxes, false);
+    if (!touching) boxes = half_open_boxes(boxes, gathered_[0]);
     const bool are_rounded = search_.round(boxes, workers);
-    const std::size_t absent = check(boxes, are_rounded);
+    if (touching) absent = check(boxes, are_rounded);
     return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find(boxes, {filters, workers, nullptr, absent, are_rounded}, sink);
     });
@@ -108,9 +112,13 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     const core::DefaultEnvironment environment;
     core::check_count(left_view.size() + right_view.size());
     check_filters(filters, left_view.size(), right_view.size());
-    const std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
-    const std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
+    std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
+    std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
     const std::size_t absent = check(left, right);
+    if (!touching) {
+      left = half_open_boxes(left, gathered_[0]);
+      right = half_open_boxes(right, gathered_[1]);
+    }
     return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_between(left, right, {filters, workers, nullptr, absent}, sink);
     });
@@ -125,6 +133,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
                                         "; expected at most ", boxes.size()}));
     }
     const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
+    if (!touching) boxes = half_open_boxes(boxes, gathered_[0]);
     return deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, sink);
     });
@@ -134,6 +143,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   std::string explanation() const { return search_.explanation(); }
 
   BadInput bad_input = BadInput::reject;
+  bool touching = true;
   Workers workers;
 
  private:
@@ -142,6 +152,14 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     if (boxes.is_array()) return {boxes.array(), boxes.size()};
     gathered.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) gathered[i] = boxes[i];
+    return gathered;
+  }
+
+  /// The half-open boxes in `gathered`, where `boxes` may be already.
+  static std::span<const Box<D, Real>> half_open_boxes(std::span<const Box<D, Real>> boxes,
+                                                       std::vector<Box<D, Real>>& gathered) {
+    gathered.resize(boxes.size());
+    std::transform(boxes.begin(), boxes.end(), gathered.begin(), half_open<D, Real>);
     return gathered;
   }
 
@@ -229,6 +247,16 @@ void Finder<D, Real>::set_bad_input(BadInput bad_input) noexcept {
 template <int D, typename Real>
 std::span<const BoxId> Finder<D, Real>::quarantined() const noexcept {
   return state_->quarantined();
+}
+
+template <int D, typename Real>
+bool Finder<D, Real>::touching() const noexcept {
+  return state_->touching;
+}
+
+template <int D, typename Real>
+void Finder<D, Real>::set_touching(bool touching) noexcept {
+  state_->touching = touching;
 }
 
 template <int D, typename Real>

@@ -47,7 +47,7 @@ class FrameStates {
     invalid_.clear();
     const auto copy = [this, boxes = frame.boxes, filters = frame.filters](std::size_t place) {
       flags_[place] = 1;
-      now_[place] = place < boxes.size() ? boxes[place] : absent_box<D, Real>();
+      now_[place] = place < boxes.size() ? taken(boxes[place]) : absent_box<D, Real>();
       if (!filters_now_.empty()) filters_now_[place] = place < filters.size() ? filters[place] : Filter{};
     };
     const auto take_once = [&](std::size_t place) {
@@ -135,7 +135,11 @@ class FrameStates {
                           quarantined_);
   }
 
+  bool touching = true;  ///< as in Tracker
+
  private:
+  Box<D, Real> taken(const Box<D, Real>& box) const noexcept { return touching ? box : half_open(box); }
+
   /// Takes every box as changed: array by array, without a look at the list.
   void take_all_boxes(const Frame<D, Real>& frame, std::size_t size, core::Parallel& parallel) {
     // Not a copy: another thread may have written to the list since it was checked.
@@ -144,7 +148,12 @@ class FrameStates {
     invalid_.clear();
     std::fill(flags_.begin(), flags_.end(), std::uint8_t{1});
     parallel.for_ranges(frame.boxes.size(), [&](core::Range range, std::size_t) {
-      std::copy_n(frame.boxes.data() + range.begin, range.size(), now_.data() + range.begin);
+      const auto some = frame.boxes.subspan(range.begin, range.size());
+      const auto to = now_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+      if (touching)
+        std::copy(some.begin(), some.end(), to);
+      else
+        std::transform(some.begin(), some.end(), to, half_open<D, Real>);
     });
     std::fill(now_.begin() + static_cast<std::ptrdiff_t>(frame.boxes.size()), now_.end(),
               absent_box<D, Real>());

@@ -193,6 +193,16 @@ void Tracker<D, Real>::set_bad_input(BadInput bad_input) noexcept {
 }
 
 template <int D, typename Real>
+bool Tracker<D, Real>::touching() const noexcept {
+  return state_->frames.touching;
+}
+
+template <int D, typename Real>
+void Tracker<D, Real>::set_touching(bool touching) noexcept {
+  state_->frames.touching = touching;
+}
+
+template <int D, typename Real>
 std::span<const BoxId> Tracker<D, Real>::quarantined() const noexcept {
   return state_->frames.quarantined();
 }

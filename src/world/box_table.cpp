@@ -48,7 +48,8 @@ BoxTable<D, Real>::BoxTable(const WorldOptions& options)
                .has_relative = options.relative_margin > 0},
       enlarges_(margins_.any()),
       boxes_make_pairs_(options.events == WorldEvents::exact),
-      quarantines_(options.bad_input == BadInput::quarantine) {
+      quarantines_(options.bad_input == BadInput::quarantine),
+      touching_(options.touching) {
   if (!boxes_make_pairs_ && !enlarges_) {
     throw std::invalid_argument(
         "a world reports enlarged boxes but enlarges none; expected a margin, a relative margin or a "
@@ -124,10 +125,12 @@ void BoxTable<D, Real>::set(std::span<const Handle> handles, BoxView<D, Real> gi
     const std::size_t count = std::min(handles_at_once, given.size() - begin);
     if (!quarantines_ && velocities.empty()) {
       const Box<D, Real>* boxes = copies.data();
-      if (given.is_array())
+      if (given.is_array() && touching_)
         boxes = given.array() + begin;
       else
-        std::copy_n(given.begin() + static_cast<std::ptrdiff_t>(begin), count, copies.begin());
+        std::transform(given.begin() + static_cast<std::ptrdiff_t>(begin),
+                       given.begin() + static_cast<std::ptrdiff_t>(begin + count), copies.begin(),
+                       [this](const Box<D, Real>& box) { return as_kept(box); });
       const std::span<const Handle> some = handles.subspan(begin, count);
       if (set_in_a_row(some, {boxes, count}) || set_scattered(some, {boxes, count})) continue;
     }
@@ -223,7 +226,7 @@ void BoxTable<D, Real>::list(std::vector<BoxId>& to, std::uint8_t mark,
 template <int D, typename Real>
 void BoxTable<D, Real>::reset(std::uint32_t slot, const Box<D, Real>& box) noexcept {
   if (enlarges_) enlarged_[slot] = absent_box<D, Real>();
-  set(slot, box, nullptr);
+  store(slot, box, nullptr);
 }
 
 template <int D, typename Real>

@@ -78,18 +78,19 @@ class BoxTable {
   /// enlarged boxes make pairs, a move within one affects only queries.
   void set(std::uint32_t slot, const Box<D, Real>& given, const Point<D, Real>* velocity) noexcept {
     // Without quarantine, check() has thrown for an invalid box.
-    const Box<D, Real> box = quarantines_ && !is_present(given) ? absent_box<D, Real>() : given;
-    if (enlarges_ && !margins_.keeps(enlarged_[slot], box, velocity)) return set_outside(slot, box, velocity);
-    boxes_[slot] = box;
-    if (boxes_make_pairs_) mark_changed(slot);
+    store(slot, quarantines_ && !is_present(given) ? absent_box<D, Real>() : as_kept(given), velocity);
   }
+
+  /// The box as the table keeps it.
+  Box<D, Real> as_kept(const Box<D, Real>& box) const noexcept { return touching_ ? box : half_open(box); }
 
   /// The same for many boxes; velocities for all of them or none. Skips slots that do not exist: another
   /// thread may have written to the caller's handles since they were checked.
   void set(std::span<const Handle> handles, BoxView<D, Real> boxes,
            std::span<const Point<D, Real>> velocities) noexcept;
 
-  /// Sets a slot's box, and enlarges it anew even if it is within its enlarged one.
+  /// Sets a slot's box, which is as the table keeps it, and enlarges it anew even if it is within its
+  /// enlarged one.
   void reset(std::uint32_t slot, const Box<D, Real>& box) noexcept;
 
   /// Sets a slot's filter in a table that keeps filters, and lists the slot.
@@ -131,6 +132,13 @@ class BoxTable {
   void list_in_a_row(std::uint32_t first, std::size_t count) noexcept;
   void list(std::vector<BoxId>& to, std::uint8_t mark, std::span<const std::uint32_t> slots) noexcept;
 
+  /// Sets a slot's box, which is as the table keeps it.
+  void store(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept {
+    if (enlarges_ && !margins_.keeps(enlarged_[slot], box, velocity)) return set_outside(slot, box, velocity);
+    boxes_[slot] = box;
+    if (boxes_make_pairs_) mark_changed(slot);
+  }
+
   void mark_changed(std::uint32_t slot) noexcept {
     if ((marks_[slot] & changed_mark) != 0) return;
     marks_[slot] |= changed_mark;
@@ -146,6 +154,7 @@ class BoxTable {
   bool enlarges_;
   bool boxes_make_pairs_;  // and not the enlarged ones
   bool quarantines_;
+  bool touching_;
   std::vector<Box<D, Real>> boxes_;     // absent in slots without a box
   std::vector<Box<D, Real>> enlarged_;  // empty if boxes are not enlarged
   std::vector<std::uint8_t> marks_;

@@ -116,7 +116,8 @@ void SnapshotCodec<D, Real>::encode(const Parts& parts, const Tracker& tracker,
           flag(parts.boxes.filters().is_used(), has_filters) |
           flag(parts.user_data.is_used(), has_user_data) | flag(parts.has_updated, was_updated) |
           flag(parts.is_settled(), was_settled) | flag(refiner.asks_about_all, refilters) |
-          flag(parts.options.events == WorldEvents::enlarged, tells_enlarged));
+          flag(parts.options.events == WorldEvents::enlarged, tells_enlarged) |
+          flag(!parts.options.touching, leaves_out_touching));
   out.put(parts.options.margin);
   out.put(parts.options.relative_margin);
   out.put(parts.options.predicted_frames);

@@ -36,7 +36,8 @@ inline constexpr std::uint32_t was_updated = 64;
 inline constexpr std::uint32_t was_settled = 128;
 inline constexpr std::uint32_t refilters = 256;
 inline constexpr std::uint32_t tells_enlarged = 512;
-inline constexpr std::uint32_t all_flags = 1023;
+inline constexpr std::uint32_t leaves_out_touching = 1024;
+inline constexpr std::uint32_t all_flags = 2047;
 
 // Flags of the tracker's last frame.
 inline constexpr int last_has_filters = 1;

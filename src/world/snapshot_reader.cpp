@@ -87,6 +87,7 @@ void SnapshotReader<D, Real>::read_options(const Parts& world, const WorldTracke
   options.margin = in_.get<double>();
   options.relative_margin = in_.version() < 3 ? 0 : in_.get<double>();
   options.predicted_frames = in_.version() < 3 ? 0 : in_.get<double>();
+  options.touching = !is_set(leaves_out_touching);
   options.events = is_set(tells_enlarged) ? WorldEvents::enlarged : WorldEvents::exact;
   const std::string spec = in_.text(in_.count(1, "characters of a spec"));
   try {

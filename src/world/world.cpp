@@ -250,6 +250,12 @@ const BoxIndex<D, Real>& World<D, Real>::box_index() const {
 }
 
 template <int D, typename Real>
+Box<D, Real> World<D, Real>::as_kept(const Box<D, Real>& box) const noexcept {
+  const core::DefaultEnvironment environment;
+  return state_->parts.boxes.as_kept(box);
+}
+
+template <int D, typename Real>
 Handle World<D, Real>::handle_of(BoxId slot) const noexcept {
   return state_->parts.slots.handle(slot);
 }

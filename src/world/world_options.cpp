@@ -56,6 +56,8 @@ const std::vector<WorldOption>& table() {
        }},
       {yes_or_no("keep_pairs", "keep the current pairs, which takes 16 bytes per pair", "yes"),
        [](WorldOptions& o, const Settings& s) { o.keep_pairs = s.text("keep_pairs") == "yes"; }},
+      {yes_or_no("touching", "count boxes that only touch as overlapping", "yes"),
+       [](WorldOptions& o, const Settings& s) { o.touching = s.text("touching") == "yes"; }},
       {yes_or_no("quarantine", "treat invalid boxes as absent instead of refusing them", "no"),
        [](WorldOptions& o, const Settings& s) {
          o.bad_input = s.text("quarantine") == "yes" ? BadInput::quarantine : BadInput::reject;

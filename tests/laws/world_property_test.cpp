@@ -22,6 +22,7 @@ WorldOptions any_options(Choices& choices) {
   if (choices.one_in(2)) options.predicted_frames = 2;
   const bool has_margin = options.margin > 0 || options.relative_margin > 0 || options.predicted_frames > 0;
   if (has_margin && choices.one_in(2)) options.events = WorldEvents::enlarged;
+  if (choices.one_in(3)) options.touching = false;
   if (choices.one_in(4)) options.bad_input = BadInput::quarantine;
   return options;
 }

@@ -173,12 +173,13 @@ class WorldHistory {
   /// Asks for what can be asked at any time.
   void look() {
     const Box<D, Real> place = course_.box(*choices_);
+    const Box<D, Real> kept = course_.options.touching ? place : half_open(place);
     if (attempt([&] { static_cast<void>(world_->box_index()); })) {
       std::vector<Handle> found;
       std::vector<Handle> expected;
       world_->overlapping(place, [&found](Handle handle) { found.push_back(handle); });
       for (const auto& [handle, its] : model_.members) {
-        if (is_present(its.box) && overlap(its.box, place)) expected.push_back(handle);
+        if (is_present(its.box) && overlap(its.box, kept)) expected.push_back(handle);
       }
       std::ranges::sort(found);
       expect(found == expected, "a query finds other boxes");

@@ -52,7 +52,8 @@ struct WorldModel {
   }
 
   /// Keeps the enlarged box while it contains the box and is at most six margins and the way ahead longer.
-  void move(Id id, const Box<D, Real>& box, const Point<D, Real>& velocity = {}) {
+  void move(Id id, const Box<D, Real>& given, const Point<D, Real>& velocity = {}) {
+    const Box<D, Real> box = options.touching ? given : half_open(given);
     Member& member = members.at(id);
     member.box = box;
     const Real margin = margin_of(box);

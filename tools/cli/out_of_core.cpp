@@ -50,7 +50,8 @@ lab::BoxFile open(const FileToRead& file) {
 template <int D, typename Real>
 class FileBoxes final : public BoxSource<D, Real> {
  public:
-  explicit FileBoxes(FileToRead file) : file_(std::move(file)) {
+  FileBoxes(FileToRead file, bool leaves_out_touching)
+      : file_(std::move(file)), leaves_out_touching_(leaves_out_touching) {
     open_again();
     estimated_ = reader().estimated_boxes();
   }
@@ -61,7 +62,10 @@ class FileBoxes final : public BoxSource<D, Real> {
   }
 
   bool next(std::vector<Box<D, Real>>& boxes) override {
-    if (reader().first_piece(boxes)) return true;
+    if (reader().first_piece(boxes)) {
+      if (leaves_out_touching_) std::ranges::transform(boxes, boxes.begin(), half_open<D, Real>);
+      return true;
+    }
     if (pass_ != told_pass) return false;
     Step<D, Real> step;
     if (reader().next(step))
@@ -89,6 +93,7 @@ class FileBoxes final : public BoxSource<D, Real> {
   static constexpr int told_pass = 2;
 
   FileToRead file_;
+  bool leaves_out_touching_;
   std::optional<lab::AnyFrameReader> frames_;
   std::uint64_t estimated_ = 0;
   int pass_ = 0;
@@ -187,7 +192,8 @@ Exit join(const PairsArguments& arguments, std::vector<FileToRead> files, const 
           JoinProgress& progress) {
   const lab::Stopwatch watch;
   std::vector<std::unique_ptr<FileBoxes<D, Real>>> sources;
-  for (FileToRead& file : files) sources.push_back(std::make_unique<FileBoxes<D, Real>>(std::move(file)));
+  for (FileToRead& file : files)
+    sources.push_back(std::make_unique<FileBoxes<D, Real>>(std::move(file), arguments.leaves_out_touching));
   const bool is_between = sources.size() == 2;
   std::optional<OutOfCoreJoin<D, Real>> join;
   if (is_between)
@@ -267,6 +273,7 @@ Exit join_out_of_core(const PairsArguments& arguments, const lab::Entry& entry) 
     for (FileToRead& file : files) file.options.precision = lab::Precision::float64;
   for (const FileToRead& file : files)
     options.identity += (options.identity.empty() ? "" : " with ") + identity_of(file, arguments.input);
+  if (arguments.leaves_out_touching) options.identity += " --no-touching";
   JoinProgress progress(options.folder);
   options.progress = std::ref(progress);
   options.warn = [&progress](std::string_view text) {

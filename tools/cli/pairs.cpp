@@ -63,6 +63,15 @@ class PairsCommand {
         sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
     }
+    // Not before both sets have the same precision: the next lower float is not the next lower double.
+    if (arguments.leaves_out_touching) {
+      for (lab::FrameOfFile& set : sets_)
+        std::visit(
+            [](auto& boxes) {
+              std::ranges::transform(boxes, boxes.begin(), [](const auto& box) { return half_open(box); });
+            },
+            set.boxes);
+    }
     read_ms_ = watch.milliseconds();
   }
 
@@ -109,9 +118,10 @@ class PairsCommand {
                       absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
-    return fmt::format("{} in {}D: {}{}, {}; read in {}, joined by {} in {}", sets,
+    return fmt::format("{} in {}D: {}{}{}, {}; read in {}, joined by {} in {}", sets,
                        lab::dimension(sets_[0].boxes), lab::counted(pairs, "pair", "pairs"),
                        arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
+                       arguments_.leaves_out_touching ? ", those that only touch left out" : "",
                        precision_text(), lab::duration(read_ms_ / 1e3), entry_.spec.text(),
                        lab::duration(join_ms_ / 1e3));
   }
@@ -251,6 +261,10 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
           "a few past corners")
       ->type_name("DISTANCE");
+  verb->add_flag(
+      "--no-touching", arguments->leaves_out_touching,
+      "Leave out boxes that only touch: boxes are half-open, without their maxima; a point or a line "
+      "on a boundary is in the box that begins there");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it affects the time, not the pairs")
       ->capture_default_str();

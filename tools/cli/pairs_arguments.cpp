@@ -159,6 +159,9 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
+  if (!arguments.within.empty() && arguments.leaves_out_touching)
+    throw Unusable(
+        "--no-touching with --within, which finds boxes that do not even touch; expected one or the other");
   if (arguments.order != "sorted" && arguments.order != "found")
     throw Unusable(fmt::format("--order is '{}'; expected sorted or found", arguments.order));
   // This check needs no file to be read.

@@ -290,6 +290,7 @@ class Tracker:
         algorithm: A spec: see `algorithms`.
         threads: The most threads; None: all cores, if there is enough to do.
         quarantine: Treat invalid boxes as absent instead of raising.
+        touching: Whether boxes that only touch overlap, as in `pairs`.
 
     Calls from several threads take turns. A tracker cannot be pickled or copied.
     """
@@ -304,12 +305,14 @@ class Tracker:
         algorithm: str = "auto",
         threads: int | None = None,
         quarantine: bool = False,
+        touching: bool = True,
     ) -> None:
         has_doubles = _has_doubles(dtype)
         self._dimension = _checked_dimension(dimension)
         self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
         self._tracker = _core.make_tracker(
-            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(quarantine)
+            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(quarantine),
+            bool(touching),
         )
 
     @property

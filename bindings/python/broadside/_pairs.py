@@ -32,6 +32,7 @@ def pairs(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
+    touching: bool = True,
 ) -> NDArray[np.uint32]: ...
 @overload
 def pairs(
@@ -48,6 +49,7 @@ def pairs(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
+    touching: bool = True,
 ) -> PairTable: ...
 @overload
 def pairs(
@@ -64,6 +66,7 @@ def pairs(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
+    touching: bool = True,
 ) -> Any: ...
 def pairs(
     boxes: Any,
@@ -79,8 +82,9 @@ def pairs(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
+    touching: bool = True,
 ) -> Any:
-    """Every pair of overlapping boxes, once; boxes are closed, so boxes that touch overlap.
+    """Every pair of overlapping boxes, once; boxes are closed, so boxes that touch overlap, unless `touching` is False.
 
     Args:
         boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. Arrays of float32 and float64
@@ -110,6 +114,8 @@ def pairs(
         other_filters: Likewise for `other`.
         ignored: Pairs that never count, shape (m, 2), in either order; of one set alone.
         quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
+        touching: Whether boxes that only touch overlap. If not, boxes are half-open: without their maxima, except on
+            an axis where minimum and maximum are equal. Exact.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
@@ -129,11 +135,11 @@ def pairs(
         boxes, other = _sets(boxes, other, columns, other_columns)
     try:
         if output == "numpy":
-            return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+            return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine, touching)
         if output == "arrow":
-            return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine)
+            return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine, touching)
         if output == "sparse":
-            return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine)
+            return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine, touching)
     except InvalidBoxError as error:
         error = _convert.with_other_conventions(error, boxes, "boxes", columns)
         raise _convert.with_other_conventions(error, other, "other", other_columns) from None
@@ -179,11 +185,12 @@ def count(
     other_filters: NDArray[np.void] | None = None,
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
+    touching: bool = True,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
     boxes, other = _sets(boxes, other, columns, other_columns)
     found: int = _find(
-        _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine
+        _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine, touching
     )
     return found
 

@@ -14,7 +14,7 @@ namespace broadside::wasm {
 namespace {
 
 /// The results of a search, as bits.
-enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4 };
+enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4, leaves_out_touching = 8 };
 
 /// The boxes of a search, and which of their pairs count.
 struct PairsCall {
@@ -48,6 +48,7 @@ class WasmFinder {
 
  private:
   void find(const PairsCall& search, PairSink& pairs) {
+    finder_.set_touching((search.mode & leaves_out_touching) == 0);
     const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     const PairFilters filters{filters_at(search.filters, search.count),
                               filters_at(search.right_filters, search.right_count)};
@@ -64,7 +65,7 @@ class WasmFinder {
 
 class WasmTracker {
  public:
-  explicit WasmTracker(std::string_view spec) : tracker_(spec) {}
+  WasmTracker(std::string_view spec, bool touching) : tracker_(spec) { tracker_.set_touching(touching); }
 
   /// Takes the next frame. `changed` lists the places where boxes or filters may differ from the frame
   /// before; if it is null, compares the frames.
@@ -94,7 +95,8 @@ class WasmTracker {
     const bool has_filters = !last.filters.empty() && !frame.filters.empty();
     changed_.clear();
     for (std::size_t i = 0; i < both; ++i) {
-      if (!equal(last.boxes[i], frame.boxes[i]) || (has_filters && last.filters[i] != frame.filters[i]))
+      const Box<dimension> now = tracker_.touching() ? frame.boxes[i] : half_open(frame.boxes[i]);
+      if (!equal(last.boxes[i], now) || (has_filters && last.filters[i] != frame.filters[i]))
         changed_.push_back(BoxId(i));
     }
   }
@@ -130,8 +132,9 @@ broadside_status finder_find(WasmFinder* finder, const float* boxes, std::size_t
   return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
 }
 
-BROADSIDE_EXPORT(tracker_make) broadside_status tracker_make(const char* spec, std::size_t size) {
-  return make_kept<WasmTracker>(std::string_view(spec, size));
+BROADSIDE_EXPORT(tracker_make)
+broadside_status tracker_make(const char* spec, std::size_t size, bool touching) {
+  return make_kept<WasmTracker>(std::string_view(spec, size), touching);
 }
 
 BROADSIDE_EXPORT(tracker_free) void tracker_free(WasmTracker* tracker) { delete tracker; }

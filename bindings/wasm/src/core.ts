@@ -20,7 +20,7 @@ export interface Exports {
     finder: number, boxes: number, count: number, right: number, rightCount: number, filters: number,
     rightFilters: number, mode: number,
   ): number;
-  tracker_make(spec: number, size: number): number;
+  tracker_make(spec: number, size: number, touching: boolean): number;
   tracker_free(tracker: number): void;
   tracker_update(
     tracker: number, boxes: number, count: number, changed: number, changedCount: number, filters: number,

@@ -49,6 +49,11 @@ export function checkOptions(options: object, known: readonly string[]): void {
   }
 }
 
+/** Refuses an option that is given and neither true nor false. */
+export function checkSwitch(name: string, value: unknown): void {
+  if (value !== undefined && typeof value !== "boolean") refuse(name, value, "true or false");
+}
+
 /** Whether options ask for a view of the module's memory rather than a copy. */
 export function asksForView(options: { readonly view?: unknown }): boolean {
   const { view = false } = options;

@@ -4,13 +4,13 @@ import type {
 } from "../types/types.d.ts";
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
-import { asksForView, checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, checkSwitch } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
-const enum Mode { counts = 1, sorts = 2, joins = 4 }
+const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8 }
 
-const countOptions = ["dimension", "algorithm", "filters"];
+const countOptions = ["dimension", "algorithm", "filters", "touching"];
 const pairsOptions = [...countOptions, "sorted", "view"];
 const countJoinOptions = [...countOptions, "rightFilters"];
 const joinOptions = [...pairsOptions, "rightFilters"];
@@ -53,7 +53,8 @@ export class Pairs {
     // Short, so that engines compile it and the loops that it calls as one function. What #meansFew() says of usual
     // options is looked at here, for calling it would take as long as comparing two boxes.
     if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
-        options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined ||
+        options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined &&
+        options.touching !== false ||
         this.#meansFew(options))) {
       if (this.#fewPairs.length === 0) this.#renewFew();
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
@@ -94,7 +95,7 @@ export class Pairs {
   #meansFew(options: PairsOptions): boolean {
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     const { algorithm } = options;
-    return options.filters === undefined &&
+    return options.filters === undefined && options.touching !== false &&
       (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
@@ -117,8 +118,8 @@ export class Pairs {
 
   #check(options: JoinOptions, known: readonly string[]): void {
     checkOptions(options, known);
-    if (options.sorted !== undefined && typeof options.sorted !== "boolean")
-      refuse("sorted", options.sorted, "true or false");
+    checkSwitch("touching", options.touching);
+    checkSwitch("sorted", options.sorted);
     asksForView(options);
     this.#lastChecked = known === pairsOptions ? options : undefined;
   }
@@ -153,7 +154,8 @@ export class Pairs {
     const at = put(core, boxes);
     const rightAt = right === undefined ? 0 : put(core, right);
     core.check(core.exports.finder_find(finder, at, count, rightAt, rightCount,
-      putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount), mode));
+      putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount),
+      options.touching === false ? mode | Mode.leavesOutTouching : mode));
   }
 
   #finder(algorithm: string): number {

@@ -6,12 +6,13 @@ import {
   type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters, putWords,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
-import { asksForView, checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 
 /** The module and the spec of an object that is made with options, checked. */
 export function specOf(cores: Cores, options: TrackerOptions): { core: Core; algorithm: string } {
-  checkOptions(options, ["dimension", "algorithm"]);
+  checkOptions(options, ["dimension", "algorithm", "touching"]);
+  checkSwitch("touching", options.touching);
   const core = cores.of(options.dimension);
   const { algorithm = core.algorithmFor(Infinity) } = options;
   if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
@@ -52,7 +53,7 @@ export class KeptTracker extends Kept implements Tracker {
   constructor(cores: Cores, options: TrackerOptions = {}) {
     const { core, algorithm } = specOf(cores, options);
     const { exports, dimension } = core;
-    super(core.make(algorithm, (spec, size) => exports.tracker_make(spec, size)),
+    super(core.make(algorithm, (spec, size) => exports.tracker_make(spec, size, options.touching !== false)),
       (address) => exports.tracker_free(address));
     this.#core = core;
     this.dimension = dimension;

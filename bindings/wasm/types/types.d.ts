@@ -41,6 +41,11 @@ export interface CountOptions {
   /** If left out, `"auto"`. `broadside/pairs` has only `brute_force` and `grid`, and chooses by the number of boxes. */
   readonly algorithm?: AlgorithmSpec;
   readonly filters?: Filters;
+  /**
+   * Whether boxes that only touch overlap: true by default. If not, boxes are half-open: without their maxima, except
+   * on an axis where minimum and maximum are equal.
+   */
+  readonly touching?: boolean;
 }
 
 export interface ResultOptions {
@@ -65,6 +70,8 @@ export interface JoinOptions extends CountJoinOptions, PairsOptions {}
 export interface TrackerOptions {
   readonly dimension?: Dimension;
   readonly algorithm?: AlgorithmSpec;
+  /** As in `CountOptions`. A world then keeps and returns each maximum as the next lower number. */
+  readonly touching?: boolean;
 }
 
 export interface WorldOptions extends TrackerOptions {

@@ -436,6 +436,27 @@ TEST_F(CPairs, QuarantineWhatIsInvalidWhereThatIsAskedFor) {
   broadside_finder_destroy(finder);
 }
 
+TEST(CTouching, IsLeftOutWhereThatIsAskedFor) {
+  const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}, {{1, 0}, {2, 1}}, {{0.5F, 0}, {1.5F, 1}}};
+  const broadside_boxes view = {BROADSIDE_FLOAT_2D, boxes.data(), boxes.size(), 0};
+  broadside_find_options options;
+  broadside_find_options_init(&options);
+  options.leaves_out_touching = 1;
+  std::uint64_t count = 0;
+  broadside_error error;
+  ASSERT_EQ(broadside_count_pairs(&view, nullptr, nullptr, &count, &error), BROADSIDE_OK);
+  EXPECT_EQ(count, 3U);
+  ASSERT_EQ(broadside_count_pairs(&view, nullptr, &options, &count, &error), BROADSIDE_OK);
+  EXPECT_EQ(count, 2U);
+  broadside_tracker* tracker = nullptr;
+  ASSERT_EQ(broadside_tracker_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &tracker, &error),
+            BROADSIDE_OK);
+  broadside_pair_events events;
+  ASSERT_EQ(broadside_tracker_update(tracker, &view, nullptr, 0, nullptr, &events, &error), BROADSIDE_OK);
+  EXPECT_EQ(events.begun_count, 2U);
+  broadside_tracker_destroy(tracker);
+}
+
 TEST(CErrors, CutALongMessageAtACharacter) {
   broadside_find_options options;
   broadside_find_options_init(&options);

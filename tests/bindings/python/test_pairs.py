@@ -118,6 +118,21 @@ def test_filters_pairs():
     assert as_set(broadside.pairs(boxes, boxes, filters=left, other_filters=right)) == {(i, 0) for i in range(5)}
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_leaves_out_boxes_that_only_touch(dtype):
+    tiles = np.array([[0, 0, 1, 1], [1, 0, 2, 1], [1, 0.5, 1, 0.5], [0.5, 0, 1.5, 1]], dtype)
+    assert broadside.count(tiles) == 6
+    expected = {(0, 3), (1, 2), (1, 3), (2, 3)}
+    assert as_set(broadside.pairs(tiles, touching=False)) == expected
+    assert broadside.count(tiles, tiles, touching=False) == 2 * len(expected) + len(tiles)
+    tracker = broadside.Tracker(2, dtype=dtype, touching=False)
+    begun, _ = tracker.update(tiles)
+    assert as_set(begun) == expected
+    world = broadside.World(2, dtype=dtype, touching=False)
+    world.add(tiles)
+    assert len(world.update().begun) == len(expected)
+
+
 def test_quarantines_invalid_boxes():
     boxes = scattered(100, dtype=np.float64)
     boxes[7, 0] = np.nan

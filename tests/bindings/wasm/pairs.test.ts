@@ -106,6 +106,24 @@ for (const dimension of dimensions) {
   });
 }
 
+test("boxes that only touch are left out", () => {
+  const tiles = new Float32Array([0, 0, 1, 1, 1, 0, 2, 1, 1, 0.5, 1, 0.5, 0.5, 0, 1.5, 1]);
+  const expected = [0, 3, 1, 2, 1, 3, 2, 3];
+  for (const { broadside } of builds) {
+    assert.equal(broadside.pairs(tiles).length, 12);
+    assert.deepEqual([...broadside.pairs(tiles, { touching: false, sorted: true })], expected);
+    assert.equal(broadside.countJoin(tiles, tiles, { touching: false }), 12);
+    assert.equal(broadside.count(tiles), 6);
+    assert.throws(() => broadside.pairs(tiles, { touching: 0 as never }), /touching is 0; expected true or false/);
+  }
+  const tracker = broadside.tracker({ touching: false });
+  assert.deepEqual([...tracker.update(tiles).begun], expected);
+  assert.deepEqual([...tracker.update(tiles).ended], []);
+  const world = broadside.world({ touching: false });
+  world.add(tiles);
+  assert.equal(world.update().begun.length, 2 * 4);
+});
+
 test("options that were given before are read anew", () => {
   const boxes = new Float32Array([0, 0, 2, 2, 1, 1, 3, 3]);
   const options: { filters?: Filters; algorithm?: string } = {};

@@ -287,6 +287,23 @@ TEST(PairsVerb, FindsWhatIsWithinADistance) {
                           });
 }
 
+TEST(PairsVerb, LeavesOutWhatOnlyTouches) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", four_boxes);
+  const Ended ended = run({"pairs", file, "--no-touching"});
+  EXPECT_EQ(ended.output, "first,second\n0,3\n");
+  EXPECT_THAT(ended.errors, HasSubstr("in 2D: 1 pair, those that only touch left out, exact in double"));
+  EXPECT_EQ(run({"pairs", file, "--no-touching", "--memory", "32M"}).output, ended.output);
+  EXPECT_EQ(run({"pairs", file, file, "--no-touching", "--count"}).output, "6\n");
+  // The float below 1 and the double below 1 differ: both files are doubles first.
+  const std::string narrow = folder.put("narrow.csv", "min_x,min_y,max_x,max_y\n0.99999999,0,2,2\n");
+  const std::string floats = folder.file("floats.npy");
+  const std::string tile = folder.put("tile.csv", "min_x,min_y,max_x,max_y\n0,0,1,1\n");
+  ASSERT_EQ(run({"convert", tile, "-o", floats, "--precision", "float"}).status, 0);
+  EXPECT_EQ(run({"pairs", floats, narrow, "--no-touching", "--count"}).output, "1\n");
+  expect_refused("pairs", {{{file, "--no-touching", "--within", "1"}, {"--no-touching with --within"}}});
+}
+
 TEST(PairsVerb, LeavesOutWhatIsInvalidAndSaysWhich) {
   const TemporaryFolder folder;
   const std::string table = folder.put("boxes.csv", four_boxes + "1,1,x,1\n0,0,9,9\n");
