@@ -17,6 +17,13 @@ auto collector(std::vector<broadside_pair>& pairs) {
   });
 }
 
+IgnoredPairs ignored_of(const broadside_find_options& options) {
+  IgnoredPairs ignored;
+  for (const broadside_pair& pair : array_of(options.ignored, options.ignored_count, "ignored"))
+    ignored.insert({BoxId{pair.first}, BoxId{pair.second}});
+  return ignored;
+}
+
 /// Sets what finders and trackers have in common.
 template <typename Searching>
 void set_up(Searching& searching, const broadside_find_options& options, Executor* executor) {
@@ -36,13 +43,11 @@ struct FinderImpl {
             PairSink& found) {
     std::vector<Filter> left_filters;
     std::vector<Filter> right_filters;
-    IgnoredPairs ignored;
+    const IgnoredPairs ignored = ignored_of(options);
     take_filters(options.filters, boxes.count, left_filters);
     if (right == nullptr && options.right_filters != nullptr)
       throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
     if (right != nullptr) take_filters(options.right_filters, right->count, right_filters);
-    for (const broadside_pair& pair : array_of(options.ignored, options.ignored_count, "ignored"))
-      ignored.insert({BoxId{pair.first}, BoxId{pair.second}});
     const PairFilters filters{left_filters, right_filters, ignored.empty() ? nullptr : &ignored};
     if (right == nullptr)
       finder.find(view_of<D, Real>(boxes), found, filters);
@@ -110,6 +115,37 @@ broadside_status broadside_for_each_pairs(const broadside_boxes* boxes, const br
         throw StatusError(BROADSIDE_STOPPED, "a callback asked to stop");
     });
     find_once(boxes, right, options, sink);
+  });
+}
+
+broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const size_t* offsets,
+                                            size_t worlds, const broadside_find_options* given,
+                                            broadside_pair* pairs, size_t room, size_t* pair_offsets,
+                                            broadside_error* error) {
+  return guarded(error, [&] {
+    array_of(pairs, room, "pairs");
+    required(offsets, "offsets");
+    required(pair_offsets, "pair_offsets");
+    const broadside_find_options options = options_of(given, options_name);
+    if (options.right_filters != nullptr)
+      throw std::invalid_argument("right_filters are given for a batch; expected null");
+    const auto executor = make_executor(options.executor);
+    std::vector<Filter> filters;
+    take_filters(options.filters, required(boxes, "boxes").count, filters);
+    const IgnoredPairs ignored = ignored_of(options);
+    std::vector<BoxId> quarantined;
+    const FindOptions which{.algorithm = spec_of(options.algorithm),
+                            .filters = filters,
+                            .ignored = &ignored,
+                            .executor = executor.get(),
+                            .touching = options.leaves_out_touching == 0,
+                            .quarantined = options.quarantines != 0 ? &quarantined : nullptr};
+    const BatchPairs found = with_kind(boxes->kind, [&]<int D, typename Real>() {
+      return find_pairs_batch(view_of<D, Real>(*boxes), {offsets, worlds + 1}, which);
+    });
+    std::ranges::copy(found.offsets, pair_offsets);
+    copy_as(std::span(found.pairs).first(std::min(found.pairs.size(), room)), pairs);
+    if (found.pairs.size() > room) throw too_small(room, "pairs", found.pairs.size());
   });
 }
 

@@ -1,9 +1,11 @@
 // All pairs of one set of boxes, or of two.
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include <nanobind/stl/string.h>
 
+#include "broadside/batch.hpp"
 #include "broadside/sinks.hpp"
 
 #include "bindings/python/arrow.hpp"
@@ -48,6 +50,36 @@ nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algor
   return array_of<std::uint32_t>(std::move(pairs));
 }
 
+/// The pairs of many worlds, and the offsets of each world's.
+nb::tuple find_batch(nb::handle boxes, nb::handle offsets, nb::handle algorithm, nb::handle threads,
+                     nb::handle filters, nb::handle ignored, nb::handle quarantine, nb::handle touching) {
+  const SearchArguments search(boxes, nb::none(), text(algorithm, "algorithm"), threads, filters, nb::none(),
+                               ignored, truth(quarantine), truth(touching));
+  const std::vector<std::uint64_t> given =
+      integers(offsets, "offsets", std::numeric_limits<std::int64_t>::max());
+  const std::vector<std::size_t> worlds(given.begin(), given.end());
+  std::vector<Pair> pairs;
+  std::vector<std::size_t> begins(worlds.size());
+  with_kind(search.boxes.kind(), [&]<int D, typename Real>() {
+    without_gil([&](WithoutGil& released) {
+      Workers workers = Finder<D, Real>(search.algorithm).workers();
+      if (search.threads != from_spec) workers.threads = search.threads;
+      workers.checkpoint = [&released] { released.check_signals(); };
+      const BoxView<D, Real> all = search.boxes.boxes<D, Real>();
+      PairCollector collector(pairs, all.size());
+      std::vector<BoxId> places;
+      detail::OutputTo<std::vector<BoxId>> quarantined(places);
+      detail::find_pairs_batch(
+          all, worlds, search.algorithm, workers, {.filters = search.filters, .ignored = &search.ignored},
+          static_cast<PairSink&>(collector), begins, search.touching, search.quarantine ? &quarantined : nullptr);
+      return 0;
+    });
+    return 0;
+  });
+  return nb::make_tuple(array_of<std::uint32_t>(std::move(pairs)),
+                        array_of(std::vector<std::int64_t>(begins.begin(), begins.end())));
+}
+
 /// The places of invalid boxes.
 nb::object invalid_rows(nb::handle boxes) {
   const Rows rows = Rows::of_boxes_or_empty(boxes, "boxes");
@@ -73,6 +105,9 @@ void add_pairs(nb::module_& module) {
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
              nb::arg("quarantine").none(), nb::arg("touching").none());
+  module.def("find_batch", &find_batch, nb::arg("boxes").none(), nb::arg("offsets"),
+             nb::arg("algorithm").none(), nb::arg("threads").none(), nb::arg("filters").none(),
+             nb::arg("ignored").none(), nb::arg("quarantine").none(), nb::arg("touching").none());
   module.def("invalid_rows", &invalid_rows, nb::arg("boxes").none());
 }
 

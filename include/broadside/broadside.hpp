@@ -3,6 +3,7 @@
 
 // IWYU pragma: begin_exports
 #include "broadside/algorithm.hpp"
+#include "broadside/batch.hpp"
 #include "broadside/box.hpp"
 #include "broadside/box_view.hpp"
 #include "broadside/error.hpp"

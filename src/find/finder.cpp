@@ -1,7 +1,6 @@
 // Finder: checks boxes before it searches, and delivers the pairs.
 #include "broadside/finder.hpp"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <stdexcept>
@@ -14,71 +13,17 @@
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 #include "core/message.hpp"
+#include "find/deliver.hpp"
 #include "find/search.hpp"
 
 namespace broadside {
 namespace {
 
-void check_filters(std::span<const Filter> filters, std::size_t boxes, const char* set) {
-  if (filters.empty() || filters.size() == boxes) return;
-  throw InvalidFrame(core::message(
-      {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
-}
-
 void check_filters(const PairFilters& filters, std::size_t left, std::size_t right) {
   if (filters.ignored != nullptr && !filters.ignored->empty())
     throw InvalidFrame("ignored pairs for a search between two sets; expected none");
-  check_filters(filters.filters, left, " left");
-  check_filters(filters.right_filters, right, " right");
-}
-
-/// Calls the caller's sink in the caller's environment. It is no FilterSink, so searches cannot bypass it.
-class CallersSink final : public PairSink {
- public:
-  explicit CallersSink(PairSink& target) : target_(&target) {}
-  explicit CallersSink(std::unique_ptr<PairSink> owned) : target_(owned.get()), owned_(std::move(owned)) {}
-
-  std::unique_ptr<PairSink> empty_clone() const override {
-    const core::CallersEnvironment environment;
-    std::unique_ptr<PairSink> clone = target_->empty_clone();
-    return clone == nullptr ? nullptr : std::make_unique<CallersSink>(std::move(clone));
-  }
-
-  void merge(PairSink& clone) override {
-    const core::CallersEnvironment environment;
-    target_->merge(*static_cast<CallersSink&>(clone).target_);
-  }
-
- private:
-  void consume(std::span<const Pair> pairs) override {
-    const core::CallersEnvironment environment;
-    target_->put(pairs);
-  }
-
-  PairSink* target_;
-  std::unique_ptr<PairSink> owned_;
-};
-
-/// Delivers the pairs of search(sink) to the caller's sink, in the caller's environment, and flushes it.
-/// Discards what a failed search has left in its buffer. Returns what the search returns.
-template <typename Search>
-auto deliver(const core::DefaultEnvironment& environment, PairSink& pairs, const Search& search) {
-  try {
-    if (!environment.is_foreign()) {
-      const auto result = search(pairs);
-      pairs.flush();
-      return result;
-    }
-    CallersSink sink(pairs);
-    const auto result = search(sink);
-    sink.flush();
-    const core::CallersEnvironment callers;
-    pairs.flush();
-    return result;
-  } catch (...) {
-    pairs.discard();
-    throw;
-  }
+  find::check_filters(filters.filters, left, " left");
+  find::check_filters(filters.right_filters, right, " right");
 }
 
 }  // namespace
@@ -92,17 +37,14 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   std::optional<Statistics> find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {
     const core::DefaultEnvironment environment;
     core::check_count(view.size());
-    if (!filters.right_filters.empty())
-      throw InvalidFrame(core::message(
-          {filters.right_filters.size(), " right filters for a search in one set; expected none"}));
-    check_filters(filters.filters, view.size(), "");
-    std::span<const Box<D, Real>> boxes = array_of(view, gathered_[0]);
+    find::check_filters(filters, view.size());
+    std::span<const Box<D, Real>> boxes = find::array_of(view, gathered_[0]);
     // Half-open boxes are checked before they are made, for messages to have the caller's numbers.
     std::size_t absent = touching ? 0 : check(boxes, false);
-    if (!touching) boxes = half_open_boxes(boxes, gathered_[0]);
+    if (!touching) boxes = find::half_open_boxes(boxes, gathered_[0]);
     const bool are_rounded = search_.round(boxes, workers);
     if (touching) absent = check(boxes, are_rounded);
-    return deliver(environment, pairs, [&](PairSink& sink) {
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find(boxes, {filters, workers, nullptr, absent, are_rounded}, sink);
     });
   }
@@ -112,14 +54,14 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     const core::DefaultEnvironment environment;
     core::check_count(left_view.size() + right_view.size());
     check_filters(filters, left_view.size(), right_view.size());
-    std::span<const Box<D, Real>> left = array_of(left_view, gathered_[0]);
-    std::span<const Box<D, Real>> right = array_of(right_view, gathered_[1]);
+    std::span<const Box<D, Real>> left = find::array_of(left_view, gathered_[0]);
+    std::span<const Box<D, Real>> right = find::array_of(right_view, gathered_[1]);
     const std::size_t absent = check(left, right);
     if (!touching) {
-      left = half_open_boxes(left, gathered_[0]);
-      right = half_open_boxes(right, gathered_[1]);
+      left = find::half_open_boxes(left, gathered_[0]);
+      right = find::half_open_boxes(right, gathered_[1]);
     }
-    return deliver(environment, pairs, [&](PairSink& sink) {
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_between(left, right, {filters, workers, nullptr, absent}, sink);
     });
   }
@@ -133,8 +75,8 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
                                         "; expected at most ", boxes.size()}));
     }
     const std::size_t absent = check(boxes.first(left_count), boxes.subspan(left_count));
-    if (!touching) boxes = half_open_boxes(boxes, gathered_[0]);
-    return deliver(environment, pairs, [&](PairSink& sink) {
+    if (!touching) boxes = find::half_open_boxes(boxes, gathered_[0]);
+    return find::deliver(environment, pairs, [&](PairSink& sink) {
       return search_.find_across(boxes, left_count, {{}, workers, nullptr, absent}, sink);
     });
   }
@@ -147,22 +89,6 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
   Workers workers;
 
  private:
-  /// The boxes as an array: the caller's array, or a copy in `gathered`.
-  static std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& gathered) {
-    if (boxes.is_array()) return {boxes.array(), boxes.size()};
-    gathered.resize(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) gathered[i] = boxes[i];
-    return gathered;
-  }
-
-  /// The half-open boxes in `gathered`, where `boxes` may be already.
-  static std::span<const Box<D, Real>> half_open_boxes(std::span<const Box<D, Real>> boxes,
-                                                       std::vector<Box<D, Real>>& gathered) {
-    gathered.resize(boxes.size());
-    std::transform(boxes.begin(), boxes.end(), gathered.begin(), half_open<D, Real>);
-    return gathered;
-  }
-
   std::size_t check(std::span<const Box<D, Real>> boxes, bool are_present) {
     const std::size_t absent = are_present ? 0 : search_.check_and_count_absent(boxes, workers, bad_input);
     quarantined_.clear();

@@ -17,7 +17,7 @@ from broadside._errors import (
 )
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
 from broadside._motion import Events, Tracker, World
-from broadside._pairs import PairTable, count, filters, invalid_rows, pairs
+from broadside._pairs import BatchPairs, PairTable, count, filters, find_pairs_batch, invalid_rows, pairs
 from broadside._partition import Assignment, Partition
 from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
 
@@ -25,6 +25,7 @@ __all__ = [
     "Advice",
     "Algorithm",
     "Assignment",
+    "BatchPairs",
     "Drawing",
     "Events",
     "FileError",
@@ -48,6 +49,7 @@ __all__ = [
     "count",
     "draw",
     "filters",
+    "find_pairs_batch",
     "invalid_rows",
     "pairs",
     "read",

@@ -55,6 +55,18 @@ def given(found: Any, name: str, columns: Columns | None) -> Any:
     return found if columns is None else boxes(found, name, columns)
 
 
+def worlds(found: Any, name: str) -> tuple[Rows, NDArray[np.int64]]:
+    """The rows of an array of shape (worlds, n, columns), and the offsets of the worlds."""
+    array = _as_array(found, name, _Boxes(name, None))
+    if array.ndim != 3:
+        raise ValueError(
+            f"{name} has shape {array.shape} and no offsets are given; expected offsets, or the shape (worlds, n, 4) or "
+            "(worlds, n, 6)"
+        )
+    count, size, columns = array.shape
+    return array.reshape(count * size, columns), np.arange(count + 1, dtype=np.int64) * size
+
+
 def rows_of(found: Any, name: str, columns: int, are_doubles: bool) -> Rows:
     """Rows of so many float64, or float32 if they hold the numbers exactly. An empty list or tuple is no rows."""
     if is_empty_sequence(found):

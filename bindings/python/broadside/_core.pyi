@@ -94,6 +94,16 @@ def find(
     quarantine: object,
     touching: object,
 ) -> Any: ...
+def find_batch(
+    boxes: object,
+    offsets: object,
+    algorithm: object,
+    threads: SupportsInt | None,
+    filters: object | None,
+    ignored: object | None,
+    quarantine: object,
+    touching: object,
+) -> tuple[NDArray[np.uint32], NDArray[np.int64]]: ...
 def invalid_rows(boxes: object) -> NDArray[np.int64]: ...
 def make_index(boxes: object, filters: object | None) -> Index: ...
 def make_partition(sample: object, parts: int, boxes: int) -> Partition: ...

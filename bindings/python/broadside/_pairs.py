@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Literal, overload
+from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -133,13 +133,14 @@ def pairs(
     """
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
+    which = (threads, filters, other_filters, ignored, quarantine, touching)
     try:
         if output == "numpy":
-            return _find(_ARRAY, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine, touching)
+            return _find(_ARRAY, boxes, other, algorithm, sort, *which)
         if output == "arrow":
-            return _find(_core.TABLE, boxes, other, algorithm, sort, threads, filters, other_filters, ignored, quarantine, touching)
+            return _find(_core.TABLE, boxes, other, algorithm, sort, *which)
         if output == "sparse":
-            return _sparse(boxes, other, algorithm, threads, filters, other_filters, ignored, quarantine, touching)
+            return _sparse(boxes, other, algorithm, *which)
     except InvalidBoxError as error:
         error = _convert.with_other_conventions(error, boxes, "boxes", columns)
         raise _convert.with_other_conventions(error, other, "other", other_columns) from None
@@ -193,6 +194,51 @@ def count(
         _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine, touching
     )
     return found
+
+
+class BatchPairs(NamedTuple):
+    """The pairs of many worlds, world by world: those of world i are ``pairs[offsets[i] : offsets[i + 1]]``."""
+
+    pairs: NDArray[np.uint32]
+    """Shape (k, 2), counted from the first box of each pair's world."""
+    offsets: NDArray[np.int64]
+    """Where each world's pairs begin, and the number of all pairs."""
+
+
+def find_pairs_batch(
+    boxes: Any,
+    offsets: ArrayLike | None = None,
+    *,
+    algorithm: str = "auto",
+    threads: int | None = None,
+    columns: Columns | None = None,
+    filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+    touching: bool = True,
+) -> BatchPairs:
+    """The pairs of many small worlds in one call: those that `pairs` finds for each world alone, in the same order.
+
+    Args:
+        boxes: The boxes of all worlds, one world after another, whatever `pairs` takes; or, without offsets, an array
+            of shape (worlds, n, 4) or (worlds, n, 6). There, a world with fewer boxes than others has absent ones.
+        offsets: World i has the rows from ``offsets[i]`` up to ``offsets[i + 1]``: one more number than there are
+            worlds, ascending, from 0 to the number of boxes.
+        algorithm: As in `pairs`.
+        threads: The most threads, which share the worlds; None: all cores.
+        columns: As in `pairs`.
+        filters: A filter for each box of all worlds.
+        ignored: Pairs that count in no world, shape (m, 2), counted from the first box of each world.
+        quarantine: Leave invalid boxes out instead of raising.
+        touching: As in `pairs`.
+
+    Raises as `pairs` does; ``row`` of an InvalidBoxError counts from the first box of all worlds, and the text names
+    the world as well.
+    """
+    if offsets is None:
+        boxes, offsets = _convert.worlds(boxes, "boxes")
+    boxes = _convert.given(boxes, "boxes", columns)
+    return BatchPairs(*_core.find_batch(boxes, offsets, algorithm, threads, filters, ignored, quarantine, touching))
 
 
 def filters(

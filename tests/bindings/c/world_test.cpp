@@ -357,6 +357,50 @@ TEST_F(CPairs, StopWhereTheCallbackAsksFor) {
             BROADSIDE_STOPPED);
 }
 
+TEST_F(CPairs, OfManyWorldsAreThoseOfEach) {
+  const std::size_t offsets[] = {0, 0, 1'000, 1'500, 3'000};
+  std::size_t pair_offsets[5];
+  ASSERT_EQ(broadside_find_pairs_batch(&view_, offsets, 4, nullptr, nullptr, 0, pair_offsets, &error_),
+            BROADSIDE_TOO_SMALL);
+  std::vector<broadside_pair> pairs(pair_offsets[4]);
+  broadside_find_options options;
+  broadside_find_options_init(&options);
+  options.algorithm = "auto:threads=2";
+  ASSERT_EQ(broadside_find_pairs_batch(&view_, offsets, 4, &options, pairs.data(), pairs.size(), pair_offsets,
+                                       &error_),
+            BROADSIDE_OK)
+      << error_.message;
+  for (std::size_t world = 0; world < 4; ++world) {
+    const auto expected =
+        find_pairs(std::span(boxes_).subspan(offsets[world], offsets[world + 1] - offsets[world]));
+    ASSERT_EQ(pair_offsets[world + 1] - pair_offsets[world], expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const broadside_pair& pair = pairs[pair_offsets[world] + i];
+      ASSERT_EQ((Pair{BoxId{pair.first}, BoxId{pair.second}}), expected[i]);
+    }
+  }
+}
+
+TEST_F(CPairs, OfManyWorldsRefuseWhatCannotBe) {
+  std::size_t offsets[] = {0, 2'000, 3'000};
+  std::size_t pair_offsets[3] = {7, 7, 7};
+  std::vector<Box2> boxes = boxes_;
+  const broadside_boxes view = {BROADSIDE_FLOAT_2D, boxes.data(), boxes.size(), 0};
+  const auto status = [&] {
+    return broadside_find_pairs_batch(&view, offsets, 2, nullptr, nullptr, 0, pair_offsets, &error_);
+  };
+  boxes[2'005].min[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(status(), BROADSIDE_INVALID_INPUT);
+  EXPECT_EQ(error_.index, 2'005U);
+  EXPECT_NE(std::string(error_.message).find("box 5 of world 1"), std::string::npos) << error_.message;
+  boxes = boxes_;
+  offsets[2] = 2'999;
+  EXPECT_EQ(status(), BROADSIDE_INVALID_FRAME);
+  EXPECT_EQ(broadside_find_pairs_batch(&view, nullptr, 2, nullptr, nullptr, 0, pair_offsets, &error_),
+            BROADSIDE_INVALID_ARGUMENT);
+  EXPECT_EQ(pair_offsets[0], 7U);
+}
+
 TEST_F(CPairs, AreFoundInStructsOfTheCallers) {
   struct Body {
     char name[3];
