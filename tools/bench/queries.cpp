@@ -38,16 +38,21 @@ struct QueryRacer {
   std::string name;
   std::function<Answers()> ask;
   std::function<Answers()> expected{};  // empty: the first racer's answers
-  std::vector<double> samples{};        // ns per query
+  std::function<Answers()> reread{};  // outside the time: what the last ask() found; empty: what it returned
+  std::vector<double> samples{};      // ns per query
 };
 
 void race(const std::string& what, std::vector<QueryRacer> participants, std::size_t queries,
           std::size_t rounds) {
-  const Answers all_expected = participants.front().ask();
+  const auto ask = [](const QueryRacer& participant) {
+    const Answers found = participant.ask();
+    return participant.reread ? participant.reread() : found;
+  };
+  const Answers all_expected = ask(participants.front());
   std::vector<Answers> answers;
   for (const QueryRacer& participant : participants) {
     const Answers expected = participant.expected ? participant.expected() : all_expected;
-    answers.push_back(participant.ask());
+    answers.push_back(ask(participant));
     if (answers.back() != expected)
       throw std::runtime_error(fmt::format("{}: {} found {}; expected the {} that {} found, the same ones",
                                            what, participant.name, answers.back().count, expected.count,
@@ -58,8 +63,9 @@ void race(const std::string& what, std::vector<QueryRacer> participants, std::si
       const std::size_t turn = (i + round) % participants.size();
       QueryRacer& participant = participants[turn];
       const lab::Stopwatch watch;
-      const Answers found = participant.ask();
+      Answers found = participant.ask();
       participant.samples.push_back(watch.milliseconds() * 1e6 / static_cast<double>(queries));
+      if (participant.reread) found = participant.reread();
       if (found != answers[turn]) throw std::runtime_error(participant.name + " changed its answer");
     }
   }
@@ -117,6 +123,8 @@ class BenchedQueries {
     }
     race(fmt::format("{}D ray, first hit", D), first, rays.size(), rounds_);
     race(fmt::format("{}D ray, all hits", D), all, rays.size(), rounds_);
+    nearest(1, doubles);
+    nearest(10, doubles);
     move_one();
   }
 
@@ -143,6 +151,56 @@ class BenchedQueries {
         participants.push_back({peer->name(), [&queries, &peer] { return peer->overlapping(queries); }});
     }
     race(fmt::format("{}D {}", D, what), participants, queries.size(), rounds_);
+  }
+
+  /// The `count` boxes nearest to any place. A library that computes in double may find another box where
+  /// distances differ by less than a float tells, and is compared with an index of doubles.
+  void nearest(std::size_t count, const BoxIndex<D, double>& doubles) {
+    std::vector<Point<D, float>> points(queries_);
+    std::ranges::generate(points, [this] { return any_point(); });
+    std::vector<Point<D, double>> double_points(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) std::ranges::copy(points[i], double_points[i].begin());
+    const std::vector<Box<D, double>> double_boxes = boxes_in_double(boxes_);
+    std::vector<Pair> found;
+    found.reserve(count * points.size());
+    const auto in_float = [&] { return lab::peers::distances<D, float>(points, boxes_, found); };
+    const auto in_doubles = [&] {
+      return lab::peers::distances<D, double>(double_points, double_boxes, found);
+    };
+    const auto asks = [&found](const auto& ask) {
+      return [&found, ask] {
+        found.clear();
+        ask();
+        return Answers{.count = found.size(), .hash = 0};
+      };
+    };
+    std::vector<QueryRacer> participants = {
+        {.name = "broadside",
+         .ask = asks([&] { own_nearest<float>(index_, points, count, found); }),
+         .reread = in_float}};
+    for (const auto& peer : peers_) {
+      if (!peer->has_nearest()) continue;
+      participants.push_back({.name = peer->name(),
+                              .ask = asks([&] { peer->nearest(points, count, found); }),
+                              .reread = in_float});
+      if (!peer->computes_in_double()) continue;
+      participants.back().reread = in_doubles;
+      participants.back().expected = [&] {
+        found.clear();
+        own_nearest<double>(doubles, double_points, count, found);
+        return in_doubles();
+      };
+    }
+    race(fmt::format("{}D nearest {}", D, count), participants, points.size(), rounds_);
+  }
+
+  template <typename Real>
+  static void own_nearest(const BoxIndex<D, Real>& index, std::span<const Point<D, Real>> points,
+                          std::size_t count, std::vector<Pair>& found) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      index.nearest(points[i], count, [&found, i](Neighbour<Real> neighbour) {
+        found.push_back({BoxId(i), neighbour.box});
+      });
   }
 
   /// Rays from a place outside all boxes to another place.
@@ -183,12 +241,17 @@ class BenchedQueries {
     return answers;
   }
 
-  static BoxIndex<D, double> in_double(std::span<const Box<D>> boxes) {
+  static std::vector<Box<D, double>> boxes_in_double(std::span<const Box<D>> boxes) {
     std::vector<Box<D, double>> doubles(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       std::ranges::copy(boxes[i].min, doubles[i].min.begin());
       std::ranges::copy(boxes[i].max, doubles[i].max.begin());
     }
+    return doubles;
+  }
+
+  static BoxIndex<D, double> in_double(std::span<const Box<D>> boxes) {
+    const std::vector<Box<D, double>> doubles = boxes_in_double(boxes);
     BoxIndex<D, double> index;
     index.update({.boxes = doubles, .changed = {}});
     return index;

@@ -74,7 +74,7 @@ TEST(Compare, JoinsTwoSetsByWhatHasAJoin) {
   CaseRequest request = small_still;
   request.left = 0.25;
   for (const std::size_t definition_boxes : {1'000, 100}) {
-    CompareOptions options = options_for("own,terdiman_box_pruning", {request});
+    CompareOptions options = options_for("own,serpa_kd_tree", {request});
     options.effort.definition_boxes = definition_boxes;
     const CaseResult result = compare(Catalogue(), options).cases.at(0);
     EXPECT_EQ(result.of.left, 0.25);

@@ -148,7 +148,23 @@ void expect_the_answers_of_an_index() {
   }
   EXPECT_GT(overlapping.count, 0u);
   EXPECT_GT(all_hits.count, first_hits.count);
+  std::vector<Point<D, float>> points;
+  for (const Box<D>& query : queries) points.push_back(query.max);
   for (const auto& peer : peers::query_peers<D>(boxes)) {
+    for (const std::size_t count : {1, 10, 500}) {
+      if (!peer->has_nearest()) continue;
+      std::vector<Pair> own;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        index.nearest(points[i], count, [&](Neighbour<float> found) {
+          own.push_back({BoxId(i), found.box});
+        });
+      std::vector<Pair> found;
+      peer->nearest(points, count, found);
+      EXPECT_EQ(own.size(), std::min(count, boxes.size()) * points.size());
+      EXPECT_EQ((peers::distances<D, float>(points, boxes, found)),
+                (peers::distances<D, float>(points, boxes, own)))
+          << peer->name() << ", nearest " << count;
+    }
     if (peer->has_boxes()) {
       EXPECT_EQ(peer->overlapping(queries), overlapping) << peer->name();
     }

@@ -11,6 +11,7 @@
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #include <boost/version.hpp>
 
@@ -110,6 +111,19 @@ class BoostQueries final : public QueryPeer<D> {
                   boost::make_function_output_iterator(report));
     }
     return answers;
+  }
+
+  bool has_nearest() const override { return true; }
+
+  void nearest(std::span<const broadside::Point<D, float>> points, std::size_t count,
+               std::vector<Pair>& found) override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto report = [&found, i](const Value& value) {
+        found.push_back({BoxId(i), BoxId{value.second}});
+      };
+      tree_.query(geometry::index::nearest(boost_point(points[i]), static_cast<unsigned>(count)),
+                  boost::make_function_output_iterator(report));
+    }
   }
 
  private:

@@ -101,31 +101,49 @@ class FclSearcher final : public Searcher<D>, public TearDown {
     const std::span<const Box<D>> boxes = input.boxes;
     tear_down();
     objects_.reserve(boxes.size());
-    for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i));
+    for (std::size_t i = objects_.size(); i < boxes.size(); ++i) objects_.emplace_back(BoxId(i), geometry_);
     pointers_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       objects_[i].set(boxes[i], depth_);
       if (widened_) objects_[i].widen();
       pointers_.push_back(&objects_[i]);
     }
-    manager_ = make_(boxes);
-    manager_->registerObjects(pointers_);
-    manager_->setup();
     FclSearch<D> search{boxes, CallbackSink(pairs)};
-    manager_->collide(&search, FclSearch<D>::take);
+    if (input.left_count == 0) {
+      manager_ = filled(boxes, pointers_);
+      manager_->collide(&search, FclSearch<D>::take);
+    } else {
+      const auto right = pointers_.begin() + static_cast<std::ptrdiff_t>(input.left_count);
+      manager_ = filled(boxes, {right, pointers_.end()});
+      left_manager_ = filled(boxes, {pointers_.begin(), right});
+      left_manager_->collide(manager_.get(), &search, FclSearch<D>::take);
+    }
     search.pairs.finish();
     return std::nullopt;
   }
 
-  void tear_down() override { manager_.reset(); }
+  void tear_down() override {
+    manager_.reset();
+    left_manager_.reset();
+  }
 
  private:
+  FclManager filled(std::span<const Box<D>> boxes, const std::vector<fcl::CollisionObjectd*>& objects) const {
+    FclManager manager = make_(boxes);
+    manager->registerObjects(objects);
+    manager->setup();
+    return manager;
+  }
+
   MakeManager<D> make_;
   bool widened_;
   double depth_;
+  // An object must have a geometry to be queried itself, as in joins of two sets; its size is irrelevant.
+  std::shared_ptr<fcl::CollisionGeometryd> geometry_ = std::make_shared<fcl::Sphered>(1);
   std::vector<FclObject> objects_;  // by place; may have more elements than there are boxes
   std::vector<fcl::CollisionObjectd*> pointers_;
-  FclManager manager_;  // of the last search; points into objects_
+  FclManager manager_;       // of the last search; points into objects_
+  FclManager left_manager_;  // of the left set, if there are two
 };
 
 /// The description of a manager: a searcher that fills a new one in each call. `widened` if it fails on equal

@@ -118,24 +118,38 @@ class OdeSearcher final : public Searcher<3>, public TearDown {
     tear_down();
     const double shift = kind_.shift != nullptr ? kind_.shift(boxes) : 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) geoms_.put(i, boxes[i], shift);
-    space_ = kind_.make(boxes);
-    for (; in_space_ < boxes.size(); ++in_space_) geoms_.add_to(space_.get(), in_space_);
+    if (input.left_count > 0) left_space_ = kind_.make(boxes.first(input.left_count));
+    space_ = kind_.make(boxes.subspan(input.left_count));
+    for (; in_space_ < boxes.size(); ++in_space_)
+      geoms_.add_to((in_space_ < input.left_count ? left_space_ : space_).get(), in_space_);
     CallbackSink sink(pairs);
-    find_all(space_.get(), boxes, sink);
+    if (left_space_ == nullptr) {
+      find_all(space_.get(), boxes, sink);
+    } else {
+      SpaceQuery search{boxes, sink};
+      // A space is a geom.
+      dSpaceCollide2(reinterpret_cast<dGeomID>(left_space_.get()), reinterpret_cast<dGeomID>(space_.get()),
+                     &search, SpaceQuery::take);
+    }
     sink.finish();
     return std::nullopt;
   }
 
   void tear_down() override {
     // The last one first: a removal searches the list from there.
-    for (; in_space_ > 0; --in_space_) dSpaceRemove(space_.get(), geoms_[in_space_ - 1]);
+    for (; in_space_ > 0; --in_space_) {
+      const dGeomID geom = geoms_[in_space_ - 1];
+      dSpaceRemove(dGeomGetSpace(geom), geom);
+    }
     space_.reset();
+    left_space_.reset();
   }
 
  private:
   OdeSpaceKind kind_;
   Geoms geoms_;
   OdeSpace space_;            // of the last search
+  OdeSpace left_space_;       // of the left set, if there are two
   std::size_t in_space_ = 0;  // geoms before this one are in the space
 };
 

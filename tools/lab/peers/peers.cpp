@@ -120,9 +120,26 @@ std::string_view build_note(std::string_view peer) {
 }
 
 bool joins_sets(std::string_view peer) {
-  constexpr std::array<std::string_view, 8> names = {
-      "boost_rtree", "bullet_dbvt",  "cgal_box_intersection", "embree_collide",
-      "geo_index",   "geos_strtree", "packed_spatial_index",  "rstar_tree"};
+  constexpr std::array<std::string_view, 20> names = {"boost_rtree",
+                                                      "bullet_dbvt",
+                                                      "cgal_box_intersection",
+                                                      "embree_collide",
+                                                      "fcl_dynamic_aabb_tree",
+                                                      "fcl_dynamic_aabb_tree_array",
+                                                      "fcl_sap",
+                                                      "fcl_spatial_hash",
+                                                      "fcl_ssap",
+                                                      "geo_index",
+                                                      "geos_strtree",
+                                                      "karras_lbvh",
+                                                      "obvhs_bvh",
+                                                      "ode_quadtree",
+                                                      "packed_spatial_index",
+                                                      "parry_bvh",
+                                                      "pbsm_stripes",
+                                                      "rstar_tree",
+                                                      "terdiman_box_pruning",
+                                                      "two_layer_grid"};
   return std::ranges::find(names, peer) != names.end();
 }
 

@@ -22,7 +22,8 @@ struct MissingPeer {
 /// The peers that were left out of this build, in the same order. Thread-safe.
 std::span<const MissingPeer> missing_peers();
 
-/// Whether the peer joins two sets by its library's own means, instead of finding the pairs of one set.
+/// Whether a peer, or an algorithm from the literature, has a join of two sets of its own. Others find the
+/// pairs of one set and drop some.
 bool joins_sets(std::string_view peer);
 
 /// A sentence about the build of a peer's library that affects its times (docs/peers.md); empty if nothing is

@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "lab/peers/queries.hpp"
 #include "lab/peers/rust_crates.hpp"
@@ -12,6 +13,7 @@ namespace {
 template <int D>
 class RustQueryPeer final : public QueryPeer<D> {
  public:
+  /// Only packed_spatial_index stores doubles, and only it has rays.
   RustQueryPeer(std::string name, bool has_rays, std::span<const Box<D>> boxes)
       : name_(std::move(name)),
         has_rays_(has_rays),
@@ -22,13 +24,26 @@ class RustQueryPeer final : public QueryPeer<D> {
   std::string name() const override { return name_; }
   bool has_boxes() const override { return true; }
   bool has_rays() const override { return has_rays_; }
-  bool computes_in_double() const override { return true; }
+  bool computes_in_double() const override { return has_rays_; }
 
   Answers overlapping(std::span<const Box<D>> queries) override {
     return ask(RUST_BOXES, coordinates(queries), queries.size());
   }
+  bool has_nearest() const override { return true; }
   Answers first_hits(std::span<const Ray<D>> rays) override { return ask(RUST_FIRST_HITS, rays); }
   Answers all_hits(std::span<const Ray<D>> rays) override { return ask(RUST_ALL_HITS, rays); }
+
+  void nearest(std::span<const broadside::Point<D, float>> points, std::size_t count,
+               std::vector<Pair>& found) override {
+    const auto add = [](void* context, const std::uint32_t* ids, std::size_t pairs) {
+      for (std::size_t i = 0; i < 2 * pairs; i += 2)
+        static_cast<std::vector<Pair>*>(context)->push_back({BoxId{ids[i]}, BoxId{ids[i + 1]}});
+      return true;
+    };
+    const float* const coordinates = points.empty() ? nullptr : points.front().data();
+    if (!rust_index_nearest(index_.get(), coordinates, points.size(), count, add, &found))
+      throw RustError(name_);
+  }
 
  private:
   struct Free {

@@ -66,6 +66,11 @@ void rust_index_free(RustIndex* index);
 bool rust_index_ask(RustIndex* index, RustQueries kind, const float* queries, size_t count,
                     RustPeerTakes takes, void* context);
 
+/// Gives the `max_results` boxes nearest to each point likewise. `points` has the coordinates of `count`
+/// points.
+bool rust_index_nearest(RustIndex* index, const float* points, size_t count, size_t max_results,
+                        RustPeerTakes take, void* context);
+
 /// A physics engine that runs a scene: see Simulation in src/simulations/mod.rs. Only in builds with engines.
 typedef struct RustSimulation RustSimulation;
 

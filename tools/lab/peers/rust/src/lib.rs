@@ -341,3 +341,24 @@ pub unsafe extern "C" fn rust_index_ask(
     };
     guarded(ask).is_some()
 }
+
+#[no_mangle]
+pub unsafe extern "C" fn rust_index_nearest(
+    index: *mut AnyIndex,
+    points: *const f32,
+    count: usize,
+    max_results: usize,
+    takes: Takes,
+    context: *mut c_void,
+) -> bool {
+    let ask = || {
+        let mut found = Pairs::new(takes, context);
+        let _ = match &mut *index {
+            AnyIndex::Flat(flat) => queries::nearest(&mut **flat, slice(points.cast(), count), max_results, &mut found),
+            AnyIndex::Solid(solid) => {
+                queries::nearest(&mut **solid, slice(points.cast(), count), max_results, &mut found)
+            }
+        };
+    };
+    guarded(ask).is_some()
+}

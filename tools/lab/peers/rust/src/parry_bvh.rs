@@ -25,15 +25,22 @@ macro_rules! parry_bvh {
             #[derive(Default)]
             pub struct BvhSearcher {
                 bvh: Bvh,
+                other: Bvh, // the right set's, if there are two
                 workspace: BvhWorkspace,
                 aabbs: Vec<Aabb>,
             }
 
-            impl Searcher<$dimension> for BvhSearcher {
-                fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+            impl BvhSearcher {
+                fn tree_of(&mut self, boxes: &[Bounds<$dimension>]) -> Bvh {
                     self.aabbs.clear();
                     self.aabbs.extend(boxes.iter().map(aabb_of));
-                    self.bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &self.aabbs);
+                    Bvh::from_leaves(BvhBuildStrategy::Binned, &self.aabbs)
+                }
+            }
+
+            impl Searcher<$dimension> for BvhSearcher {
+                fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+                    self.bvh = self.tree_of(boxes);
                     let mut flow = ControlFlow::Continue(());
                     self.bvh.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |a, b| {
                         if flow.is_continue() {
@@ -43,8 +50,25 @@ macro_rules! parry_bvh {
                     flow
                 }
 
+                fn join(
+                    &mut self,
+                    boxes: &[Bounds<$dimension>],
+                    left_count: usize,
+                    _: f32,
+                    pairs: &mut Pairs,
+                ) -> ControlFlow<()> {
+                    let (left, right) = boxes.split_at(left_count);
+                    self.bvh = self.tree_of(left);
+                    self.other = self.tree_of(right);
+                    for (a, b) in self.bvh.leaf_pairs(&self.other, |a, b| a.intersects(b)) {
+                        pairs.add(a, left_count as u32 + b)?;
+                    }
+                    ControlFlow::Continue(())
+                }
+
                 fn tear_down(&mut self) {
                     self.bvh = Bvh::new();
+                    self.other = Bvh::new();
                 }
             }
 

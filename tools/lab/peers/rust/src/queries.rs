@@ -1,4 +1,4 @@
-//! Queries of spatial indexes: boxes that overlap a box, or that a ray hits.
+//! Queries of spatial indexes: boxes that overlap a box, that a ray hits, or that are nearest to a point.
 
 use std::ops::ControlFlow;
 
@@ -28,6 +28,9 @@ pub trait Index<const D: usize> {
     fn hits(&mut self, _query: u32, _ray: &Ray<D>, _first: bool, _found: &mut Pairs) -> ControlFlow<()> {
         panic!("no queries of rays")
     }
+
+    /// Gives the `count` nearest boxes.
+    fn nearest(&mut self, query: u32, point: &[f32; D], count: usize, found: &mut Pairs) -> ControlFlow<()>;
 }
 
 macro_rules! packed_index {
@@ -73,6 +76,20 @@ macro_rules! packed_index {
                 }
                 ControlFlow::Continue(())
             }
+
+            fn nearest(
+                &mut self,
+                query: u32,
+                point: &[f32; $dimension],
+                count: usize,
+                found: &mut Pairs,
+            ) -> ControlFlow<()> {
+                let point = $point::new($(point[$axis].into()),+);
+                for &id in self.index.neighbors_with(point, count, f64::INFINITY, &mut self.nearest) {
+                    found.give(query, id as u32)?;
+                }
+                ControlFlow::Continue(())
+            }
         }
     };
 }
@@ -95,6 +112,13 @@ impl Index<2> for Geo {
         }
         ControlFlow::Continue(())
     }
+
+    fn nearest(&mut self, query: u32, point: &[f32; 2], count: usize, found: &mut Pairs) -> ControlFlow<()> {
+        for id in self.0.neighbors(point[0], point[1], Some(count), None) {
+            found.give(query, id)?;
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 pub struct Rstar<const D: usize>(rstar_tree::Tree<D>);
@@ -109,6 +133,17 @@ impl<const D: usize> Index<D> for Rstar<D> {
     fn overlapping(&mut self, query: u32, bounds: &Bounds<D>, found: &mut Pairs) -> ControlFlow<()> {
         let envelope = AABB::from_corners(bounds.min, bounds.max);
         self.0.locate_in_envelope_intersecting_int(envelope, |leaf| found.give(query, leaf.id))
+    }
+
+    fn nearest(&mut self, query: u32, point: &[f32; D], count: usize, found: &mut Pairs) -> ControlFlow<()> {
+        if count == 1 {
+            // It returns early for one, where the iterator keeps a queue.
+            return self
+                .0
+                .nearest_neighbor(*point)
+                .map_or(ControlFlow::Continue(()), |leaf| found.give(query, leaf.id));
+        }
+        self.0.nearest_neighbor_iter(*point).take(count).try_for_each(|leaf| found.give(query, leaf.id))
     }
 }
 
@@ -140,6 +175,19 @@ pub unsafe fn ask<const D: usize>(
             Kind::Boxes => index.overlapping(i as u32, &*queries.cast::<Bounds<D>>().add(i), found)?,
             _ => index.hits(i as u32, &*queries.cast::<Ray<D>>().add(i), matches!(kind, Kind::FirstHits), found)?,
         }
+    }
+    found.flush()
+}
+
+/// Gives the `max_results` boxes nearest to each point.
+pub fn nearest<const D: usize>(
+    index: &mut dyn Index<D>,
+    points: &[[f32; D]],
+    max_results: usize,
+    found: &mut Pairs,
+) -> ControlFlow<()> {
+    for (i, point) in points.iter().enumerate() {
+        index.nearest(i as u32, point, max_results, found)?;
     }
     found.flush()
 }

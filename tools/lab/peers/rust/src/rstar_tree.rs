@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use rstar::{RTree, RTreeObject, AABB};
+use rstar::{PointDistance, RTree, RTreeObject, AABB};
 
 use crate::peer::{Bounds, Pairs, Searcher};
 
@@ -16,6 +16,12 @@ impl<const D: usize> RTreeObject for Leaf<D> {
 
     fn envelope(&self) -> Self::Envelope {
         self.envelope
+    }
+}
+
+impl<const D: usize> PointDistance for Leaf<D> {
+    fn distance_2(&self, point: &[f32; D]) -> f32 {
+        self.envelope.distance_2(point)
     }
 }
 
