@@ -1,0 +1,127 @@
+// filters_of_keys(): filters by which only boxes with the same key pair, or only boxes with different keys.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <ranges>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "broadside/error.hpp"
+#include "broadside/filter.hpp"
+
+namespace broadside {
+
+/// Which boxes pair by their keys, such as an image, a class, a chromosome or a layer.
+enum class KeyRule : std::uint8_t {
+  same,      ///< only boxes with equal keys
+  different  ///< only boxes with unequal keys
+};
+
+/// A key: an integer, an enumerator, or something that converts to a std::string_view. Floats are not keys,
+/// since a NaN equals nothing.
+template <typename Key>
+concept BoxKey = std::integral<Key> || std::is_enum_v<Key> || std::convertible_to<Key, std::string_view>;
+
+/// A range of keys, one for each box.
+template <typename Keys>
+concept KeyRange = std::ranges::input_range<Keys> && BoxKey<std::ranges::range_value_t<Keys>>;
+
+namespace detail {
+
+/// Makes filters with a group for each key, numbered in the order in which keys first occur.
+template <typename Key>
+class KeyFilters {
+ public:
+  explicit KeyFilters(KeyRule rule) : rule_(rule) {}
+
+  template <typename Keys>
+  std::vector<Filter> filters(const Keys& keys, std::span<const Filter> given) {
+    std::vector<Filter> made;
+    if constexpr (std::ranges::sized_range<const Keys>) made.reserve(std::ranges::size(keys));
+    for (const auto& key : keys) {
+      if (!given.empty() && made.size() == given.size()) break;
+      made.push_back(filter(group(key), given.empty() ? Filter{} : given[made.size()]));
+    }
+    const auto count = static_cast<std::size_t>(std::ranges::distance(keys));
+    if (!given.empty() && given.size() != count) {
+      throw InvalidFrame(std::to_string(given.size()) + " filters for " + std::to_string(count) +
+                         " keys; expected one for each key, or none");
+    }
+    return made;
+  }
+
+ private:
+  /// Strings are stored as copies: a range may make each key anew.
+  using Stored = std::conditional_t<std::is_integral_v<Key> || std::is_enum_v<Key>, Key, std::string>;
+
+  std::int32_t group(const Key& key) {
+    if (numbers_.size() == static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+      throw InvalidFrame("2147483648 different keys; expected at most 2147483647");
+    if constexpr (std::is_same_v<Stored, std::string>) {
+      const std::string_view text = key;
+      if (last_ != 0 && text == last_key_) return last_;  // equal keys often follow each other
+      last_key_ = text;
+    } else {
+      if (last_ != 0 && key == last_key_) return last_;
+      last_key_ = key;
+    }
+    last_ = numbers_.try_emplace(last_key_, static_cast<std::int32_t>(numbers_.size() + 1)).first->second;
+    return last_;
+  }
+
+  Filter filter(std::int32_t group, Filter given) const {
+    if (given.group != 0)
+      throw InvalidFrame("a filter of group " + std::to_string(given.group) +
+                         " with keys, which are groups themselves; expected group 0");
+    if (rule_ == KeyRule::different) {
+      given.group = -group;
+      return given;
+    }
+    if (given != Filter{.is_static = given.is_static})
+      throw InvalidFrame(
+          "a filter with a category or a mask, and keys that must be the same; expected one of the two");
+    return {.category = 0, .mask = 0, .group = group, .is_static = given.is_static};
+  }
+
+  KeyRule rule_;
+  std::unordered_map<Stored, std::int32_t> numbers_;
+  Stored last_key_{};
+  std::int32_t last_ = 0;  // the group of last_key_; 0 before the first key
+};
+
+}  // namespace detail
+
+/// Makes a filter for each box from its key. `filters`, one for each box or none, are applied as well: with
+/// KeyRule::different, two boxes pair if their keys differ and `filters` accept each other. With
+/// KeyRule::same, `filters` may only say which boxes are static.
+///
+/// Throws InvalidFrame, naming what is wrong, if `filters` has another length, has groups (keys take their
+/// place) or, with KeyRule::same, has categories or masks.
+///
+///     find_pairs(boxes, {.filters = filters_of_keys(KeyRule::same, images)});
+template <KeyRange Keys>
+[[nodiscard]] std::vector<Filter> filters_of_keys(KeyRule rule, const Keys& keys,
+                                                  std::span<const Filter> filters = {}) {
+  return detail::KeyFilters<std::ranges::range_value_t<Keys>>(rule).filters(keys, filters);
+}
+
+/// The same for two sets: a key means the same in both.
+template <KeyRange Left, KeyRange Right>
+requires std::same_as<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>>
+[[nodiscard]] std::pair<std::vector<Filter>, std::vector<Filter>> filters_of_keys(
+    KeyRule rule, const Left& left, const Right& right, std::span<const Filter> filters = {},
+    std::span<const Filter> right_filters = {}) {
+  detail::KeyFilters<std::ranges::range_value_t<Left>> of_both(rule);
+  std::vector<Filter> left_made = of_both.filters(left, filters);
+  return {std::move(left_made), of_both.filters(right, right_filters)};
+}
+
+}  // namespace broadside
