@@ -4,7 +4,7 @@ import type {
 } from "../types/types.d.ts";
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
-import { asksForView, checkOptions, checkSwitch } from "./error.ts";
+import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
