@@ -80,7 +80,9 @@ bool overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found) {
 }
 
 template <int D>
-void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::array<float, fan_out>& result) {
+std::uint32_t near(const Block<D>& node, const DistanceQuery<D>& query, float limit,
+                   std::array<float, fan_out>& result) {
+  std::uint32_t bits = 0;
   for (std::size_t at = 0; at < fan_out; at += lanes) {
     FloatVector sum = hn::Zero(Floats());
     for (int axis = 0; axis < D; ++axis) {
@@ -96,7 +98,9 @@ void distances_of(const Block<D>& node, const DistanceQuery<D>& query, std::arra
     }
     sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.max)), all(query.share)), all(query.allowance));
     hn::StoreU(sum, Floats(), result.data() + at);
+    bits |= bits_of(hn::Le(sum, all(limit))) << at;
   }
+  return bits;
 }
 
 }  // namespace
@@ -108,8 +112,8 @@ constexpr auto& best_2 = best<2>;
 constexpr auto& best_3 = best<3>;
 constexpr auto& overlapping_2 = overlapping<2>;
 constexpr auto& overlapping_3 = overlapping<3>;
-constexpr auto& distances_2 = distances_of<2>;
-constexpr auto& distances_3 = distances_of<3>;
+constexpr auto& near_2 = near<2>;
+constexpr auto& near_3 = near<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -123,8 +127,8 @@ HWY_EXPORT(best_2);
 HWY_EXPORT(best_3);
 HWY_EXPORT(overlapping_2);
 HWY_EXPORT(overlapping_3);
-HWY_EXPORT(distances_2);
-HWY_EXPORT(distances_3);
+HWY_EXPORT(near_2);
+HWY_EXPORT(near_3);
 
 template <>
 Box<2> bounds_of(const Block<2>& node) {
@@ -152,12 +156,14 @@ bool find_overlapping(const BvhView<3>& tree, const Box<3>& box, FoundBoxes& fou
   return HWY_DYNAMIC_DISPATCH(overlapping_3)(tree, box, found);
 }
 template <>
-void distances(const Block<2>& node, const DistanceQuery<2>& query, std::array<float, fan_out>& result) {
-  HWY_DYNAMIC_DISPATCH(distances_2)(node, query, result);
+std::uint32_t near_children(const Block<2>& node, const DistanceQuery<2>& query, float limit,
+                            std::array<float, fan_out>& result) {
+  return HWY_DYNAMIC_DISPATCH(near_2)(node, query, limit, result);
 }
 template <>
-void distances(const Block<3>& node, const DistanceQuery<3>& query, std::array<float, fan_out>& result) {
-  HWY_DYNAMIC_DISPATCH(distances_3)(node, query, result);
+std::uint32_t near_children(const Block<3>& node, const DistanceQuery<3>& query, float limit,
+                            std::array<float, fan_out>& result) {
+  return HWY_DYNAMIC_DISPATCH(near_3)(node, query, limit, result);
 }
 
 }  // namespace broadside::kernels

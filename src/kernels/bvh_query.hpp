@@ -75,8 +75,10 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Sets `distances` to the squared distances of the node's children, as `query` defines them.
+/// Sets `distances` to the squared distances of the node's children, as `query` defines them. Returns a bit
+/// for each child that is not farther away than `limit`; those of places without a child mean nothing.
 template <int D>
-void distances(const Block<D>& node, const DistanceQuery<D>& query, std::array<float, fan_out>& distances);
+std::uint32_t near_children(const Block<D>& node, const DistanceQuery<D>& query, float limit,
+                            std::array<float, fan_out>& distances);
 
 }  // namespace broadside::kernels

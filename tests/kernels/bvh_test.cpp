@@ -88,9 +88,13 @@ TEST(BvhNode, TellsHowFarItsChildrenAre) {
     DistanceQuery<D> query{.point = point, .weight = {}, .max = infinity};
     query.weight.fill(1);
     std::array<float, fan_out> found;
-    distances(node_of(children), query, found);
-    for (std::size_t i = 0; i < children.size(); ++i)
-      EXPECT_EQ(found[i], algorithm::squared_distance(point.min, children[i])) << i;
+    const float limit = algorithm::squared_distance(point.min, children[0]);
+    const std::uint32_t near = near_children(node_of(children), query, limit, found);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const float distance = algorithm::squared_distance(point.min, children[i]);
+      EXPECT_EQ(found[i], distance) << i;
+      EXPECT_EQ(near >> i & 1, distance <= limit ? 1u : 0u) << i;
+    }
   });
 }
 

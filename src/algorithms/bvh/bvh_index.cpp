@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -199,6 +200,13 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     query.allowance = std::numeric_limits<float>::min();
   }
   NearestBoxes<Real> found(count, max_distance_squared);
+  // Beyond this, a node or box in the tree is farther away than the farthest of those found.
+  const auto limit_in_tree = [&] {
+    if constexpr (is_float<Real>)
+      return found.limit();
+    else
+      return rounded_up(found.limit() * unit);
+  };
   struct PendingNode {
     float distance;
     std::uint32_t number;
@@ -210,27 +218,32 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
   waiting[0] = {0, tree.root};
   while (waits > 0) {
     const auto [distance, number] = waiting[--waits];
-    if (!(distance <= found.limit() * unit)) continue;
+    if (!(distance <= limit_in_tree())) continue;
     const kernels::Block<D>& node = tree.nodes[number & ~leaf_bit];
-    kernels::distances(node, query, distances);
-    const std::size_t begin = waits;
-    for (std::size_t i = 0; i < tree_.child_count(number); ++i) {
-      if (!(distances[i] <= found.limit() * unit)) continue;
-      const std::uint32_t child = node.id[i];
-      if ((number & leaf_bit) == 0) {
-        waiting[waits++] = {distances[i], child};
-        continue;
+    std::uint32_t near = kernels::near_children(node, query, limit_in_tree(), distances) &
+                         ((1U << tree_.child_count(number)) - 1);
+    if ((number & leaf_bit) == 0) {
+      const std::size_t begin = waits;
+      for (; near != 0; near &= near - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(near));
+        waiting[waits++] = {distances[i], node.id[i]};
       }
+      // The nearest comes last, since the last one is taken next.
+      std::sort(waiting.data() + begin, waiting.data() + waits,
+                [](const PendingNode& a, const PendingNode& b) {
+                  return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
+                });
+      continue;
+    }
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(near));
+      const std::uint32_t child = node.id[i];
       if (!may_find(BoxId{child}, options)) continue;
       if constexpr (is_float<Real>)
         found.offer({BoxId{child}, distances[i]});
       else
         found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
     }
-    // The nearest comes last, since the last one is taken next.
-    std::sort(waiting.data() + begin, waiting.data() + waits, [](const PendingNode& a, const PendingNode& b) {
-      return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
-    });
   }
   const std::span<const Neighbour<Real>> nearest = found.sorted();
   return nearest.empty() || visitor.visit(nearest);
