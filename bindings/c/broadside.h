@@ -183,7 +183,7 @@ BROADSIDE_API broadside_status broadside_for_each_pairs(const broadside_boxes* b
  * `worlds` + 1, where each world's pairs begin and, last, how many pairs there are. Writes the pairs to `pairs`,
  * which has room for `room` of them; if there are more, the first `room`, and the status is BROADSIDE_TOO_SMALL.
  *
- * Of `options`, which may be null, filters are one for each of all boxes, and ignored pairs count in every world.
+ * Of `options`, which may be null, filters are one for each of all boxes, and ignored pairs never count in any world.
  * With "auto:threads=0" or another number, threads share the worlds. The index of an invalid box is its place in
  * `boxes`. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_find_pairs_batch(

@@ -50,7 +50,7 @@ Worlds<D, Real> drawn_worlds(const Algorithm& algorithm) {
   Worlds<D, Real> worlds;
   worlds.add({});
   worlds.add(drawn_boxes<D, Real>(rng, 1));
-  for (std::size_t world = 0; world < 60; ++world) {
+  for (std::size_t world = 0; world < 120; ++world) {
     worlds.add(drawn_boxes<D, Real>(rng, rng.below(120)));
     if (world % 20 == 0) worlds.add({});
     if (world == 30) worlds.add(drawn_boxes<D, Real>(rng, reduced(1500)));
