@@ -41,6 +41,7 @@ struct CompareArguments {
   std::vector<double> moving;
   std::string frames;
   std::optional<double> left;
+  bool filtered = false;
   MotionOptions motion;
   std::optional<std::uint64_t> seed;
   std::optional<double> budget;
@@ -54,14 +55,15 @@ struct CompareArguments {
 /// Whether the user says what to compare, instead of taking the quick or the long comparison.
 bool names_cases(const CompareArguments& arguments) {
   return !arguments.scenes.empty() || !arguments.boxes.empty() || !arguments.moving.empty() ||
-         !arguments.frames.empty() || arguments.left || arguments.motion.any();
+         !arguments.frames.empty() || arguments.left || arguments.filtered || arguments.motion.any();
 }
 
 std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const lab::FindScene& find) {
   if (names_cases(arguments)) {
     if (arguments.is_long)
       throw Unusable(
-          "--long is a plan of its own; expected it without --scenes, -n, --left, --moving, --frames, "
+          "--long is a plan of its own; expected it without --scenes, -n, --left, --filtered, --moving, "
+          "--frames, "
           "--drift and --teleport");
     return lab::plan_of({
         .scenes = arguments.scenes,
@@ -69,6 +71,7 @@ std::vector<lab::CaseRequest> plan_of(const CompareArguments& arguments, const l
         .dimensions = arguments.dimensions,
         .moving = arguments.moving,
         .left = arguments.left.value_or(0),
+        .filtered = arguments.filtered,
         .frames = arguments.frames.empty() ? 0 : read_count("--frames", arguments.frames),
         .drift = arguments.motion.drift_or_standard(),
         .teleport = arguments.motion.teleport_or_standard(),
@@ -85,10 +88,12 @@ void check(const CompareArguments& arguments) {
   check(arguments.motion);
   if (arguments.left && !(*arguments.left > 0 && *arguments.left < 1))
     throw Unusable(fmt::format("--left is {}; expected a fraction above 0 and below 1", *arguments.left));
-  if (arguments.left && (!arguments.moving.empty() || !arguments.frames.empty() || arguments.motion.any()))
-    throw Unusable(
-        "--left joins two sets of boxes at rest; expected it without --moving, --frames, --drift and "
-        "--teleport");
+  if (arguments.left && arguments.filtered)
+    throw Unusable("--left with --filtered; expected one or the other");
+  const char* const still = arguments.left ? "--left" : arguments.filtered ? "--filtered" : nullptr;
+  if (still != nullptr && (!arguments.moving.empty() || !arguments.frames.empty() || arguments.motion.any()))
+    throw Unusable(fmt::format(
+        "{} compares boxes at rest; expected it without --moving, --frames, --drift and --teleport", still));
   const bool any_moves = std::ranges::any_of(arguments.moving, [](double moving) { return moving > 0; });
   if (arguments.motion.any() && !any_moves && arguments.frames.empty())
     throw Unusable("--drift and --teleport say how boxes move; expected --moving or --frames as well");
@@ -226,6 +231,9 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
                    "Join two sets: this fraction of the boxes, drawn at random, is the left set, and the "
                    "others are the right set; only pairs across the two count")
       ->type_name("FRACTION");
+  verb->add_flag("--filtered", arguments->filtered,
+                 "Give boxes the filters of a game: a third is static, and debris and sensors ignore each "
+                 "other; two thirds of the overlapping pairs count");
   add_motion_options(*verb, arguments->motion);
   add_threads(*verb, arguments->entries,
               "Number of threads to search with (0: as many as the machine has), or several, such as "

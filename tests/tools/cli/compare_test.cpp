@@ -79,7 +79,31 @@ TEST(CompareVerb, JoinsTwoSets) {
   EXPECT_THAT(run(with(small, {"--left", "1"})).errors,
               HasSubstr("--left is 1; expected a fraction above 0"));
   EXPECT_THAT(run(with(small, {"--left", "0.5", "--moving", "0.1"})).errors,
-              HasSubstr("--left joins two sets of boxes at rest"));
+              HasSubstr("--left compares boxes at rest"));
+}
+
+TEST(CompareVerb, GivesBoxesFilters) {
+  const TemporaryFolder folder;
+  const std::string all = folder.file("all.json");
+  const std::string some = folder.file("some.json");
+  ASSERT_EQ(run(with(small, {"--json", all})).status, 0);
+  const Ended ended = run(with(small, {"--filtered", "--json", some}));
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("\nuniform, 2D, 200 boxes, filtered  "));
+  const Json unfiltered = Json::parse(text_of(all));
+  const Json filtered = Json::parse(text_of(some));
+  for (std::size_t i = 0; i < filtered["measurements"].size(); ++i) {
+    const Json& measurement = filtered["measurements"][i];
+    EXPECT_EQ(measurement["filtered"], true);
+    EXPECT_EQ(measurement["verified"], true);
+    const double share =
+        measurement["pairs"].get<double>() / unfiltered["measurements"][i]["pairs"].get<double>();
+    EXPECT_GT(share, 0.4);
+    EXPECT_LT(share, 0.9);
+  }
+  EXPECT_THAT(run(with(small, {"--filtered", "--left", "0.5"})).errors, HasSubstr("--left with --filtered"));
+  EXPECT_THAT(run(with(small, {"--filtered", "--frames", "5"})).errors,
+              HasSubstr("--filtered compares boxes at rest"));
 }
 
 TEST(CompareVerb, MeasuresWithColdCaches) {

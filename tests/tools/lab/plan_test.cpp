@@ -50,6 +50,11 @@ TEST(Plans, HaveJoinsOfTwoSets) {
     EXPECT_GE(std::ranges::count_if(plan, [](const CaseRequest& request) { return request.left > 0; }), 2);
 }
 
+TEST(Plans, HaveFilteredCases) {
+  for (const auto& plan : {quick_plan(), long_plan()})
+    EXPECT_GE(std::ranges::count_if(plan, &CaseRequest::filtered), 2);
+}
+
 TEST(Plans, RequireNothingThatMayBeMissing) {
   for (const auto& plan : {quick_plan(), long_plan()}) {
     EXPECT_TRUE(std::ranges::none_of(plan, &CaseRequest::required));

@@ -2,6 +2,7 @@
 #include "lab/measure/compare.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -71,6 +72,19 @@ void split(std::vector<Box<D>>& boxes, double left) {
     (is_chosen ? chosen : others).push_back(boxes[i]);
   }
   std::ranges::copy(others, std::ranges::copy(chosen, boxes.begin()).out);
+}
+
+/// Filters of a game's boxes, by their places, as CaseRequest::filtered says.
+std::vector<Filter> game_filters(std::size_t boxes) {
+  enum Category : std::uint64_t { fixed = 1, body = 2, debris = 4, sensor = 8 };
+  constexpr Filter of_fixed{.category = fixed, .mask = body | debris, .is_static = true};
+  constexpr Filter of_body{.category = body, .mask = fixed | body | debris | sensor};
+  constexpr Filter of_debris{.category = debris, .mask = fixed | body};
+  constexpr Filter of_sensor{.category = sensor, .mask = body};
+  constexpr std::array kinds = {of_fixed, of_fixed, of_body, of_body, of_debris, of_sensor};
+  std::vector<Filter> filters;
+  for (std::size_t i = 0; i < boxes; ++i) filters.push_back(kinds[detail::mixed(i) % kinds.size()]);
+  return filters;
 }
 
 class Runner {
@@ -158,9 +172,13 @@ class Runner {
                                         .moving = request.moving,
                                         .drift = request.drift,
                                         .teleport = request.teleport}));
-      if (request.left == 0) return;
-      inputs.back().steps.clear();
-      split(inputs.back().boxes, request.left);
+      History<D>& input = inputs.back();
+      if (request.left > 0 || request.filtered) input.steps.clear();
+      if (request.left > 0) split(input.boxes, request.left);
+      if (request.filtered) {
+        const std::vector<Filter> filters = game_filters(input.boxes.size());
+        input.filters.assign(filters.begin(), filters.end());
+      }
     };
     check_steps<D>(request);
     make(options_.seed);
@@ -174,6 +192,7 @@ class Runner {
     of.frames = inputs[0].steps.size();
     of.moving = moving_fraction(inputs[0]);
     of.left = request.left;
+    of.filtered = request.filtered;
     of.mode = of.frames == 0 ? Mode::find : Mode::track;
     if (of.mode == Mode::track && request.moving > 0) {
       of.drift = request.drift;

@@ -18,6 +18,7 @@
 #include "lab/measure/reference.hpp"
 #include "lab/measure/rounds.hpp"
 #include "lab/measure/seen_algorithm.hpp"
+#include "lab/pair_filter.hpp"
 #include "lab/peers/peers.hpp"
 
 namespace broadside::lab {
@@ -37,6 +38,22 @@ struct NoFloor {
 bool joins_sets(const Algorithm& algorithm) {
   return algorithm.kind == AlgorithmKind::own || peers::joins_sets(algorithm.name);
 }
+
+/// Collects the pairs that filters accept: what the callback of a peer does, which gets all of them.
+class AcceptedPairs final : public PairSink {
+ public:
+  AcceptedPairs(std::span<const Filter> filters, PairSink& pairs) : filters_(filters), pairs_(pairs) {}
+
+ private:
+  void consume(std::span<const Pair> found) override {
+    write_if(found, pairs_, [this](Pair pair) {
+      return accepts(filters_[index(pair.first)], filters_[index(pair.second)]);
+    });
+  }
+
+  std::span<const Filter> filters_;
+  PairSink& pairs_;
+};
 
 /// The expected result of a search of one input.
 struct ExpectedPairs {
@@ -95,12 +112,22 @@ class FindCase {
   /// The number of boxes in the left set of an input; 0 if there is only one set.
   std::size_t left_of(std::size_t input) const { return left_count(case_.left, boxes_of(input).size()); }
 
-  /// The pairs that count: all of them, or in a case of two sets, those across the sets.
-  std::vector<Pair> across(std::vector<Pair> pairs, std::size_t input) const {
-    if (case_.left == 0) return pairs;
-    const std::size_t left = left_of(input);
-    std::erase_if(pairs,
-                  [left](Pair pair) { return index(pair.second) < left || index(pair.first) >= left; });
+  /// The filters of an input's boxes; empty if there are none.
+  std::span<const Filter> filters_of(std::size_t input) const { return inputs_[input].filters; }
+
+  /// The pairs that count: all of them; in a case of two sets, those across the sets; in a case with filters,
+  /// those that these accept.
+  std::vector<Pair> counting(std::vector<Pair> pairs, std::size_t input) const {
+    if (case_.left > 0) {
+      std::erase_if(pairs, [left = left_of(input)](Pair pair) {
+        return index(pair.second) < left || index(pair.first) >= left;
+      });
+    }
+    if (case_.filtered) {
+      std::erase_if(pairs, [filters = filters_of(input)](Pair pair) {
+        return !accepts(filters[index(pair.first)], filters[index(pair.second)]);
+      });
+    }
     return pairs;
   }
 
@@ -122,17 +149,23 @@ class FindCase {
       benchmark_.watch.at(fmt::format("{}, trying {} boxes", measurement.algorithm, count));
       std::vector<Box<D, Real>> some;
       const std::vector<std::size_t> sample = sample_of(boxes_of(0).size(), count);
-      for (const std::size_t i : sample) some.push_back(boxes_of(0)[i]);
+      std::vector<Filter> their_filters;
+      for (const std::size_t i : sample) {
+        some.push_back(boxes_of(0)[i]);
+        if (case_.filtered) their_filters.push_back(filters_of(0)[i]);
+      }
       const auto left =
           static_cast<std::size_t>(std::ranges::lower_bound(sample, left_of(0)) - sample.begin());
       const auto tried = seen(entry);
       Finder<D, Real> finder(tried->algorithm(), entry.spec);
       benchmark_.watch.ask_within(finder);
-      const double first = call(finder, *tried, some, left);
+      const double first = call(finder, *tried, some, left, their_filters);
       // A brief stall of the machine can make a short call seem many times as long, and the first call
       // allocates memory.
       constexpr double is_short_ms = 50;
-      return (first < is_short_ms ? std::min(first, call(finder, *tried, some, left)) : first) / 1e3;
+      return (first < is_short_ms ? std::min(first, call(finder, *tried, some, left, their_filters))
+                                  : first) /
+             1e3;
     };
     attempt(measurement, [&]() -> std::string {
       touch(expectation(*entry.algorithm, 0).count);
@@ -239,12 +272,20 @@ class FindCase {
 
   /// Times one search, in milliseconds. Sets pairs_, as indexes into `boxes`, and statistics_.
   double call(Finder<D, Real>& finder, const SeenAlgorithm& seen, std::span<const Box<D, Real>> boxes,
-              std::size_t left) {
+              std::size_t left, std::span<const Filter> filters) {
     pairs_.clear();
     PairCollector collector(pairs_);
+    AcceptedPairs accepted(filters, collector);
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
-    statistics_ = case_.left > 0 ? finder.find_across(boxes, left, collector) : finder.find(boxes, collector);
+    if (case_.left > 0) {
+      statistics_ = finder.find_across(boxes, left, collector);
+    } else if (filters.empty() || seen.algorithm().kind == AlgorithmKind::own) {
+      statistics_ = finder.find(boxes, collector, {.filters = filters});
+    } else {
+      statistics_ = finder.find(boxes, accepted);
+      collector.flush();
+    }
     const double milliseconds = watch.milliseconds();
     if (seen.structure() != nullptr) seen.structure()->tear_down();
     for (Pair& pair : pairs_) pair.second = BoxId(index(pair.second) + left);
@@ -252,7 +293,7 @@ class FindCase {
   }
 
   double call(FindParticipant<D, Real>& participant, std::size_t input) {
-    return call(*participant.finder, *participant.seen, boxes_of(input), left_of(input));
+    return call(*participant.finder, *participant.seen, boxes_of(input), left_of(input), filters_of(input));
   }
 
   /// The fault of pairs_; empty if there is none. Pairs with the expected count and hash are the expected
@@ -266,7 +307,7 @@ class FindCase {
     auto divergence =
         kept ? compare_pairs(pairs_, expected.pairs)
              : compare_pairs(pairs_,
-                             across(expected.reference.template pairs<D, Real>(boxes_of(input)), input));
+                             counting(expected.reference.template pairs<D, Real>(boxes_of(input)), input));
     if (!divergence) return {};
     return explained<D, Real>(*std::move(divergence), participant.measurement->algorithm,
                               fmt::format("search of seed {}:", case_.seeds[input]), 0, boxes_of(input))
@@ -288,7 +329,7 @@ class FindCase {
         fault = explained<D, Real>(*std::move(divergence), reference.text(), "reference:", 0, boxes_of(input))
                     .text;
     }
-    pairs = across(std::move(pairs), input);
+    pairs = counting(std::move(pairs), input);
     ExpectedPairs expected{reference, input, pairs.size(), hash_of(pairs), {}, std::move(fault)};
     for (const auto& known : expectations_) {
       if (known->input == input && (known->count != expected.count || known->hash != expected.hash))

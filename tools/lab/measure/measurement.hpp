@@ -31,6 +31,7 @@ struct Case {
   double moving = 0;                 ///< mean fraction of the boxes that change from one frame to the next
   double left = 0;                   ///< in a search between two sets: the fraction of the boxes, those in
                                      ///< front, that is the left set; 0: pairs within one set
+  bool filtered = false;             ///< whether boxes have filters, as in CaseRequest
   std::optional<double> drift{};     ///< how a scene without its own motion was set moving, as in
   std::optional<double> teleport{};  ///< SceneRequest; otherwise empty
   Mode mode = Mode::find;

@@ -26,10 +26,11 @@ struct PlanPart {
   std::size_t frames = 0;
   std::vector<int> dimensions = {2, 3};
   double left = 0;
+  bool filtered = false;
 };
 
 /// Sizes from a small game to a large simulation, densities of 1, 4 and 30 neighbours, and more than a third
-/// real or recorded boxes. Two cases are joins of two sets.
+/// real or recorded boxes. Two cases are joins of two sets, and in two boxes have filters.
 std::vector<PlanPart> quick_parts() {
   return {
       {{"uniform"}, {100, 1'000, 10'000, 100'000}},
@@ -42,6 +43,8 @@ std::vector<PlanPart> quick_parts() {
       {{"bunny", "counties", "counties:boxes=segments", "coastlines", "coastlines:boxes=segments"},
        own_count},
       {{"uniform"}, {10'000}, {0}, 0, {3}, 0.5},
+      {{"uniform"}, {1'000}, {0}, 0, {2}, 0, true},
+      {{"uniform"}, {10'000}, {0}, 0, {3}, 0, true},
       {{"counties"}, own_count, {0}, 0, {2}, 0.1},
       {{"uniform"}, {10'000}, {0.1}, 10, {2}},
       {{"uniform"}, {1'000}, {1}, 20, {3}},
@@ -65,6 +68,7 @@ std::vector<PlanPart> long_parts() {
        own_count},
       {{"uniform", "clustered"}, {1'000, 10'000, 100'000, 1'000'000}, {0}, 0, {2, 3}, 0.5},
       {{"uniform", "clustered"}, {10'000, 1'000'000}, {0}, 0, {2, 3}, 0.1},
+      {{"uniform", "clustered"}, {1'000, 10'000, 100'000}, {0}, 0, {2, 3}, 0, true},
       {{"bunny", "counties", "coastlines:boxes=segments"}, own_count, {0}, 0, {2, 3}, 0.1},
   };
 }
@@ -93,6 +97,7 @@ std::vector<CaseRequest> plan_from(const std::vector<PlanPart>& parts) {
                               .moving = moving,
                               .frames = part.frames,
                               .left = part.left,
+                              .filtered = part.filtered,
                               .required = false});
           }
         }
@@ -154,6 +159,7 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& options) {
     for (const int dimension : dimensions) {
       if (!exists(dimension)) continue;
       const bool moves = moves_by_itself(scene, dimension);
+      const bool is_still = options.left > 0 || options.filtered;
       const std::size_t all =
           scene.kind == SceneKind::file && moves ? std::numeric_limits<std::size_t>::max() : standard_frames;
       const std::size_t frames = options.frames > 0 ? options.frames : all;
@@ -162,9 +168,10 @@ std::vector<CaseRequest> plan_of(const ComparePlanOptions& options) {
           const CaseRequest request{.scene = name,
                                     .dimension = dimension,
                                     .boxes = scene.fixed_count ? 0 : count,
-                                    .moving = moves || options.left > 0 ? 0 : moving,
-                                    .frames = options.left == 0 && (moves || moving > 0) ? frames : 0,
+                                    .moving = moves || is_still ? 0 : moving,
+                                    .frames = !is_still && (moves || moving > 0) ? frames : 0,
                                     .left = options.left,
+                                    .filtered = options.filtered,
                                     .drift = options.drift,
                                     .teleport = options.teleport,
                                     .required = named};

@@ -20,6 +20,10 @@ struct CaseRequest {
   double moving = 0;       ///< the fraction that moves; 0 for a scene with its own motion
   std::size_t frames = 0;  ///< 0: a still scene
   double left = 0;  ///< not 0: search between two sets; this fraction, drawn at random, is the left one
+  /// Whether boxes get the filters of a game: a third of them, drawn at random, is static, a third bodies, a
+  /// sixth debris, which ignores its like and sensors, and a sixth sensors, which see bodies alone. Two
+  /// thirds of the overlapping pairs are left.
+  bool filtered = false;
   double drift = SceneRequest{}.drift;        ///< as in SceneRequest
   double teleport = SceneRequest{}.teleport;  ///< likewise
   bool required = true;                       ///< whether it is an error if the scene does not exist
@@ -46,6 +50,7 @@ struct ComparePlanOptions {
   std::vector<int> dimensions{};
   std::vector<double> moving{};
   double left = 0;         ///< as in CaseRequest; only the first frame of scenes that move is then searched
+  bool filtered = false;   ///< likewise
   std::size_t frames = 0;  ///< 0: 20 if boxes are set moving, all if they move in a file
   double drift = SceneRequest{}.drift;
   double teleport = SceneRequest{}.teleport;

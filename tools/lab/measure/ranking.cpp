@@ -69,6 +69,7 @@ std::string name_of(const Case& measured) {
       fmt::format("{}, {}D, {}", measured.scene, measured.dimension, counted(measured.boxes, "box", "boxes"));
   if (measured.left > 0)
     name += fmt::format(", {:.3g} % joined with {:.3g} %", measured.left * 100, (1 - measured.left) * 100);
+  if (measured.filtered) name += ", filtered";
   return name;
 }
 

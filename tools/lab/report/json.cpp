@@ -72,6 +72,7 @@ Json measurement_json(const CaseResult& result, const Measurement& measurement) 
   json["frames"] = of.frames;
   json["moving"] = of.moving;
   if (of.left > 0) json["left"] = of.left;
+  if (of.filtered) json["filtered"] = true;
   json["drift"] = or_null(of.drift);
   json["teleport"] = or_null(of.teleport);
   json["algorithm"] = measurement.algorithm;

@@ -38,13 +38,16 @@ export function labelOf(measurement: Measurement): string {
 export function casesOf(measurements: readonly Measurement[]): Case[] {
   const cases = new Map<string, Case>();
   for (const measurement of measurements) {
-    const { scene, dimension, boxes, moving, mode, frames, left, drift, teleport, floor_ms } = measurement;
-    const key = JSON.stringify([scene, dimension, boxes, moving, mode, frames, left, drift, teleport, measurement.seeds]);
+    const { scene, dimension, boxes, moving, mode, frames, left, filtered, drift, teleport, floor_ms } = measurement;
+    const key = JSON.stringify([
+      scene, dimension, boxes, moving, mode, frames, left, filtered, drift, teleport, measurement.seeds,
+    ]);
     let found = cases.get(key);
     if (found === undefined) {
       const moves = mode === "track" ? `, ${percent(moving)} moving` : "";
       const sets = left === undefined ? "" : `, ${percent(left)} joined with ${percent(1 - left)}`;
-      const name = `${scene}, ${dimension}D, ${grouped(boxes)} boxes${sets}${moves}`;
+      const filters = filtered ? ", filtered" : "";
+      const name = `${scene}, ${dimension}D, ${grouped(boxes)} boxes${sets}${filters}${moves}`;
       found = { name, scene, dimension, boxes, moving, mode, floor_ms, measurements: [] };
       cases.set(key, found);
     }

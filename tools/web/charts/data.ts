@@ -39,6 +39,8 @@ export interface Measurement {
   moving: number;
   /** In a join of two sets: the fraction of the boxes that is the left set. */
   left?: number;
+  /** Whether boxes have filters. */
+  filtered?: boolean;
   drift: number | null;
   teleport: number | null;
   algorithm: string;
