@@ -112,6 +112,17 @@ broadside_status broadside_for_each_pairs(const broadside_boxes* boxes, const br
   });
 }
 
+broadside_status broadside_components(const broadside_boxes* boxes, const broadside_find_options* options,
+                                      uint32_t* labels, broadside_error* error) {
+  return guarded(error, [&] {
+    const std::size_t count = required(boxes, "boxes").count;
+    array_of(labels, count, "labels");
+    Components components(count);
+    find_once(boxes, nullptr, options, components);
+    copy_as(std::span<const BoxId>(components.labels()), labels);
+  });
+}
+
 // ---- Finders ----
 
 struct broadside_finder : AnyKind<FinderImpl> {
