@@ -190,6 +190,13 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_find_pairs_batch(
     const broadside_boxes* boxes, const size_t* offsets, size_t worlds, const broadside_find_options* options,
     broadside_pair* pairs, size_t room, size_t* pair_offsets, broadside_error* error);
 
+/** Finds which boxes hang together by pairs, and keeps no pair: sets labels[i], of which there are as many as
+ * boxes, to the least place of a box in the connected component of box i. A box without pairs has its own. If
+ * the call fails, `labels` are as they were. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_components(const broadside_boxes* boxes,
+                                                             const broadside_find_options* options,
+                                                             uint32_t* labels, broadside_error* error);
+
 /** Finds pairs repeatedly, and keeps its memory from call to call. */
 typedef struct broadside_finder broadside_finder;
 

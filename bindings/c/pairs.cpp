@@ -149,6 +149,17 @@ broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const 
   });
 }
 
+broadside_status broadside_components(const broadside_boxes* boxes, const broadside_find_options* options,
+                                      uint32_t* labels, broadside_error* error) {
+  return guarded(error, [&] {
+    const std::size_t count = required(boxes, "boxes").count;
+    array_of(labels, count, "labels");
+    Components components(count);
+    find_once(boxes, nullptr, options, components);
+    copy_as(std::span<const BoxId>(components.labels()), labels);
+  });
+}
+
 // ---- Finders ----
 
 struct broadside_finder : AnyKind<FinderImpl> {

@@ -6,6 +6,7 @@
 #include <nanobind/stl/string.h>
 
 #include "broadside/batch.hpp"
+#include "broadside/components.hpp"
 #include "broadside/sinks.hpp"
 
 #include "bindings/python/arrow.hpp"
@@ -34,8 +35,18 @@ std::uint64_t counted(const SearchArguments& search) {
   });
 }
 
+nb::object components(const SearchArguments& search) {
+  std::vector<BoxId> labels = without_gil([&](WithoutGil& released) {
+    Components found(search.boxes.size());
+    search.run(found, released);
+    return found.labels();
+  });
+  const std::size_t count = labels.size();
+  return array_of<std::uint32_t>(std::move(labels), {count});
+}
+
 /// What find() returns.
-enum class ResultForm { array, table, count };
+enum class ResultForm { array, table, count, components };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
@@ -44,6 +55,7 @@ nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algor
                                ignored, truth(quarantine), truth(touching));
   const bool sorts = truth(sort);
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
+  if (static_cast<ResultForm>(result) == ResultForm::components) return components(search);
   std::vector<Pair> pairs = found(search, sorts);
   if (static_cast<ResultForm>(result) == ResultForm::table)
     return nb::cast(without_gil([&](WithoutGil&) { return PairTable(pairs); }));
@@ -101,6 +113,7 @@ void add_pairs(nb::module_& module) {
   module.attr("ARRAY") = static_cast<int>(ResultForm::array);
   module.attr("TABLE") = static_cast<int>(ResultForm::table);
   module.attr("COUNT") = static_cast<int>(ResultForm::count);
+  module.attr("COMPONENTS") = static_cast<int>(ResultForm::components);
   module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),

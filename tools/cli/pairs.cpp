@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include <fmt/format.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/components.hpp"
+#include "broadside/filter.hpp"
+#include "broadside/keys.hpp"
 #include "broadside/sinks.hpp"
 
 #include "cli/applicability.hpp"
@@ -33,11 +37,18 @@
 namespace broadside::cli {
 namespace {
 
+/// The column or property that --same or --different names; empty without them.
+const std::string& key_column(const PairsArguments& arguments) {
+  return arguments.same.empty() ? arguments.different : arguments.same;
+}
+
+/// Reads one frame of a file, with its ids or, without --ids, its keys.
 lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
   const std::string& path = arguments.files[file];
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
+  options.ids = key_column(arguments);
   if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
   // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
@@ -48,6 +59,25 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
   if (is_rounded) rounding += lab::round_to_float(read.boxes);
   return read;
+}
+
+/// The keys of the boxes that read() gave. Throws FileError if a box has none.
+std::vector<std::string> keys_of(const PairsArguments& arguments, std::size_t file,
+                                 const lab::FrameOfFile& boxes) {
+  std::shared_ptr<const lab::BoxLabels> labels = boxes.labels;
+  if (!arguments.ids.empty()) {
+    lab::ReadOptions options = read_options(arguments.input, arguments.files[file]);
+    options.ids = key_column(arguments);
+    const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
+    labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame).labels;
+  }
+  std::vector<std::string> keys = labels->ids;
+  keys.resize(lab::size(boxes.boxes));
+  const auto missing = std::ranges::find(keys, std::string());
+  if (missing != keys.end())
+    throw lab::FileError(fmt::format("{}: box {} has no '{}'; expected a key for each box", boxes.name,
+                                     missing - keys.begin(), key_column(arguments)));
+  return keys;
 }
 
 /// The pairs within one set of boxes or between two sets, from files or from the parts of a swept mesh.
@@ -62,6 +92,7 @@ class PairsCommand {
       for (std::size_t file = 0; file < arguments.files.size(); ++file)
         sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
+      if (!key_column(arguments).empty()) take_keys();
     }
     // Not before both sets have the same precision: the next lower float is not the next lower double.
     if (arguments.leaves_out_touching) {
@@ -86,6 +117,8 @@ class PairsCommand {
         fmt::format("joining by {}: {}", entry_.spec.text(), lab::counted(pairs, "pair", "pairs")));
   }
 
+  std::size_t boxes() const { return lab::size(sets_[0].boxes); }
+
   /// The ids to write instead of numbers, if requested.
   lab::PairIds ids() const {
     if (arguments_.ids.empty()) return {};
@@ -107,7 +140,7 @@ class PairsCommand {
   }
 
   /// Summary of the join: inputs, algorithm and time.
-  std::string text(std::uint64_t pairs) const {
+  std::string text(const std::string& found) const {
     std::string sets;
     if (arguments_.is_swept) sets = fmt::format("{} to {}: ", arguments_.files[0], arguments_.files[1]);
     std::string_view separator;
@@ -118,12 +151,11 @@ class PairsCommand {
                       absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
-    return fmt::format("{} in {}D: {}{}{}, {}; read in {}, joined by {} in {}", sets,
-                       lab::dimension(sets_[0].boxes), lab::counted(pairs, "pair", "pairs"),
-                       arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
-                       arguments_.leaves_out_touching ? ", those that only touch left out" : "",
-                       precision_text(), lab::duration(read_ms_ / 1e3), entry_.spec.text(),
-                       lab::duration(join_ms_ / 1e3));
+    return fmt::format(
+        "{} in {}D: {}{}{}, {}; read in {}, joined by {} in {}", sets, lab::dimension(sets_[0].boxes), found,
+        arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
+        arguments_.leaves_out_touching ? ", without pairs that only touch" : "", precision_text(),
+        lab::duration(read_ms_ / 1e3), entry_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
 
  private:
@@ -141,6 +173,15 @@ class PairsCommand {
     };
     add(arguments_.left);
     if (arguments_.right != arguments_.left) add(arguments_.right);
+  }
+
+  void take_keys() {
+    const KeyRule rule = arguments_.same.empty() ? KeyRule::different : KeyRule::same;
+    const std::vector<std::string> left = keys_of(arguments_, 0, sets_[0]);
+    if (is_between())
+      std::tie(filters_, right_filters_) = filters_of_keys(rule, left, keys_of(arguments_, 1, sets_[1]));
+    else
+      filters_ = filters_of_keys(rule, left);
   }
 
   /// The precision in which the pairs are exact, or how many coordinates were rounded.
@@ -162,24 +203,27 @@ class PairsCommand {
   }
 
   void search(PairSink& pairs) {
+    const PairFilters filters{filters_, right_filters_};
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
       if (is_between())
-        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs);
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs, filters);
       else
-        lab::join_within(sets_[0].boxes, distance, entry_, pairs);
+        lab::join_within(sets_[0].boxes, distance, entry_, pairs, filters);
       return;
     }
     if (is_between())
-      lab::join(sets_[0].boxes, sets_[1].boxes, entry_, pairs);
+      lab::join(sets_[0].boxes, sets_[1].boxes, entry_, pairs, filters);
     else
-      lab::join(sets_[0].boxes, entry_, pairs);
+      lab::join(sets_[0].boxes, entry_, pairs, filters);
   }
 
   const PairsArguments& arguments_;
   lab::Entry entry_;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, if pairs with a shared vertex are left out
+  std::vector<Filter> filters_;              // of keys
+  std::vector<Filter> right_filters_;
   lab::Rounding rounding_;
   ProgressLine progress_;
   std::uint64_t shown_pairs_ = 0;
@@ -196,17 +240,44 @@ void write_all(std::span<const Pair> pairs, lab::PairFile& file) {
   }
 }
 
+/// "1 pair".
+std::string counted_pairs(std::uint64_t pairs) { return lab::counted(pairs, "pair", "pairs"); }
+
+/// Writes a line for each box: itself, and the first box of its component.
+void write_components(PairsCommand& join, const PairsArguments& arguments) {
+  Components components(join.boxes());
+  join.find(components);
+  const std::vector<BoxId> labels = components.labels();
+  std::vector<Pair> rows;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    rows.push_back({BoxId(i), labels[i]});
+    if (labels[i] == i) ++count;
+  }
+  lab::write_file(arguments.output, [&](std::ostream& stream) {
+    lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), false, join.ids(), false,
+                       "box,component\n");
+    file.write(rows);
+    file.finish();
+  });
+  say(join.text(lab::counted(count, "component", "components")));
+}
+
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
-  check(arguments, catalogue);
+  check(arguments, verb, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   PairsCommand join(arguments, catalogue);
+  if (arguments.finds_components) {
+    write_components(join, arguments);
+    return Exit::success;
+  }
   if (arguments.counts) {
     PairCounter counter;
     join.find(counter);
     print(fmt::format("{}\n", counter.count()));
     flush_output();
-    say(join.text(counter.count()));
+    say(join.text(counted_pairs(counter.count())));
     return Exit::success;
   }
   const bool streams = arguments.order == "found";
@@ -235,7 +306,7 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
     }
     file.finish();
   });
-  say(join.text(count));
+  say(join.text(counted_pairs(count)));
   return Exit::success;
 }
 
@@ -261,10 +332,21 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
           "a few past corners")
       ->type_name("DISTANCE");
+  verb->add_flag("--no-touching", arguments->leaves_out_touching,
+                 "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "
+                 "on a border belongs to the box that begins there");
+  verb->add_option(
+          "--same", arguments->same,
+          "Find only pairs of boxes with the same key, such as an image or a class: a table's column, or "
+          "a map's property")
+      ->type_name("NAME");
+  verb->add_option("--different", arguments->different,
+                   "Find only pairs of boxes with different keys, likewise")
+      ->type_name("NAME");
   verb->add_flag(
-      "--no-touching", arguments->leaves_out_touching,
-      "Leave out boxes that only touch: boxes are half-open, without their maxima; a point or a line "
-      "on a boundary is in the box that begins there");
+      "--components", arguments->finds_components,
+      "Instead of pairs, write for each box the first box that it hangs together with by pairs: boxes "
+      "of a cluster have the same one. No pairs are kept");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it affects the time, not the pairs")
       ->capture_default_str();
@@ -301,11 +383,14 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       ->type_name("PART");
   verb->add_flag("--exclude-shared", arguments->excludes_shared,
                  "With --swept: leave out pairs that have a vertex in common");
-  add_examples(*verb, {{"pairs boxes.csv -o pairs.csv", "which boxes of a file overlap"},
-                       {"pairs buildings.geojson roads.csv --count",
-                        "how many boxes of one file overlap one of the other"},
-                       {"pairs boxes.npy --memory 2G --threads 0 -o pairs.npy",
-                        "the same for more boxes than memory holds"}});
+  add_examples(
+      *verb,
+      {{"pairs boxes.csv -o pairs.csv", "which boxes of a file overlap"},
+       {"pairs buildings.geojson roads.csv --count", "how many boxes of one file overlap one of the other"},
+       {"pairs detections.csv --same image -o pairs.csv", "which boxes of the same image overlap"},
+       {"pairs buildings.geojson --components", "which buildings form a cluster"},
+       {"pairs boxes.npy --memory 2G --threads 0 -o pairs.npy",
+        "the same for more boxes than memory holds"}});
   return [arguments, verb, &catalogue] { return run(*arguments, *verb, catalogue); };
 }
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/applicability.hpp"
 #include "cli/message.hpp"
 #include "cli/out_of_core.hpp"
 #include "cli/values.hpp"
@@ -62,6 +63,27 @@ void check_ids(const PairsArguments& arguments) {
     throw Unusable(
         fmt::format("--ids with an array of pairs, '{}', which holds numbers and no ids; expected CSV",
                     arguments.output));
+}
+
+void check_keys(const CLI::App& verb, const PairsArguments& arguments) {
+  for (const char* const option : {"--same", "--different"}) {
+    if (verb.count(option) == 0) continue;
+    check_alone(verb, option, {"--swept", "--memory"}, "whose keys it does not read");
+    if ((option == std::string_view("--same") ? arguments.same : arguments.different).empty())
+      throw Unusable(fmt::format("{} is ''; expected a column or a property", option));
+    if (!arguments.ids.empty() && std::ranges::count(arguments.files, "-") > 0)
+      throw Unusable(fmt::format(
+          "{} and --ids with standard input, which can be read only once; expected a file", option));
+  }
+  check_alone(verb, "--same", {"--different"}, "which contradict each other");
+}
+
+void check_components(const CLI::App& verb, const PairsArguments& arguments) {
+  if (!arguments.finds_components) return;
+  check_alone(verb, "--components", {"--count", "--order", "--swept", "--memory"},
+              "which has a line for each box");
+  if (arguments.files.size() != 1)
+    throw Unusable(fmt::format("--components with {} files; expected one", arguments.files.size()));
 }
 
 }  // namespace
@@ -138,7 +160,7 @@ lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catal
   return threaded;
 }
 
-void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
+void check(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   if (arguments.files.size() > 2)
     throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
                                arguments.files.size()));
@@ -156,6 +178,8 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
        (place(arguments.files[0]) == place(arguments.files[1]) && !fault)))
     throw Unusable(fmt::format("{} and {} are one pipe; expected it once, or a file", arguments.files[0],
                                arguments.files[1]));
+  check_keys(verb, arguments);
+  check_components(verb, arguments);
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <CLI/App.hpp>
+
 #include "broadside/algorithm.hpp"
 
 #include "cli/options.hpp"
@@ -26,6 +28,9 @@ struct PairsArguments {
   std::string to;
   std::string order = "sorted";
   bool counts = false;
+  std::string same;       // a column or property of keys that must be equal
+  std::string different;  // or must not
+  bool finds_components = false;
   std::string memory;  // a limit that makes the join work on disk
   std::string work;    // the work folder of such a join
   bool is_swept = false;
@@ -48,6 +53,6 @@ std::uint64_t read_memory(const std::string& text);
 lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 /// Throws Unusable for contradictory arguments, as far as they can be detected before a file is read.
-void check(const PairsArguments& arguments, const lab::Catalogue& catalogue);
+void check(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue);
 
 }  // namespace broadside::cli

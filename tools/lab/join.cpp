@@ -99,19 +99,20 @@ void match(FrameOfFile& left, FrameOfFile& right) {
   narrow = widened(narrow);
 }
 
-void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs) {
+void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs, const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        Finder<D, Real>(*entry.algorithm, entry.spec).find(list, pairs);
+        Finder<D, Real>(*entry.algorithm, entry.spec).find(list, pairs, filters);
       },
       boxes);
 }
 
-void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs) {
+void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs,
+          const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         Finder<D, Real> finder(*entry.algorithm, entry.spec);
-        finder.find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs);
+        finder.find_between(list, std::get<std::vector<Box<D, Real>>>(right), pairs, filters);
       },
       left);
 }

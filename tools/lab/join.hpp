@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/filter.hpp"
 #include "broadside/pair.hpp"
 
 #include "lab/catalogue.hpp"
@@ -48,22 +49,25 @@ Rounding round_to_float(AnyBoxes& boxes);
 void match(FrameOfFile& left, FrameOfFile& right);
 
 /// Writes each pair of overlapping boxes once, in the order in which the entry finds it. Throws what
-/// Finder::find() throws, and InvalidSpec if the entry cannot search boxes of this dimension.
-void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs);
+/// Finder::find() throws, and InvalidSpec if the entry cannot search boxes of this dimension. Leaves out the
+/// pairs that `filters` reject.
+void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs, const PairFilters& filters = {});
 
 /// Likewise, each overlapping pair of a box of `left` and a box of `right`. match() must have been called for
 /// the two.
-void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs);
+void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs,
+          const PairFilters& filters = {});
 
 /// Writes each pair of boxes whose gap on each axis (0 if they overlap on it) is at most `distance`, which is
 /// finite and at least 0. This finds all pairs within that Euclidean distance, and a few more past corners.
 /// Exact: the gap between two coordinates is compared with the distance as real numbers, without rounding.
 /// Otherwise as join().
-void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs);
+void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs,
+                 const PairFilters& filters = {});
 
 /// Likewise, each such pair of a box of `left` and a box of `right`. match() must have been called for the
 /// two.
 void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
-                 PairSink& pairs);
+                 PairSink& pairs, const PairFilters& filters = {});
 
 }  // namespace broadside::lab

@@ -77,23 +77,24 @@ class PairsWithin final : public PairSink {
 
 }  // namespace
 
-void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs) {
+void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs,
+                 const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         PairsWithin<D, Real> within(list, list, distance, pairs);
-        join(enlarged(list, distance), entry, within);
+        join(enlarged(list, distance), entry, within, filters);
       },
       boxes);
   pairs.flush();
 }
 
 void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
-                 PairSink& pairs) {
+                 PairSink& pairs, const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         const auto& other = std::get<std::vector<Box<D, Real>>>(right);
         PairsWithin<D, Real> within(list, other, distance, pairs);
-        join(enlarged(list, distance), enlarged(other, distance), entry, within);
+        join(enlarged(list, distance), enlarged(other, distance), entry, within, filters);
       },
       left);
   pairs.flush();

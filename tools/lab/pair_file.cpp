@@ -43,10 +43,12 @@ PairFormat pair_format_of(const std::filesystem::path& path, std::string_view na
 }
 
 PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids,
-                   bool has_large_numbers)
+                   bool has_large_numbers, std::string_view header)
     : stream_(stream), ids_(ids) {
   if (format == PairFormat::npy)
     array_.emplace(stream, has_large_numbers ? "u8" : "u4", 2);
+  else if (!header.empty())
+    text_ = header;
   else
     text_ = is_between ? "left,right\n" : "first,second\n";
 }

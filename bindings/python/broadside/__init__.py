@@ -17,7 +17,16 @@ from broadside._errors import (
 )
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
 from broadside._motion import Events, Tracker, World
-from broadside._pairs import BatchPairs, PairTable, count, filters, find_pairs_batch, invalid_rows, pairs
+from broadside._pairs import (
+    BatchPairs,
+    PairTable,
+    components,
+    count,
+    filters,
+    find_pairs_batch,
+    invalid_rows,
+    pairs,
+)
 from broadside._partition import Assignment, Partition
 from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
 
@@ -46,6 +55,7 @@ __all__ = [
     "__version__",
     "advise",
     "algorithms",
+    "components",
     "count",
     "draw",
     "filters",

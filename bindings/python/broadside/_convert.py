@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from broadside import _arguments, _columns, _core
 from broadside._columns import Choice, Column, Columns
 from broadside._errors import InvalidBoxError
+from broadside._keys import Keyed
 
 Rows = NDArray[Any]
 
@@ -389,6 +390,10 @@ def _integers(array: Rows, name: str, most: int) -> NDArray[np.uint64]:
 
 def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     """The fields of broadside.filters() as four uint64 a row."""
+    if isinstance(found, Keyed):
+        if len(found.packed) != count:
+            raise ValueError(f"{found.name} has {len(found.packed)} keys for {count} boxes; expected one for each box")
+        return found.packed
     array = np.asarray(found)
     if array.dtype != FILTER:
         raise TypeError(f"{name} has dtype {array.dtype}; expected what broadside.filters() gives")

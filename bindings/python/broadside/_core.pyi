@@ -10,6 +10,7 @@ __version__: str
 ARRAY: int
 TABLE: int
 COUNT: int
+COMPONENTS: int
 
 class PairTable:
     """Pairs as a table of two columns of uint32, `first` and `second`, by the Arrow C data interface.

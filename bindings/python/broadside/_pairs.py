@@ -12,6 +12,7 @@ from broadside import _arguments, _convert, _core
 from broadside._columns import Columns
 from broadside._core import PairTable as PairTable
 from broadside._errors import InvalidBoxError
+from broadside._keys import with_keys
 
 _find = _core.find
 _ARRAY = _core.ARRAY
@@ -33,6 +34,8 @@ def pairs(
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
     touching: bool = True,
+    same: Any = None,
+    different: Any = None,
 ) -> NDArray[np.uint32]: ...
 @overload
 def pairs(
@@ -50,6 +53,8 @@ def pairs(
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
     touching: bool = True,
+    same: Any = None,
+    different: Any = None,
 ) -> PairTable: ...
 @overload
 def pairs(
@@ -67,6 +72,8 @@ def pairs(
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
     touching: bool = True,
+    same: Any = None,
+    different: Any = None,
 ) -> Any: ...
 def pairs(
     boxes: Any,
@@ -83,6 +90,8 @@ def pairs(
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
     touching: bool = True,
+    same: Any = None,
+    different: Any = None,
 ) -> Any:
     """Every pair of overlapping boxes, once; boxes are closed, so boxes that touch overlap, unless `touching` is False.
 
@@ -116,6 +125,10 @@ def pairs(
         quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
         touching: Whether boxes that only touch overlap. If not, boxes are half-open: without their maxima, except on
             an axis where minimum and maximum are equal. Exact.
+        same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Integers, strings
+            or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
+            Filters may only say which boxes are static.
+        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
@@ -131,6 +144,7 @@ def pairs(
     within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
     milliseconds. Any number of threads may call it at once.
     """
+    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
     which = (threads, filters, other_filters, ignored, quarantine, touching)
@@ -187,8 +201,11 @@ def count(
     ignored: ArrayLike | None = None,
     quarantine: bool = False,
     touching: bool = True,
+    same: Any = None,
+    different: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
+    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns)
     found: int = _find(
         _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine, touching
@@ -239,6 +256,35 @@ def find_pairs_batch(
         boxes, offsets = _convert.worlds(boxes, "boxes")
     boxes = _convert.given(boxes, "boxes", columns)
     return BatchPairs(*_core.find_batch(boxes, offsets, algorithm, threads, filters, ignored, quarantine, touching))
+
+
+def components(
+    boxes: Any,
+    *,
+    algorithm: str = "auto",
+    threads: int | None = None,
+    columns: Columns | None = None,
+    filters: NDArray[np.void] | None = None,
+    ignored: ArrayLike | None = None,
+    quarantine: bool = False,
+    touching: bool = True,
+    same: Any = None,
+    different: Any = None,
+) -> NDArray[np.uint32]:
+    """Which boxes hang together: the connected components of the pairs that `pairs` gives for the same arguments.
+
+    No pairs are kept, however many there are.
+
+    Returns:
+        uint32 of shape (n,): for each box the least row of the boxes in its component. A box without pairs, an absent
+        one for example, has its own row.
+    """
+    filters, _ = with_keys(filters, None, same, different, False)
+    boxes, _ = _sets(boxes, None, columns, None)
+    found: NDArray[np.uint32] = _find(
+        _core.COMPONENTS, boxes, None, algorithm, False, threads, filters, None, ignored, quarantine, touching
+    )
+    return found
 
 
 def filters(

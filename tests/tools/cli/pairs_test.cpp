@@ -56,6 +56,48 @@ TEST(PairsVerb, WritesAnArrayIntoAPipe) {
   EXPECT_EQ(shell("$BROADSIDE pairs " + file + " --to npy | cat").output, text_of(folder.file("pairs.npy")));
 }
 
+const std::string keyed_boxes =
+    "name,image,min_x,min_y,max_x,max_y\n"
+    "a,left,0,0,2,2\n"
+    "b,right,1,1,3,3\n"
+    "c,left,2,2,4,4\n"
+    "d,right,9,9,9,9\n";
+
+TEST(PairsVerb, FindsOnlyPairsOfTheSameOrOfDifferentKeys) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", keyed_boxes);
+  EXPECT_EQ(run({"pairs", file, "--same", "image"}).output, "first,second\n0,2\n");
+  EXPECT_EQ(run({"pairs", file, "--different", "image", "--ids", "name"}).output, "first,second\na,b\nb,c\n");
+  EXPECT_EQ(run({"pairs", file, file, "--same", "image", "--count"}).output, "6\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "image", "--within", "6", "--count"}).output, "2\n");
+  EXPECT_EQ(shell("cat " + file + " | $BROADSIDE pairs - --same image --count").output, "1\n");
+}
+
+TEST(PairsVerb, WritesTheComponentOfEachBox) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", keyed_boxes);
+  const Ended ended = run({"pairs", file, "--components"});
+  EXPECT_EQ(ended.output, "box,component\n0,0\n1,0\n2,0\n3,3\n");
+  EXPECT_THAT(ended.errors, HasSubstr("(4 boxes) in 2D: 2 components, exact in double"));
+  EXPECT_EQ(run({"pairs", file, "--components", "--ids", "name", "--same", "image"}).output,
+            "box,component\na,a\nb,b\nc,a\nd,d\n");
+}
+
+TEST(PairsVerb, RefusesKeysAndComponentsThatItCannotUse) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", keyed_boxes);
+  const std::string no_key = folder.put("no.csv", "image,min_x,min_y,max_x,max_y\na,0,0,1,1\n,1,1,2,2\n");
+  expect_refused(
+      "pairs",
+      {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
+       {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
+       {{no_key, "--same", "image"}, {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
+       {{file, "--different", ""}, {"--different is ''"}},
+       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with standard input"}},
+       {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
+       {{file, "--components", "--count"}, {"--components", "--count"}}});
+}
+
 std::string many_boxes(int count) {
   std::string rows = "min_x,min_y,max_x,max_y\n";
   for (std::int64_t i = 0; i < count; ++i) {
@@ -292,7 +334,7 @@ TEST(PairsVerb, LeavesOutWhatOnlyTouches) {
   const std::string file = folder.put("boxes.csv", four_boxes);
   const Ended ended = run({"pairs", file, "--no-touching"});
   EXPECT_EQ(ended.output, "first,second\n0,3\n");
-  EXPECT_THAT(ended.errors, HasSubstr("in 2D: 1 pair, those that only touch left out, exact in double"));
+  EXPECT_THAT(ended.errors, HasSubstr("in 2D: 1 pair, without pairs that only touch, exact in double"));
   EXPECT_EQ(run({"pairs", file, "--no-touching", "--memory", "32M"}).output, ended.output);
   EXPECT_EQ(run({"pairs", file, file, "--no-touching", "--count"}).output, "6\n");
   // The float below 1 and the double below 1 differ: both files are doubles first.

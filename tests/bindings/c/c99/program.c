@@ -25,6 +25,22 @@ static void try_floats(void) {
   broadside_status status = broadside_find_pairs(&boxes, NULL, NULL, pairs, 4, &count, &error);
   expect(status == BROADSIDE_OK && count == 1 && pairs[0].first == 0 && pairs[0].second == 1, "find", &error);
 
+  {
+    /* Only boxes with the same key pair: the first two have different ones. */
+    const broadside_filter filters[3] = {{0, 0, 1, 0}, {0, 0, 2, 0}, {0, 0, 1, 0}};
+    uint32_t labels[3] = {9, 9, 9};
+    broadside_find_options options;
+    broadside_find_options_init(&options);
+    status = broadside_components(&boxes, NULL, labels, &error);
+    expect(status == BROADSIDE_OK && labels[0] == 0 && labels[1] == 0 && labels[2] == 2, "components", &error);
+    options.filters = filters;
+    status = broadside_components(&boxes, &options, labels, &error);
+    expect(status == BROADSIDE_OK && labels[1] == 1, "components of keys", &error);
+    status = broadside_components(&boxes, NULL, NULL, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT && strstr(error.message, "labels is null") != NULL,
+           "components without labels", &error);
+  }
+
   bodies[2].box[0] = NAN;
   status = broadside_count_pairs(&boxes, NULL, NULL, &count, &error);
   expect(status == BROADSIDE_INVALID_INPUT && error.index == 2 && strstr(error.message, "box 2") != NULL,

@@ -1,0 +1,127 @@
+"""Keys of boxes, such as an image or a class, as filters by which only equal or only unequal ones pair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from broadside import _arguments
+
+_EXPECTED = "expected integers, strings or categories"
+_MOST = 2**31 - 2
+
+
+@dataclass(frozen=True)
+class Keyed:
+    """Filters made of keys, as the extension module takes them: four uint64 a row."""
+
+    name: str
+    packed: NDArray[np.uint64]
+
+
+def with_keys(filters: Any, other_filters: Any, same: Any, different: Any, is_between: bool) -> tuple[Any, Any]:
+    """The filters of both sets, with those of the keys."""
+    if same is None and different is None:
+        return filters, other_filters
+    if same is not None and different is not None:
+        raise ValueError("same and different are both given; expected one of the two")
+    name = "different" if same is None else "same"
+    given = different if same is None else same
+    if is_between and not (isinstance(given, (tuple, list)) and len(given) == 2):
+        raise TypeError(f"{name} is {_arguments.kind_of(given)}; expected two arrays of keys, ({name}_of_boxes, {name}_of_other)")
+    arrays = [_plain(keys, name) for keys in (given if is_between else [given])]
+    groups = _groups(arrays, name)
+    made = [_keyed(group, old, name) for group, old in zip(groups, (filters, other_filters), strict=False)]
+    return made[0], made[1] if is_between else other_filters
+
+
+def _plain(keys: Any, name: str) -> NDArray[Any]:
+    """Keys as integers or strings."""
+    if isinstance(keys, (str, bytes)):
+        raise TypeError(f"{name} is {_arguments.kind_of(keys)}; {_EXPECTED}, one for each box")
+    is_arrow = hasattr(keys, "to_numpy") and hasattr(keys, "null_count") and hasattr(keys, "type")
+    array = np.asarray(keys.to_numpy(zero_copy_only=False) if is_arrow else _of_categories(keys, name))
+    if array.ndim != 1:
+        raise ValueError(f"{name} has shape {array.shape}; expected (n,), a key for each box")
+    if array.size == 0:
+        return np.empty(0, np.int64)
+    if array.dtype.kind in "OT":
+        return _of_objects(array.astype(object), name)
+    if array.dtype.kind == "f" and np.isnan(array).any():
+        raise ValueError(f"{name} has no key in row {int(np.isnan(array).argmax())}; {_EXPECTED}")
+    if array.dtype.kind not in "iubUS":
+        raise TypeError(f"{name} has dtype {array.dtype}; {_EXPECTED}")
+    return array.astype(np.uint8) if array.dtype.kind == "b" else array
+
+
+def _of_categories(keys: Any, name: str) -> Any:
+    """The keys of a pandas Series or Categorical, by its codes; anything else as it is."""
+    categorical = getattr(keys, "cat", keys)
+    codes, categories = getattr(categorical, "codes", None), getattr(categorical, "categories", None)
+    if codes is None or categories is None:
+        return keys
+    codes = np.asarray(codes)
+    if (codes < 0).any():
+        raise ValueError(f"{name} has no key in row {int((codes < 0).argmax())}; {_EXPECTED}")
+    return np.asarray(categories)[codes]
+
+
+def _of_objects(objects: NDArray[Any], name: str) -> NDArray[Any]:
+    for row, key in enumerate(objects):
+        if key is None or type(key).__name__ in ("NAType", "NaTType") or isinstance(key, float) and key != key:
+            raise ValueError(f"{name} has no key in row {row}; {_EXPECTED}")
+        if not isinstance(key, (str, int, np.integer)):
+            raise TypeError(f"{name} has {_arguments.kind_of(key)} in row {row}; {_EXPECTED}")
+    if all(isinstance(key, str) for key in objects):
+        return objects
+    if any(isinstance(key, str) for key in objects):
+        raise TypeError(f"{name} has strings and integers; expected either")
+    return objects
+
+
+def _groups(arrays: list[NDArray[Any]], name: str) -> list[NDArray[np.int64]]:
+    """A positive number for each key, the same for equal ones of either array."""
+    filled = [array for array in arrays if array.size]
+    are_texts = [array.dtype.kind in "US" or array.dtype.kind == "O" and isinstance(array[0], str) for array in filled]
+    if len(set(are_texts)) > 1:
+        raise TypeError(f"{name} has strings for one set and integers for the other; expected either for both")
+    if filled and not are_texts[0]:
+        least = min(int(array.min()) for array in filled)
+        if max(int(array.max()) for array in filled) - least <= _MOST and all(array.dtype.kind != "O" for array in filled):
+            return [_counted_from(array, least) for array in arrays]
+    if len(filled) == 1:
+        numbers = np.unique(filled[0], return_inverse=True)[1]
+    else:
+        numbers = np.unique(np.concatenate([array.astype(object) for array in arrays]), return_inverse=True)[1]
+    numbers = numbers.reshape(-1).astype(np.int64) + 1
+    ends = np.cumsum([array.size for array in arrays])
+    return [numbers[end - array.size : end] for array, end in zip(arrays, ends, strict=True)]
+
+
+def _counted_from(array: NDArray[Any], least: int) -> NDArray[np.int64]:
+    """Integers as numbers from 1 on. The difference of two integers of 64 bits may not fit, but wraps to the right one."""
+    wide = array.astype(np.uint64 if array.dtype.kind == "u" else np.int64).view(np.uint64)
+    return (wide - np.uint64(least % 2**64)).view(np.int64) + 1
+
+
+def _keyed(groups: NDArray[np.int64], filters: Any, name: str) -> Keyed:
+    packed = np.zeros((len(groups), 4), np.uint64)
+    if filters is not None:
+        from broadside import _convert
+
+        packed[:] = _convert.filters(filters, len(groups), "filters")
+        if packed[:, 2].any():
+            raise ValueError(f"filters with groups are given with {name}; expected filters of group 0, since keys are groups")
+    elif name == "different":
+        packed[:, 0], packed[:, 1] = 1, 2**64 - 1
+    if name == "different":
+        packed[:, 2] = (-groups).view(np.uint64)
+        return Keyed(name, packed)
+    if filters is not None and ((packed[:, 0] != 1) | (packed[:, 1] != 2**64 - 1)).any():
+        raise ValueError("filters with categories or masks are given with same; expected one of the two")
+    packed[:, :2] = 0
+    packed[:, 2] = groups.view(np.uint64)
+    return Keyed(name, packed)

@@ -1,0 +1,112 @@
+"""same, different and components(): against the pairs without them."""
+
+import numpy as np
+import pytest
+from conftest import as_set, brute_force, scattered
+
+import broadside
+
+RNG = np.random.default_rng(3)
+BOXES = np.concatenate([corner := RNG.random((400, 2)), corner + 0.1], axis=1)
+KEYS = {
+    "integers": RNG.integers(-3, 3, 400),
+    "far apart": RNG.choice(np.array([-(2**63), 0, 2**63 - 1]), 400),
+    "unsigned": RNG.choice(np.array([2**64 - 1, 2**64 - 2], np.uint64), 400),
+    "strings": RNG.choice(["a", "b", "c"], 400),
+    "objects": np.array(RNG.choice(["a", "b", "c"], 400).tolist(), object),
+    "a list": RNG.integers(0, 9, 400).tolist(),
+    "all": np.arange(400),
+}
+
+
+@pytest.mark.parametrize("keys", KEYS.values(), ids=KEYS)
+def test_only_the_same_or_only_different_keys_pair(keys):
+    everything = brute_force(BOXES)
+    equal = {(a, b) for a, b in everything if keys[a] == keys[b]}
+    assert as_set(broadside.pairs(BOXES, same=keys)) == equal
+    assert as_set(broadside.pairs(BOXES, different=keys)) == everything - equal
+    assert broadside.count(BOXES, same=keys) == len(equal)
+
+
+def test_a_key_means_the_same_in_two_sets():
+    left, right = BOXES[:250], BOXES[250:]
+    for keys in KEYS.values():
+        both = (keys[:250], keys[250:])
+        equal = {(a, b) for a, b in brute_force(left, right) if both[0][a] == both[1][b]}
+        assert as_set(broadside.pairs(left, right, same=both)) == equal
+        assert broadside.count(left, right, different=both) == len(brute_force(left, right)) - len(equal)
+
+
+def test_columns_of_tables_are_keys():
+    pandas = pytest.importorskip("pandas")
+    names = KEYS["strings"]
+    expected = broadside.count(BOXES, same=names)
+    for column in (pandas.Series(names), pandas.Series(names, dtype="category"), pandas.Categorical(names)):
+        assert broadside.count(BOXES, same=column) == expected
+    left = pandas.Series(["a", "b"], dtype="category")
+    right = pandas.Series(["b"], dtype="category")
+    assert broadside.pairs(BOXES[[0, 0]], BOXES[[0]], same=(left, right)).tolist() == [[1, 0]]
+    for missing in (pandas.Series(["a", None]), pandas.Series(["a", None], dtype="category"), pandas.Series([1, None])):
+        with pytest.raises(ValueError, match="same has no key in row 1; expected integers, strings or categories"):
+            broadside.pairs(BOXES[:2], same=missing)
+
+
+def test_arrow_columns_are_keys():
+    pyarrow = pytest.importorskip("pyarrow")
+    names = pyarrow.array(KEYS["strings"].tolist())
+    expected = broadside.count(BOXES, same=KEYS["strings"])
+    for column in (names, names.dictionary_encode(), pyarrow.chunked_array([names[:7], names[7:]])):
+        assert broadside.count(BOXES, same=column) == expected
+    with pytest.raises(ValueError, match="same has no key in row 1"):
+        broadside.pairs(BOXES[:2], same=pyarrow.array(["a", None]))
+
+
+def test_filters_are_applied_as_well_or_refused():
+    statics = broadside.filters(400, is_static=np.arange(400) % 2 == 0)
+    keys = KEYS["integers"]
+    for rule in ("same", "different"):
+        expected = {(a, b) for a, b in brute_force(BOXES) if (keys[a] == keys[b]) == (rule == "same") and (a % 2 or b % 2)}
+        assert as_set(broadside.pairs(BOXES, filters=statics, **{rule: keys})) == expected
+    masks = broadside.filters(400, category=[1, 2] * 200, mask=1)
+    expected = {(a, b) for a, b in brute_force(BOXES) if keys[a] != keys[b] and a % 2 == b % 2 == 0}
+    assert as_set(broadside.pairs(BOXES, filters=masks, different=keys)) == expected
+    with pytest.raises(ValueError, match="filters with categories or masks are given with same"):
+        broadside.pairs(BOXES, filters=masks, same=keys)
+    with pytest.raises(ValueError, match="filters with groups are given with different"):
+        broadside.pairs(BOXES, filters=broadside.filters(400, group=1), different=keys)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"same": [1, 2, 3]}, ValueError, "same has 3 keys for 400 boxes; expected one for each box"),
+        ({"same": KEYS["all"], "different": KEYS["all"]}, ValueError, "same and different are both given"),
+        ({"same": [np.nan] * 400}, ValueError, "same has no key in row 0"),
+        ({"same": [0.5] * 400}, TypeError, "same has dtype float64; expected integers, strings or categories"),
+        ({"same": [[1]] * 400}, ValueError, r"same has shape \(400, 1\)"),
+        ({"different": [None] * 400}, ValueError, "different has no key in row 0"),
+        ({"different": "layer"}, TypeError, "different is a str"),
+        ({"other": BOXES, "same": KEYS["all"]}, TypeError, "same is a ndarray; expected two arrays of keys"),
+        ({"other": BOXES, "same": (KEYS["all"], KEYS["strings"])}, TypeError, "same has strings for one set"),
+    ],
+)
+def test_refuses_other_keys(arguments, error, message):
+    with pytest.raises(error, match=message):
+        broadside.pairs(BOXES, **arguments)
+
+
+def test_components_are_those_of_the_pairs():
+    for width in (0.01, 0.04, 0.1):
+        boxes = np.concatenate([BOXES[:, :2], BOXES[:, :2] + width], axis=1)
+        labels = np.arange(400)
+        for _ in range(400):
+            for a, b in brute_force(boxes):
+                labels[a] = labels[b] = min(labels[a], labels[b])
+            if all(labels[a] == labels[b] for a, b in brute_force(boxes)):
+                break
+        found = broadside.components(boxes)
+        assert found.dtype == np.uint32 and found.tolist() == labels.tolist()
+    assert broadside.components(BOXES, same=KEYS["all"]).tolist() == list(range(400))
+    many = scattered(50_000, 2)
+    assert (broadside.components(many, threads=2) == broadside.components(many, algorithm="sweep_and_prune")).all()
+    assert broadside.components([]).shape == (0,)
