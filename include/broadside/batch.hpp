@@ -69,8 +69,8 @@ BROADSIDE_CALLERS_VECTOR BatchPairs find_pairs_batch(BoxView<D, Real> boxes,
 ///
 /// The first offset must be 0, none may be less than the one before, and the last must be boxes.size();
 /// otherwise throws InvalidFrame. Filters are one for each of `boxes`. Ignored pairs are ids within a world,
-/// and are ignored in every world. Quarantined boxes are listed by their places in `boxes`; InvalidInput has the
-/// place as well, and its message also the world. `right_filters` must be empty.
+/// and are ignored in every world. Quarantined boxes are listed by their places in `boxes`; InvalidInput has
+/// the place as well, and its message also the world. `right_filters` must be empty.
 ///
 /// With several threads, these share the worlds; a world with a large part of all boxes is searched by all of
 /// them. Keeps memory from world to world, so that a world costs little beside its search.

@@ -51,8 +51,9 @@ void check_offsets(std::span<const std::size_t> offsets, std::size_t boxes) {
     throw InvalidFrame(core::message({"the first offset of worlds is ", offsets.front(), "; expected 0"}));
   const auto lesser = std::adjacent_find(offsets.begin(), offsets.end(), std::greater<>());
   if (lesser != offsets.end()) {
-    throw InvalidFrame(core::message({"offset ", std::size_t(lesser - offsets.begin()) + 1, " of worlds is ",
-                                      lesser[1], ", after ", lesser[0], "; expected ascending offsets"}));
+    throw InvalidFrame(
+        core::message({"offset ", static_cast<std::size_t>(lesser - offsets.begin()) + 1, " of worlds is ",
+                       lesser[1], ", after ", lesser[0], "; expected ascending offsets"}));
   }
   if (offsets.back() != boxes) {
     throw InvalidFrame(core::message(
