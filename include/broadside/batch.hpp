@@ -21,10 +21,10 @@ namespace broadside {
 
 /// The pairs of many worlds, world by world: the rows of a matrix in CSR form.
 struct BROADSIDE_CALLERS_VECTOR BatchPairs {
-  std::vector<Pair> pairs;           ///< of ids within each pair's world
-  std::vector<std::size_t> offsets;  ///< where each world's pairs begin, and the number of all pairs
+  std::vector<Pair> pairs;           ///< ids count from the first box of the pair's world
+  std::vector<std::size_t> offsets;  ///< where each world's pairs begin; last, the number of all
 
-  /// The pairs of one world, whose number must be below offsets.size() - 1.
+  /// The pairs of one world; `world` must be less than offsets.size() - 1.
   [[nodiscard]] std::span<const Pair> of(std::size_t world) const {
     return {pairs.data() + offsets[world], offsets[world + 1] - offsets[world]};
   }
@@ -32,8 +32,8 @@ struct BROADSIDE_CALLERS_VECTOR BatchPairs {
 
 namespace detail {
 
-/// Writes the pairs of all worlds to `pairs`, flushes it, and sets offsets.size() `pair_offsets`. Sets
-/// `quarantined` to the places of invalid boxes, or refuses them if it is null.
+/// Writes the pairs of all worlds to `pairs` and flushes it. `pair_offsets` is as long as `offsets`. Lists
+/// invalid boxes in `quarantined`; if that is null, throws InvalidInput for the first one.
 template <int D, typename Real>
 BROADSIDE_PUBLIC void find_pairs_batch(BoxView<D, Real> boxes, std::span<const std::size_t> offsets,
                                        const Spec& algorithm, const Workers& workers,
@@ -61,8 +61,8 @@ BROADSIDE_CALLERS_VECTOR BatchPairs find_pairs_batch(BoxView<D, Real> boxes,
 
 }  // namespace detail
 
-/// Finds the pairs of every world: world i has the boxes from offsets[i] up to offsets[i + 1]. A loop over
-/// find_pairs() gives the same pairs in the same order; its ids, too, count from the world's first box.
+/// Finds the pairs of every world: world i has the boxes from offsets[i] up to offsets[i + 1]. The pairs
+/// and their order are those of find_pairs() for each world in turn. Ids count from the world's first box.
 ///
 ///     const BatchPairs found = find_pairs_batch(boxes, offsets, {.algorithm = AutoOptions{.threads = 0}});
 ///     for (const Pair pair : found.of(world)) ...

@@ -33,8 +33,8 @@ struct SupportedBox {
 
 /// An axis-aligned box in D dimensions: the points p with min[a] <= p[a] <= max[a] on every axis a.
 ///
-/// Boxes are closed: two boxes that only touch overlap, unless half_open() or an option `touching` says
-/// otherwise, and a degenerate box (min = max) is a valid point.
+/// Boxes are closed: two boxes that only touch overlap. half_open() and the option `touching` change that. A
+/// degenerate box (min = max) is a valid point.
 /// Coordinates are in the caller's unit, float or double. Infinite coordinates are allowed and have their
 /// usual meaning.
 ///
@@ -161,10 +161,10 @@ template <typename Real>
 }
 }  // namespace detail
 
-/// The box that stands for a half-open one, with the points min[a] <= p[a] < max[a] on every axis a: each max
-/// above min becomes the next lower number. So boxes that only touch do not overlap, and a point belongs to
-/// just one of the boxes that tile a region. On an axis with min = max, the box keeps its one coordinate.
-/// NaNs and absent boxes do not change.
+/// The closed box that has the same numbers in it as the half-open box min[a] <= p[a] < max[a]: each max
+/// above its min becomes the next lower number. So boxes that only touch do not overlap, and a point on the
+/// border of two tiles belongs to the one that begins there. On an axis with min = max, the box keeps its one
+/// coordinate. NaNs and absent boxes do not change.
 template <int D, typename Real>
 [[nodiscard]] constexpr Box<D, Real> half_open(Box<D, Real> box) noexcept {
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {

@@ -1,4 +1,4 @@
-// Components: which boxes hang together, by the pairs of a search and without keeping these.
+// Components: the connected components of pairs, without keeping these.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@
 namespace broadside {
 
 /// Finds the connected components of a graph whose nodes are the boxes of one set and whose edges are the
-/// pairs that it is given, in any order and any number of times. Takes 4 bytes per box, and nothing per pair.
+/// pairs that it is given, in any order and any number of times. Takes 4 bytes per box and thread, and
+/// nothing per pair.
 ///
 /// A union-find with path halving (Tarjan and van Leeuwen 1984). The root of a component is its least id, so
 /// labels do not depend on the order of pairs.
@@ -24,7 +25,8 @@ class BROADSIDE_PUBLIC Components final : public PairSink {
 
   /// For each box, the least id of the boxes in its component. Flushes the sink.
   ///
-  /// Throws InvalidFrame, as the sink does when it is flushed, if a pair has an id that is no box.
+  /// Throws InvalidFrame, as the sink does when it is flushed, if a pair has an id that is not below the
+  /// number of boxes.
   [[nodiscard]] std::vector<BoxId> labels();
 
   [[nodiscard]] std::unique_ptr<PairSink> empty_clone() const override;
@@ -38,9 +40,8 @@ class BROADSIDE_PUBLIC Components final : public PairSink {
   std::vector<BoxId> parents_;  // never greater than the box itself
 };
 
-/// For each box, the least index of the boxes that it hangs together with: boxes that form a pair, as in
-/// find_pairs(), do, and so do boxes that each hang together with a third one. Of absent boxes, each is
-/// alone. Throws what find_pairs() throws.
+/// For each box, the least index in its connected component. The edges are the pairs of find_pairs(). Each
+/// absent box is a component of its own. Throws what find_pairs() throws.
 ///
 ///     const std::vector<BoxId> cluster = components(boxes);
 template <BoxRange Boxes>

@@ -26,7 +26,7 @@ struct BROADSIDE_CALLERS_VECTOR FindOptions {
   std::span<const Filter> right_filters{};  ///< as in PairFilters
   const IgnoredPairs* ignored = nullptr;    ///< as in PairFilters
   Executor* executor = nullptr;             ///< as in Workers
-  bool touching = true;                     ///< as Finder::set_touching()
+  bool touching = true;                     ///< see Finder::set_touching()
 
   /// If not null, invalid boxes count as absent and are listed here, instead of being refused: see BadInput.
   std::vector<BoxId>* quarantined = nullptr;
@@ -117,7 +117,7 @@ concept OtherBoxes = NoOptions<T> && !PairTarget<T>;
 /// or a function of a Pair or of a std::span<const Pair>. An exception from it ends the search. The spec and
 /// the boxes determine the order of pairs.
 ///
-/// Boxes are closed: touching counts, unless `options` say otherwise. Exact in the precision of the boxes.
+/// Boxes are closed: touching counts, unless options.touching is false. Exact in the precision of the boxes.
 /// Throws InvalidInput, naming the first box with a NaN or with min > max; InvalidFrame if there are filters,
 /// but not one for each box; and InvalidSpec. Thread-safe. For many calls, keep a Finder, which keeps its
 /// memory.

@@ -96,8 +96,8 @@ class BROADSIDE_PUBLIC Finder final {
   /// of the left set. Valid until the next call.
   [[nodiscard]] std::span<const BoxId> quarantined() const noexcept;
 
-  /// Whether boxes that only touch overlap: they do, unless set_touching(false) was called. Each search then
-  /// takes a copy of the boxes as half_open() makes them. Exact. Costs one pass over the boxes.
+  /// Whether boxes that only touch overlap; true by default. If false, each search copies the boxes with
+  /// half_open(), which costs one pass over them. The answer stays exact.
   [[nodiscard]] bool touching() const noexcept;
   void set_touching(bool touching) noexcept;
 

@@ -1,4 +1,4 @@
-// filters_of_keys(): filters by which only boxes with the same key pair, or only boxes with different keys.
+// filters_of_keys(): filters that let boxes pair only if their keys are equal, or only if they differ.
 #pragma once
 
 #include <concepts>
@@ -19,7 +19,7 @@
 
 namespace broadside {
 
-/// Which boxes pair by their keys, such as an image, a class, a chromosome or a layer.
+/// Which boxes may pair by their keys. A key is, for example, an image, a class, a chromosome or a layer.
 enum class KeyRule : std::uint8_t {
   same,      ///< only boxes with equal keys
   different  ///< only boxes with unequal keys
@@ -80,14 +80,13 @@ class KeyFilters {
   Filter filter(std::int32_t group, Filter given) const {
     if (given.group != 0)
       throw InvalidFrame("a filter of group " + std::to_string(given.group) +
-                         " with keys, which are groups themselves; expected group 0");
+                         " with keys, which take the place of groups; expected group 0");
     if (rule_ == KeyRule::different) {
       given.group = -group;
       return given;
     }
     if (given != Filter{.is_static = given.is_static})
-      throw InvalidFrame(
-          "a filter with a category or a mask, and keys that must be the same; expected one of the two");
+      throw InvalidFrame("a filter with a category or a mask, and KeyRule::same; expected one or the other");
     return {.category = 0, .mask = 0, .group = group, .is_static = given.is_static};
   }
 
@@ -113,7 +112,7 @@ template <KeyRange Keys>
   return detail::KeyFilters<std::ranges::range_value_t<Keys>>(rule).filters(keys, filters);
 }
 
-/// The same for two sets: a key means the same in both.
+/// The same for two sets: equal keys match across the sets.
 template <KeyRange Left, KeyRange Right>
 requires std::same_as<std::ranges::range_value_t<Left>, std::ranges::range_value_t<Right>>
 [[nodiscard]] std::pair<std::vector<Filter>, std::vector<Filter>> filters_of_keys(

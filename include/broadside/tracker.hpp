@@ -108,8 +108,9 @@ class BROADSIDE_PUBLIC Tracker final {
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
-  /// Whether boxes that only touch overlap, as Finder::touching(). Applies to boxes as an update takes them,
-  /// so set it before the first one; last_frame() and box_index() have the boxes as half_open() makes them.
+  /// Whether boxes that only touch overlap; true by default. Applies to the boxes that later updates take, so
+  /// set it before the first update. If false, last_frame() and box_index() hold the boxes that half_open()
+  /// returns.
   [[nodiscard]] bool touching() const noexcept;
   void set_touching(bool touching) noexcept;
 

@@ -135,8 +135,8 @@ struct WorldOptions {
   /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
   std::uint32_t first_generation = 0;
 
-  /// Whether boxes that only touch overlap. If not, the world keeps boxes as half_open() makes them, and
-  /// treats the boxes of overlapping() alike: box() returns the next lower maximum.
+  /// Whether boxes that only touch overlap. If false, the world stores half_open(box), so box() returns the
+  /// lowered maxima. overlapping() treats its query box in the same way.
   bool touching = true;
 
   /// Whether add() and move() reject invalid boxes or quarantine them. A quarantined box counts as absent

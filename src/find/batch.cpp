@@ -20,7 +20,8 @@
 namespace broadside {
 namespace {
 
-/// A world with more than this part of a thread's share of all boxes is searched by all threads.
+/// A world with more than 1 / large_worlds_per_share of a thread's share of all boxes, and at least two
+/// threads' minimum, is searched by all threads.
 constexpr std::size_t large_worlds_per_share = 4;
 
 /// Passes pairs on and counts them. It is no FilterSink, so a search by several threads cannot bypass it.
@@ -153,7 +154,7 @@ class Batch {
   Settings settings_;
   const Workers& workers_;
   PairFilters filters_;
-  std::optional<std::size_t> absent_;  // 0 if no box is absent; otherwise each world counts its own
+  std::optional<std::size_t> absent_;  // 0 if no box is absent; otherwise unknown
   core::Parallel parallel_;
   std::vector<std::unique_ptr<find::Search<D, Real>>> searches_;  // by worker; null until it has a world
 };
@@ -191,9 +192,11 @@ void detail::find_pairs_batch(BoxView<D, Real> view, std::span<const std::size_t
 }
 
 template void detail::find_pairs_batch(BoxView<2>, std::span<const std::size_t>, const Spec&, const Workers&,
-                                       const PairFilters&, PairSink&, std::span<std::size_t>, bool, Output<BoxId>*);
+                                       const PairFilters&, PairSink&, std::span<std::size_t>, bool,
+                                       Output<BoxId>*);
 template void detail::find_pairs_batch(BoxView<3>, std::span<const std::size_t>, const Spec&, const Workers&,
-                                       const PairFilters&, PairSink&, std::span<std::size_t>, bool, Output<BoxId>*);
+                                       const PairFilters&, PairSink&, std::span<std::size_t>, bool,
+                                       Output<BoxId>*);
 template void detail::find_pairs_batch(BoxView<2, double>, std::span<const std::size_t>, const Spec&,
                                        const Workers&, const PairFilters&, PairSink&, std::span<std::size_t>,
                                        bool, Output<BoxId>*);

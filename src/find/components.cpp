@@ -1,4 +1,4 @@
-// Components: which boxes hang together, by the pairs of a search and without keeping these.
+// Components: the connected components of pairs, without keeping these.
 #include "broadside/components.hpp"
 
 #include <utility>
@@ -18,7 +18,7 @@ Components::Components(std::size_t boxes) {
 
 std::vector<BoxId> Components::labels() {
   flush();
-  // Parents come before their boxes, so each one is a root by now.
+  // A parent is never greater than its box, so its own parent is a root by now.
   for (BoxId& parent : parents_) parent = parents_[parent];
   return parents_;
 }
@@ -38,8 +38,8 @@ void Components::consume(std::span<const Pair> pairs) {
   for (const Pair pair : pairs) {
     for (const BoxId box : {pair.first, pair.second}) {
       if (index(box) >= parents_.size())
-        throw InvalidFrame(core::message(
-            {"a pair has box ", index(box), "; expected boxes below ", parents_.size(), ", their number"}));
+        throw InvalidFrame(core::message({"a pair has box ", index(box), "; expected an id below ",
+                                          parents_.size(), ", the number of boxes"}));
     }
     unite(pair.first, pair.second);
   }

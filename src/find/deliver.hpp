@@ -1,4 +1,5 @@
-// What Finder and find_pairs_batch() do around a search: the caller's filters, boxes and sink.
+// Shared by Finder and find_pairs_batch(): checks filters, prepares boxes, delivers pairs to the caller's
+// sink.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +42,7 @@ std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D
   return gathered;
 }
 
-/// The half-open boxes in `gathered`, where `boxes` may be already.
+/// Writes the half-open boxes to `gathered` and returns them. `boxes` may already lie in `gathered`.
 template <int D, typename Real>
 std::span<const Box<D, Real>> half_open_boxes(std::span<const Box<D, Real>> boxes,
                                               std::vector<Box<D, Real>>& gathered) {

@@ -39,7 +39,7 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     core::check_count(view.size());
     find::check_filters(filters, view.size());
     std::span<const Box<D, Real>> boxes = find::array_of(view, gathered_[0]);
-    // Half-open boxes are checked before they are made, for messages to have the caller's numbers.
+    // Checked before boxes become half-open, so that messages show the caller's numbers.
     std::size_t absent = touching ? 0 : check(boxes, false);
     if (!touching) boxes = find::half_open_boxes(boxes, gathered_[0]);
     const bool are_rounded = search_.round(boxes, workers);

@@ -89,8 +89,7 @@ class BoxTable {
   void set(std::span<const Handle> handles, BoxView<D, Real> boxes,
            std::span<const Point<D, Real>> velocities) noexcept;
 
-  /// Sets a slot's box, which is as the table keeps it, and enlarges it anew even if it is within its
-  /// enlarged one.
+  /// Stores a box that as_kept() returned, and enlarges it again even if its enlarged box still contains it.
   void reset(std::uint32_t slot, const Box<D, Real>& box) noexcept;
 
   /// Sets a slot's filter in a table that keeps filters, and lists the slot.
@@ -132,7 +131,7 @@ class BoxTable {
   void list_in_a_row(std::uint32_t first, std::size_t count) noexcept;
   void list(std::vector<BoxId>& to, std::uint8_t mark, std::span<const std::uint32_t> slots) noexcept;
 
-  /// Sets a slot's box, which is as the table keeps it.
+  /// Stores a box that as_kept() returned.
   void store(std::uint32_t slot, const Box<D, Real>& box, const Point<D, Real>* velocity) noexcept {
     if (enlarges_ && !margins_.keeps(enlarged_[slot], box, velocity)) return set_outside(slot, box, velocity);
     boxes_[slot] = box;

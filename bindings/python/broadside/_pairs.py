@@ -93,7 +93,7 @@ def pairs(
     same: Any = None,
     different: Any = None,
 ) -> Any:
-    """Every pair of overlapping boxes, once; boxes are closed, so boxes that touch overlap, unless `touching` is False.
+    """Every pair of overlapping boxes, once. Boxes that touch overlap, unless `touching` is False.
 
     Args:
         boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. Arrays of float32 and float64
@@ -123,8 +123,8 @@ def pairs(
         other_filters: Likewise for `other`.
         ignored: Pairs that never count, shape (m, 2), in either order; of one set alone.
         quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
-        touching: Whether boxes that only touch overlap. If not, boxes are half-open: without their maxima, except on
-            an axis where minimum and maximum are equal. Exact.
+        touching: Whether boxes that only touch overlap. If False, boxes are half-open (min <= p < max), except on an
+            axis where minimum and maximum are equal. Exact.
         same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Integers, strings
             or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
             Filters may only say which boxes are static.
@@ -237,20 +237,20 @@ def find_pairs_batch(
     """The pairs of many small worlds in one call: those that `pairs` finds for each world alone, in the same order.
 
     Args:
-        boxes: The boxes of all worlds, one world after another, whatever `pairs` takes; or, without offsets, an array
-            of shape (worlds, n, 4) or (worlds, n, 6). There, a world with fewer boxes than others has absent ones.
+        boxes: The boxes of all worlds, one world after another, in any form that `pairs` takes; or, without offsets, an
+            array of shape (worlds, n, 4) or (worlds, n, 6). Fill up smaller worlds with absent boxes.
         offsets: World i has the rows from ``offsets[i]`` up to ``offsets[i + 1]``: one more number than there are
-            worlds, ascending, from 0 to the number of boxes.
+            worlds, none less than the one before, from 0 to the number of boxes.
         algorithm: As in `pairs`.
         threads: The most threads, which share the worlds; None: all cores.
         columns: As in `pairs`.
         filters: A filter for each box of all worlds.
-        ignored: Pairs that count in no world, shape (m, 2), counted from the first box of each world.
+        ignored: Pairs to leave out in every world, shape (m, 2); rows count from the world's first box.
         quarantine: Leave invalid boxes out instead of raising.
         touching: As in `pairs`.
 
-    Raises as `pairs` does; ``row`` of an InvalidBoxError counts from the first box of all worlds, and the text names
-    the world as well.
+    Raises as `pairs` does; ``row`` of an InvalidBoxError counts from the start of `boxes`; the message also names
+    the world.
     """
     if offsets is None:
         boxes, offsets = _convert.worlds(boxes, "boxes")
@@ -271,7 +271,7 @@ def components(
     same: Any = None,
     different: Any = None,
 ) -> NDArray[np.uint32]:
-    """Which boxes hang together: the connected components of the pairs that `pairs` gives for the same arguments.
+    """The connected components of the pairs that `pairs` gives for the same arguments.
 
     No pairs are kept, however many there are.
 
