@@ -265,7 +265,9 @@ void write_components(PairsCommand& join, const PairsArguments& arguments) {
 
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
-  check(arguments, verb, catalogue);
+  check_keys(verb, arguments);
+  check_components(verb, arguments);
+  check(arguments, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   PairsCommand join(arguments, catalogue);
   if (arguments.finds_components) {
@@ -332,9 +334,10 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
           "a few past corners")
       ->type_name("DISTANCE");
-  verb->add_flag("--no-touching", arguments->leaves_out_touching,
-                 "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "
-                 "on a border belongs to the box that begins there");
+  verb->add_flag(
+      "--no-touching", arguments->leaves_out_touching,
+      "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "
+      "on a border belongs to the box that begins there");
   verb->add_option(
           "--same", arguments->same,
           "Find only pairs of boxes with the same key, such as an image or a class: a table's column, or "

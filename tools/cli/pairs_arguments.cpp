@@ -65,15 +65,22 @@ void check_ids(const PairsArguments& arguments) {
                     arguments.output));
 }
 
+}  // namespace
+
 void check_keys(const CLI::App& verb, const PairsArguments& arguments) {
   for (const char* const option : {"--same", "--different"}) {
     if (verb.count(option) == 0) continue;
     check_alone(verb, option, {"--swept", "--memory"}, "whose keys it does not read");
     if ((option == std::string_view("--same") ? arguments.same : arguments.different).empty())
       throw Unusable(fmt::format("{} is ''; expected a column or a property", option));
-    if (!arguments.ids.empty() && std::ranges::count(arguments.files, "-") > 0)
-      throw Unusable(fmt::format(
-          "{} and --ids with standard input, which can be read only once; expected a file", option));
+    for (const std::string& file : arguments.files) {
+      std::error_code fault;
+      const auto kind = std::filesystem::status(file, fault).type();
+      const bool is_read_once = file == "-" || kind == std::filesystem::file_type::fifo;
+      if (!arguments.ids.empty() && is_read_once)
+        throw Unusable(fmt::format("{} and --ids with '{}', which can be read only once; expected a file",
+                                   option, file));
+    }
   }
   check_alone(verb, "--same", {"--different"}, "which contradict each other");
 }
@@ -85,8 +92,6 @@ void check_components(const CLI::App& verb, const PairsArguments& arguments) {
   if (arguments.files.size() != 1)
     throw Unusable(fmt::format("--components with {} files; expected one", arguments.files.size()));
 }
-
-}  // namespace
 
 double read_distance(const std::string& text) {
   double distance = 0;
@@ -160,7 +165,7 @@ lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catal
   return threaded;
 }
 
-void check(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
+void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   if (arguments.files.size() > 2)
     throw Unusable(fmt::format("{} files; expected one to join, or two to join with each other",
                                arguments.files.size()));
@@ -178,8 +183,6 @@ void check(const PairsArguments& arguments, const CLI::App& verb, const lab::Cat
        (place(arguments.files[0]) == place(arguments.files[1]) && !fault)))
     throw Unusable(fmt::format("{} and {} are one pipe; expected it once, or a file", arguments.files[0],
                                arguments.files[1]));
-  check_keys(verb, arguments);
-  check_components(verb, arguments);
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);

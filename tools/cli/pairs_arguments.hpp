@@ -52,7 +52,11 @@ std::uint64_t read_memory(const std::string& text);
 /// several.
 lab::Entry entry_of(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
+/// Throws Unusable for arguments that contradict --same, --different or --components, which `verb` must have.
+void check_keys(const CLI::App& verb, const PairsArguments& arguments);
+void check_components(const CLI::App& verb, const PairsArguments& arguments);
+
 /// Throws Unusable for contradictory arguments, as far as they can be detected before a file is read.
-void check(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue);
+void check(const PairsArguments& arguments, const lab::Catalogue& catalogue);
 
 }  // namespace broadside::cli

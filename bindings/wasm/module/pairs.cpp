@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "broadside/components.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
@@ -14,7 +15,7 @@ namespace broadside::wasm {
 namespace {
 
 /// The results of a search, as bits.
-enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4, leaves_out_touching = 8 };
+enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4, leaves_out_touching = 8, labels = 16 };
 
 /// The boxes of a search, and which of their pairs count.
 struct PairsCall {
@@ -39,6 +40,13 @@ class WasmFinder {
       reply[1] = static_cast<std::uint32_t>(counter.count() >> 32);
       return;
     }
+    if ((search.mode & labels) != 0) {
+      Components components(search.count);
+      find(search, components);
+      labels_ = components.labels();
+      answer(std::span<const BoxId>(labels_));
+      return;
+    }
     pairs_.clear();
     PairCollector collector(pairs_);
     find(search, collector);
@@ -61,6 +69,7 @@ class WasmFinder {
   Finder<dimension> finder_;
   std::vector<Pair> pairs_;
   std::vector<Pair> scratch_;
+  std::vector<BoxId> labels_;
 };
 
 class WasmTracker {

@@ -1,6 +1,6 @@
 // The face of the smaller modules: pairs, trackers and worlds.
 import type {
-  BoxArray, Boxes, CountJoinOptions, CountOptions, Dimension, JoinOptions, PairFinding, PairsOptions, Tracker,
+  BoxArray, Boxes, ComponentsOptions, CountJoinOptions, CountOptions, Dimension, JoinOptions, PairFinding, PairsOptions, Tracker,
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, KeptBoxes } from "./boxes.ts";
@@ -49,6 +49,10 @@ export class PairFindingFace implements PairFinding {
 
   count(boxes: BoxArray, options?: CountOptions): number {
     return this.#of(options).count(boxes as Given, options);
+  }
+
+  components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array {
+    return this.#of(options).components(boxes as Given, options);
   }
 
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number {

@@ -1,19 +1,21 @@
 // All pairs of boxes of one dimension: by finders that stay in the module, one for each algorithm, so that calls ask for no memory.
 import type {
-  CountJoinOptions, CountOptions, Filters, JoinOptions, PairsOptions,
+  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, Keys, PairsOptions,
 } from "../types/types.d.ts";
-import { type Given, bytesOf, bytesOfFilter, checkFilters, countOf, put, putFilters } from "./boxes.ts";
+import { type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
-const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8 }
+const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8, labels = 16 }
 
-const countOptions = ["dimension", "algorithm", "filters", "touching"];
+const countOptions = ["dimension", "algorithm", "filters", "same", "different", "touching"];
 const pairsOptions = [...countOptions, "sorted", "view"];
-const countJoinOptions = [...countOptions, "rightFilters"];
-const joinOptions = [...pairsOptions, "rightFilters"];
+const componentsOptions = [...countOptions, "view"];
+const rightOptions = ["rightFilters", "rightSame", "rightDifferent"];
+const countJoinOptions = [...countOptions, ...rightOptions];
+const joinOptions = [...pairsOptions, ...rightOptions];
 
 /** Views of fewer ids than this are kept: making one costs as much as comparing ten boxes. */
 const maxKept = 256;
@@ -53,8 +55,8 @@ export class Pairs {
     // Short, so that engines compile it and the loops that it calls as one function. What #meansFew() says of usual
     // options is looked at here, for calling it would take as long as comparing two boxes.
     if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
-        options === this.#lastChecked && options.filters === undefined && options.algorithm === undefined &&
-        options.touching !== false ||
+        options === this.#lastChecked && options.filters === undefined && options.same === undefined &&
+        options.different === undefined && options.algorithm === undefined && options.touching !== false ||
         this.#meansFew(options))) {
       if (this.#fewPairs.length === 0) this.#renewFew();
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
@@ -95,13 +97,19 @@ export class Pairs {
   #meansFew(options: PairsOptions): boolean {
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     const { algorithm } = options;
-    return options.filters === undefined && options.touching !== false &&
+    return options.filters === undefined && options.same === undefined && options.different === undefined &&
+      options.touching !== false &&
       (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
   join(left: Given, right: Given, options: JoinOptions = {}): Uint32Array {
     this.#check(options, joinOptions);
     return this.#find(left, right, options, Mode.joins | (options.sorted === true ? Mode.sorts : 0));
+  }
+
+  components(boxes: Given, options: ComponentsOptions = {}): Uint32Array {
+    this.#check(options, componentsOptions);
+    return this.#find(boxes, undefined, options, Mode.labels);
   }
 
   count(boxes: Given, options: CountOptions = {}): number {
@@ -128,7 +136,7 @@ export class Pairs {
     this.#search(boxes, right, options, mode);
     const { u32, reply } = this.#core;
     const address = u32[reply] as number;
-    const length = 2 * (u32[reply + 1] as number);
+    const length = (mode & Mode.labels ? 1 : 2) * (u32[reply + 1] as number);
     if (options.view !== true) return u32.slice(address / 4, address / 4 + length);
     const last = this.#lastView;
     // The same view again where it would be no other: making one is not cheap.
@@ -143,9 +151,12 @@ export class Pairs {
 
   #search(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): void {
     const core = this.#core;
-    const { filters, rightFilters } = options;
+    let { filters, rightFilters } = options;
     const count = countOf(core, boxes, right === undefined ? "boxes" : "left");
     const rightCount = right === undefined ? 0 : countOf(core, right, "right");
+    if (options.same !== undefined || options.different !== undefined || options.rightSame !== undefined ||
+        options.rightDifferent !== undefined)
+      [filters, rightFilters] = filtersOfKeys(options, count, right === undefined ? undefined : rightCount);
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
     const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
@@ -174,6 +185,34 @@ export class Pairs {
     this.#lastAlgorithm = algorithm;
     return (this.#lastFinder = finder);
   }
+}
+
+/** Filters by which only boxes with the same key pair, or only boxes with different ones: each key is a group. */
+function filtersOfKeys(options: JoinOptions, count: number, rightCount: number | undefined): [Filters, Filters?] {
+  const isSame = options.same !== undefined || options.rightSame !== undefined;
+  if (isSame && (options.different !== undefined || options.rightDifferent !== undefined))
+    refuse("different", options.different ?? options.rightDifferent, "nothing, as same is given");
+  const numbers = new Map<number | string, number>();
+  const made = (keys: Keys | undefined, given: Filters | undefined, boxes: number, isRight: boolean): Filters => {
+    const name = isRight ? isSame ? "rightSame" : "rightDifferent" : isSame ? "same" : "different";
+    if (given !== undefined) refuse(isRight ? "rightFilters" : "filters", given, `nothing, as ${name} is given`);
+    if (keys === undefined || countIn(keys, 1, name) !== boxes)
+      refuse(`the length of ${name}`, keys?.length, `${boxes}, one for each box`);
+    const group = new Int32Array(boxes);
+    for (let i = 0; i < boxes; ++i) {
+      const key = keys[i] as number | string;
+      if (typeof key !== "string" && !Number.isInteger(key)) refuse(`${name}[${i}]`, key, "a whole number or a text");
+      let number = numbers.get(key);
+      if (number === undefined) numbers.set(key, number = numbers.size + 1);
+      group[i] = isSame ? number : -number;
+    }
+    if (!isSame) return { group };
+    const none = new Uint32Array(boxes);
+    return { category: none, mask: none, group };
+  };
+  const filters = made(isSame ? options.same : options.different, options.filters, count, false);
+  if (rightCount === undefined) return [filters];
+  return [filters, made(isSame ? options.rightSame : options.rightDifferent, options.rightFilters, rightCount, true)];
 }
 
 /** Filters that say anything. */

@@ -35,14 +35,21 @@ export interface Filter {
   readonly isStatic?: boolean;
 }
 
+/** A key for each box, such as its image, class or layer: whole numbers or texts. */
+export type Keys = ArrayLike<number | string>;
+
 export interface CountOptions {
   /** If left out, the dimension that was loaded alone, or 2. */
   readonly dimension?: Dimension;
   /** If left out, `"auto"`. `broadside/pairs` has only `brute_force` and `grid`, and chooses by the number of boxes. */
   readonly algorithm?: AlgorithmSpec;
   readonly filters?: Filters;
+  /** Only boxes with the same key pair. Instead of filters. */
+  readonly same?: Keys;
+  /** Only boxes with different keys pair. Instead of filters. */
+  readonly different?: Keys;
   /**
-   * Whether boxes that only touch overlap: true by default. If not, boxes are half-open: without their maxima, except
+   * Whether boxes that only touch overlap: true by default. If false, boxes are half-open (min <= p < max), except
    * on an axis where minimum and maximum are equal.
    */
   readonly touching?: boolean;
@@ -61,8 +68,14 @@ export interface PairsOptions extends CountOptions, ResultOptions {
   readonly sorted?: boolean;
 }
 
+export interface ComponentsOptions extends CountOptions, ResultOptions {}
+
 export interface CountJoinOptions extends CountOptions {
   readonly rightFilters?: Filters;
+  /** The right set's keys, with `same`. */
+  readonly rightSame?: Keys;
+  /** The right set's keys, with `different`. */
+  readonly rightDifferent?: Keys;
 }
 
 export interface JoinOptions extends CountJoinOptions, PairsOptions {}
@@ -227,6 +240,11 @@ export interface PairFinding {
   /** Every pair of a box of `left` and an overlapping one of `right`, likewise. */
   join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array;
   count(boxes: BoxArray, options?: CountOptions): number;
+  /**
+   * Which boxes hang together by pairs, such as clusters of touching things: for each box, the least place of a box in
+   * its connected component. No pairs are kept.
+   */
+  components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array;
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number;
   /** Room for `count` boxes in the module's memory, absent until you set them. */
   boxes(count: number, dimension?: Dimension): Boxes;

@@ -151,3 +151,60 @@ test("tunables and former names are the library's", () => {
   for (const algorithm of ["grid:cell=2.5", "grid:cell=1e-3", "hierarchical_grid"])
     assert.deepEqual([...broadside.pairs(boxes, { algorithm, sorted: true })], expected, algorithm);
 });
+
+test("only boxes with the same key pair, or only boxes with different ones", () => {
+  for (const { broadside } of builds) {
+    for (const count of [3, 40, 500]) {
+      const boxes = scenes[0]!.boxes(count, 2, 5);
+      const all = pairsByDefinition(boxes, 2);
+      for (const kinds of [1, 2, 7, 1000]) {
+        for (const text of [false, true]) {
+          const keys = Array.from({ length: count }, (_, i) => text ? `image ${i * 7 % kinds}` : i * 7 % kinds);
+          const expected = (isSame: boolean) => all.filter((_, i) =>
+            (keys[all[i - i % 2]!] === keys[all[i - i % 2 + 1]!]) === isSame);
+          assert.deepEqual([...broadside.pairs(boxes, { same: keys, sorted: true })], expected(true));
+          assert.deepEqual([...broadside.pairs(boxes, { different: keys, sorted: true })], expected(false));
+          assert.equal(broadside.count(boxes, { same: keys }), expected(true).length / 2);
+        }
+      }
+    }
+  }
+});
+
+test("a key means the same in two sets", () => {
+  const left = [0, 0, 1, 1, 0, 0, 1, 1], right = [1, 1, 2, 2];
+  assert.deepEqual([...broadside.join(left, right, { same: ["a", "b"], rightSame: ["b"] })], [1, 0]);
+  assert.equal(broadside.countJoin(left, right, { different: ["a", "b"], rightDifferent: ["b"] }), 1);
+});
+
+test("refuses keys that it cannot use", () => {
+  const boxes = [0, 0, 1, 1, 0, 0, 1, 1];
+  const refused = (options: object, message: RegExp) =>
+    assert.throws(() => broadside.pairs(boxes, options), { code: "INVALID_ARGUMENT", message });
+  refused({ same: [1] }, /the length of same is 1; expected 2, one for each box/);
+  refused({ same: [1, NaN] }, /same\[1\] is NaN; expected a whole number or a text/);
+  refused({ different: [1, undefined] }, /different\[1\] is undefined/);
+  refused({ same: [1, 2], different: [1, 2] }, /different is Array; expected nothing, as same is given/);
+  refused({ same: [1, 2], filters: {} }, /filters is Object; expected nothing, as same is given/);
+  assert.throws(() => broadside.join(boxes, boxes, { same: [1, 2] }), /the length of rightSame is undefined/);
+});
+
+test("components are the boxes that hang together", () => {
+  for (const { broadside } of builds) {
+    for (const count of [0, 1, 40, 700]) {
+      const boxes = scenes[0]!.boxes(count, 2, 9);
+      const labels = Array.from({ length: count }, (_, i) => i);
+      const pairs = pairsByDefinition(boxes, 2);
+      for (let changes = true; changes;) {
+        changes = false;
+        for (let i = 0; i < pairs.length; i += 2) {
+          const [a, b] = [pairs[i]!, pairs[i + 1]!];
+          changes ||= labels[a] !== labels[b];
+          labels[a] = labels[b] = Math.min(labels[a]!, labels[b]!);
+        }
+      }
+      assert.deepEqual([...broadside.components(boxes)], labels);
+      assert.deepEqual([...broadside.components(boxes, { view: true })], labels);
+    }
+  }
+});
