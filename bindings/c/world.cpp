@@ -30,6 +30,7 @@ struct WorldImpl {
   }
 
   const BoxIndex<D, Real>& index() const { return world.box_index(); }
+  Box<D, Real> as_kept(const Box<D, Real>& box) const { return world.as_kept(box); }
   broadside_handle handle_of(BoxId slot) const { return c::handle_of(world.handle_of(slot)); }
   std::optional<BoxId> except(const broadside_query& query) const {
     const bool is_there = query.except != nullptr && world.contains(c::handle_of(*query.except));
@@ -232,8 +233,8 @@ broadside_status broadside_world_overlapping(const broadside_world* world, const
       [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
         Buffer<broadside_handle> buffer(handles, room, count, "handles");
         index.overlapping(
-            value_of<Box<D, Real>>(box, "box"), [&](BoxId id) { buffer.add(queried.handle_of(id)); },
-            options);
+            queried.as_kept(value_of<Box<D, Real>>(box, "box")),
+            [&](BoxId id) { buffer.add(queried.handle_of(id)); }, options);
         buffer.finish();
       });
 }

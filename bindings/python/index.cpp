@@ -25,6 +25,8 @@ struct PyIndex {
         [](Number row) { return std::optional(BoxId{row}); });
   }
 
+  static Box<D, Real> as_kept(const Box<D, Real>& box) { return box; }
+
   std::size_t size;
   BoxIndex<D, Real> index;
 };

@@ -68,7 +68,7 @@ nb::tuple find_batch(nb::handle boxes, nb::handle offsets, nb::handle algorithm,
   const SearchArguments search(boxes, nb::none(), text(algorithm, "algorithm"), threads, filters, nb::none(),
                                ignored, truth(quarantine), truth(touching));
   const std::vector<std::uint64_t> given =
-      integers(offsets, "offsets", std::numeric_limits<std::int64_t>::max());
+      integers(offsets, "offsets", std::numeric_limits<std::ptrdiff_t>::max());
   const std::vector<std::size_t> worlds(given.begin(), given.end());
   std::vector<Pair> pairs;
   std::vector<std::size_t> begins(worlds.size());
@@ -81,9 +81,10 @@ nb::tuple find_batch(nb::handle boxes, nb::handle offsets, nb::handle algorithm,
       PairCollector collector(pairs, all.size());
       std::vector<BoxId> places;
       detail::OutputTo<std::vector<BoxId>> quarantined(places);
-      detail::find_pairs_batch(
-          all, worlds, search.algorithm, workers, {.filters = search.filters, .ignored = &search.ignored},
-          static_cast<PairSink&>(collector), begins, search.touching, search.quarantine ? &quarantined : nullptr);
+      detail::find_pairs_batch(all, worlds, search.algorithm, workers,
+                               {.filters = search.filters, .ignored = &search.ignored},
+                               static_cast<PairSink&>(collector), begins, search.touching,
+                               search.quarantine ? &quarantined : nullptr);
       return 0;
     });
     return 0;

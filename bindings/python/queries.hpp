@@ -48,7 +48,7 @@ class Queries {
   nb::object overlapping(nb::handle queries, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", 2 * D, are_doubles);
     std::vector<Box> memory;
-    return overlapped(rows.array(memory), choice, [](const Box& box) { return box; });
+    return overlapped(rows.array(memory), choice, [this](const Box& box) { return asked_.as_kept(box); });
   }
 
   nb::object containing(nb::handle points, const QueryChoice& choice) const {

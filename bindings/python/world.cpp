@@ -50,6 +50,7 @@ struct PyWorld {
     body(
         world.box_index(), [&](BoxId id) { return number_of(world.handle_of(id)); }, place_of);
   }
+  Box<D, Real> as_kept(const Box<D, Real>& box) const { return world.as_kept(box); }
 
   CallMutex mutex;
   World<D, Real> world;

@@ -155,9 +155,11 @@ namespace detail {
 template <typename Real>
 [[nodiscard]] constexpr Real next_below(Real number) noexcept {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
-  if (number == 0) return -std::numeric_limits<Real>::denorm_min();
+  constexpr Bits sign = Bits{1} << (8 * sizeof(Real) - 1);
   const Bits bits = __builtin_bit_cast(Bits, number);
-  return __builtin_bit_cast(Real, number > 0 ? bits - 1 : bits + 1);
+  const bool is_negative = (bits & sign) != 0;  // by its bits: a processor may compare denormals as zeros
+  if ((bits & ~sign) == 0) return -std::numeric_limits<Real>::denorm_min();
+  return __builtin_bit_cast(Real, is_negative ? bits + 1 : bits - 1);
 }
 }  // namespace detail
 

@@ -32,7 +32,7 @@ concept BoxKey = std::integral<Key> || std::is_enum_v<Key> || std::convertible_t
 
 /// A range of keys, one for each box.
 template <typename Keys>
-concept KeyRange = std::ranges::input_range<Keys> && BoxKey<std::ranges::range_value_t<Keys>>;
+concept KeyRange = std::ranges::forward_range<const Keys> && BoxKey<std::ranges::range_value_t<Keys>>;
 
 namespace detail {
 
@@ -63,8 +63,6 @@ class KeyFilters {
   using Stored = std::conditional_t<std::is_integral_v<Key> || std::is_enum_v<Key>, Key, std::string>;
 
   std::int32_t group(const Key& key) {
-    if (numbers_.size() == static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-      throw InvalidFrame("2147483648 different keys; expected at most 2147483647");
     if constexpr (std::is_same_v<Stored, std::string>) {
       const std::string_view text = key;
       if (last_ != 0 && text == last_key_) return last_;  // equal keys often follow each other
@@ -73,7 +71,10 @@ class KeyFilters {
       if (last_ != 0 && key == last_key_) return last_;
       last_key_ = key;
     }
-    last_ = numbers_.try_emplace(last_key_, static_cast<std::int32_t>(numbers_.size() + 1)).first->second;
+    const std::size_t next = numbers_.size() + 1;
+    if (next > std::size_t{std::numeric_limits<std::int32_t>::max()} && !numbers_.contains(last_key_))
+      throw InvalidFrame("2147483648 different keys; expected at most 2147483647");
+    last_ = numbers_.try_emplace(last_key_, static_cast<std::int32_t>(next)).first->second;
     return last_;
   }
 

@@ -108,11 +108,10 @@ class BROADSIDE_PUBLIC Tracker final {
   [[nodiscard]] BadInput bad_input() const noexcept;
   void set_bad_input(BadInput bad_input) noexcept;
 
-  /// Whether boxes that only touch overlap; true by default. Applies to the boxes that later updates take, so
-  /// set it before the first update. If false, last_frame() and box_index() hold the boxes that half_open()
-  /// returns.
+  /// Whether boxes that only touch overlap; true by default. Throws std::logic_error after the first
+  /// update. If false, last_frame() and box_index() hold the boxes that half_open() returns.
   [[nodiscard]] bool touching() const noexcept;
-  void set_touching(bool touching) noexcept;
+  void set_touching(bool touching);
 
   /// The indexes, ascending, of the boxes that were invalid when they last changed. They count as absent.
   /// Valid until the next update.

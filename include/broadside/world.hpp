@@ -136,7 +136,7 @@ struct WorldOptions {
   std::uint32_t first_generation = 0;
 
   /// Whether boxes that only touch overlap. If false, the world stores half_open(box), so box() returns the
-  /// lowered maxima. overlapping() treats its query box in the same way.
+  /// lowered maxima: move() would lower them again. overlapping() treats its query box in the same way.
   bool touching = true;
 
   /// Whether add() and move() reject invalid boxes or quarantine them. A quarantined box counts as absent
@@ -366,9 +366,11 @@ class BROADSIDE_PUBLIC World {
   }
 
   /// The index that queries use, brought up to date; valid until the world changes. Its ids are slots:
-  /// handle_of() gives their handles.
+  /// handle_of() gives their handles. as_kept() gives the box that overlapping() asks it for: the box itself,
+  /// or half_open(box) without WorldOptions::touching.
   [[nodiscard]] const BoxIndex<D, Real>& box_index() const;
   [[nodiscard]] Handle handle_of(BoxId slot) const noexcept;
+  [[nodiscard]] Box<D, Real> as_kept(const Box<D, Real>& box) const noexcept;
 
   /// Whether the box is in the world.
   [[nodiscard]] bool contains(Handle handle) const noexcept;
@@ -436,9 +438,6 @@ class BROADSIDE_PUBLIC World {
   void join_into(const World& other, detail::Output<HandlePair>& pairs) const;
   void list_quarantined(detail::Output<Handle>& handles) const;
   void write_snapshot(detail::Output<std::byte>& bytes) const;
-
-  /// The box as the world keeps it: see WorldOptions::touching.
-  [[nodiscard]] Box<D, Real> as_kept(const Box<D, Real>& box) const noexcept;
 
   /// The slot; nothing if the box is not in the world.
   std::optional<BoxId> slot_of(const std::optional<Handle>& handle) const noexcept {

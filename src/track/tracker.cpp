@@ -198,7 +198,9 @@ bool Tracker<D, Real>::touching() const noexcept {
 }
 
 template <int D, typename Real>
-void Tracker<D, Real>::set_touching(bool touching) noexcept {
+void Tracker<D, Real>::set_touching(bool touching) {
+  if (state_->frames.size() != 0)
+    throw std::logic_error("touching was set after the first update of a tracker; expected it before");
   state_->frames.touching = touching;
 }
 

@@ -70,12 +70,15 @@ void WorldState<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
 template <int D, typename Real>
 void WorldState<D, Real>::shift_origin(const Point<D, Real>& origin) {
   parts.boxes.reserve_changes(parts.slots.size());
-  const auto shifted = [&origin](Box<D, Real> box) {
+  // A half-open box is lowered again after the shift, or rounding would raise its maximum to the next tile.
+  const auto shifted = [&](Box<D, Real> box) {
     for (int axis = 0; axis < D; ++axis) {
+      if (!parts.options.touching && box.min[axis] < box.max[axis])
+        box.max[axis] = -broadside::detail::next_below(-box.max[axis]);
       box.min[axis] -= origin[axis];
       box.max[axis] -= origin[axis];
     }
-    return box;
+    return parts.boxes.as_kept(box);
   };
   for (std::uint32_t slot = 0; slot < parts.slots.size(); ++slot) {
     if (parts.slots.state(slot) != SlotState::live) continue;

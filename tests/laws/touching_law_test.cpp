@@ -1,6 +1,8 @@
 // The law of half-open boxes: with `touching` off, a pair is two boxes that share a point without their
 // maxima.
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
+#include "broadside/world.hpp"
 
 #include "law_case.hpp"
 #include "tests/support/drawn_boxes.hpp"
@@ -127,6 +130,27 @@ TEST_P(TouchingLaw, FollowsThem) {
       held = now;
     }
   });
+}
+
+TEST(Touching, IsSetBeforeTheFirstUpdateOfATracker) {
+  Tracker<2> tracker;
+  const std::vector<Box2> boxes = {{{0, 0}, {1, 1}}};
+  PairCounter pairs;
+  tracker.update({.boxes = boxes}, pairs, pairs);
+  EXPECT_THROW(tracker.set_touching(false), std::logic_error);
+}
+
+TEST(Touching, StaysWhatItIsWhereAWorldIsShifted) {
+  World2 world({.touching = false});
+  world.add({{0, 0}, {1, 1}});
+  world.add({{1, 0}, {2, 1}});
+  world.add({{0.5F, 0}, {1.5F, 1}});
+  EXPECT_EQ(world.update().begun.size(), 2U);
+  world.shift_origin({-1000, 0});
+  EXPECT_TRUE(world.update().begun.empty());
+  std::size_t found = 0;
+  world.overlapping({{1001, 0}, {1002, 1}}, [&](Handle) { ++found; });
+  EXPECT_EQ(found, 2U);
 }
 
 TEST(Touching, IsAnOptionOfFindPairsWhoseErrorsNameTheGivenBoxes) {

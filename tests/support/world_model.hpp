@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -85,20 +86,20 @@ struct WorldModel {
   }
 
   void shift_origin(const Point<D, Real>& origin) {
-    for (auto& [id, member] : members) {
-      for (Box<D, Real>* const box : {&member.box, &member.enlarged}) {
-        for (int axis = 0; axis < D; ++axis) {
-          box->min[axis] -= origin[axis];
-          box->max[axis] -= origin[axis];
-        }
-      }
-    }
-    for (auto& [id, removal] : removed) {
+    const auto shift = [&](Box<D, Real>& box, bool touching) {
       for (int axis = 0; axis < D; ++axis) {
-        removal.box.min[axis] -= origin[axis];
-        removal.box.max[axis] -= origin[axis];
+        if (!touching && box.min[axis] < box.max[axis])
+          box.max[axis] = std::nextafter(box.max[axis], std::numeric_limits<Real>::infinity());
+        box.min[axis] -= origin[axis];
+        box.max[axis] -= origin[axis];
       }
+      if (!touching) box = half_open(box);
+    };
+    for (auto& [id, member] : members) {
+      shift(member.box, options.touching);
+      shift(member.enlarged, true);
     }
+    for (auto& [id, removal] : removed) shift(removal.box, options.touching);
   }
 
   /// What has begun, has ended and goes on since the last update.

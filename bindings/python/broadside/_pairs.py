@@ -255,7 +255,11 @@ def find_pairs_batch(
     if offsets is None:
         boxes, offsets = _convert.worlds(boxes, "boxes")
     boxes = _convert.given(boxes, "boxes", columns)
-    return BatchPairs(*_core.find_batch(boxes, offsets, algorithm, threads, filters, ignored, quarantine, touching))
+    which = (algorithm, threads, filters, ignored, quarantine, touching)
+    try:
+        return BatchPairs(*_core.find_batch(boxes, offsets, *which))
+    except InvalidBoxError as error:
+        raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
 
 
 def components(

@@ -101,8 +101,9 @@ BROADSIDE_EXPORT(query_overlapping)
 broadside_status query_overlapping(bool is_world, void* address, const Filter* filter, double except) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 index.overlapping(Box<dimension>{point_at(0), point_at(dimension)},
-                                   [](BoxId id) { ids.push_back(id); }, {filter, left_out});
+                 Box<dimension> box{point_at(0), point_at(dimension)};
+                 if (is_world) box = static_cast<WasmWorld*>(address)->world().as_kept(box);
+                 index.overlapping(box, [](BoxId id) { ids.push_back(id); }, {filter, left_out});
                });
 }
 

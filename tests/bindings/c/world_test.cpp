@@ -499,6 +499,21 @@ TEST(CTouching, IsLeftOutWhereThatIsAskedFor) {
   ASSERT_EQ(broadside_tracker_update(tracker, &view, nullptr, 0, nullptr, &events, &error), BROADSIDE_OK);
   EXPECT_EQ(events.begun_count, 2U);
   broadside_tracker_destroy(tracker);
+  broadside_world_options world_options;
+  broadside_world_options_init(&world_options);
+  world_options.settings = "world:touching=no";
+  broadside_world* world = nullptr;
+  ASSERT_EQ(
+      broadside_world_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &world_options, &world, &error),
+      BROADSIDE_OK);
+  std::vector<broadside_handle> handles(boxes.size());
+  ASSERT_EQ(broadside_world_add(world, &view, nullptr, nullptr, handles.data(), &error), BROADSIDE_OK);
+  std::size_t found = 0;
+  ASSERT_EQ(broadside_world_overlapping(world, boxes.data(), nullptr, handles.data(), handles.size(), &found,
+                                        &error),
+            BROADSIDE_OK);
+  EXPECT_EQ(found, 2U);
+  broadside_world_destroy(world);
 }
 
 TEST(CErrors, CutALongMessageAtACharacter) {

@@ -131,6 +131,11 @@ def test_leaves_out_boxes_that_only_touch(dtype):
     world = broadside.World(2, dtype=dtype, touching=False)
     world.add(tiles)
     assert len(world.update().begun) == len(expected)
+    queries, _ = world.overlapping(tiles[:2])
+    assert queries.tolist().count(0) == 2 and queries.tolist().count(1) == 3
+    batch = broadside.find_pairs_batch(tiles, [0, 4], touching=False)
+    assert as_set(batch.pairs) == expected
+    assert broadside.components(tiles[:2], touching=False).tolist() == [0, 1]
 
 
 def test_quarantines_invalid_boxes():

@@ -122,6 +122,7 @@ test("boxes that only touch are left out", () => {
   const world = broadside.world({ touching: false });
   world.add(tiles);
   assert.equal(world.update().begun.length, 2 * 4);
+  assert.equal(world.overlapping(tiles.slice(0, 4)).length, 2);
 });
 
 test("options that were given before are read anew", () => {
