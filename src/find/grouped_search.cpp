@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 
 #include "broadside/algorithm.hpp"
@@ -48,19 +47,6 @@ struct PassAccepted {
   }
 
   Filters filters;
-};
-
-/// Passes on the pairs that filters accept which differ in their groups alone.
-struct PassByGroup {
-  bool operator()(Pair pair, Pair& to) const {
-    to = pair;
-    const std::int32_t first = groups[pair.first];
-    const bool share = first == groups[pair.second] && first != 0;
-    return share ? first > 0 : others_accept;
-  }
-
-  const std::int32_t* groups;
-  bool others_accept;  // whether boxes without a common group accept each other
 };
 
 /// Passes on the pairs of one search that its test accepts, with the boxes' ids.
@@ -158,27 +144,8 @@ std::optional<Statistics> GroupedSearch<D>::search_all(Searcher<D>& searcher, co
     return core::search_through(core::PassingSink(accepted, pairs),
                                 [&](PairSink& sink) { return searcher.search(input, sink); });
   };
-  if (take_groups(filters, input.boxes.size()))
-    return search_accepted(PassByGroup{group_of_.data(), detail::bits_accept(filters[0], filters[0])});
   return filters.array() != nullptr ? search_accepted(PassAccepted<const Filter*>{filters.array()})
                                     : search_accepted(PassAccepted<BoxFilters>{filters});
-}
-
-/// Sets group_of_ if the boxes' filters differ in their groups alone, as those of keys do; else returns
-/// false. Pairs then read 4 bytes at two places instead of 24, which miss the caches of many boxes.
-template <int D>
-bool GroupedSearch<D>::take_groups(const BoxFilters& filters, std::size_t boxes) {
-  if (boxes == 0) return false;
-  Filter common = filters[0];
-  group_of_.clear();
-  group_of_.reserve(boxes);
-  for (std::size_t i = 0; i < boxes; ++i) {
-    const Filter filter = filters[i];  // a copy, since another thread may change the caller's
-    common.group = filter.group;
-    if (filter != common) return false;
-    group_of_.push_back(filter.group);
-  }
-  return true;
 }
 
 template <int D>

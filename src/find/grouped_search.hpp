@@ -47,7 +47,6 @@ class GroupedSearch {
   bool sample(const SearchInput<D>& input, const BoxFilters& filters);
   std::optional<Statistics> search_all(Searcher<D>& searcher, const SearchInput<D>& input,
                                        const BoxFilters& filters, PairSink& pairs);
-  bool take_groups(const BoxFilters& filters, std::size_t boxes);
   std::optional<Statistics> run(const PlannedSearch& planned, Searcher<D>& searcher,
                                 const SearchInput<D>& input, const BoxFilters& filters, PairSink& pairs);
   void gather(const SearchInput<D>& input, std::span<const std::uint32_t> groups);
@@ -67,9 +66,8 @@ class GroupedSearch {
   std::vector<SampledBox> sample_;
   std::vector<std::pair<std::size_t, std::size_t>> rejected_;  // places of sampled boxes
   std::vector<FilterPlan::GroupPair> rejected_groups_;
-  double weight_ = 0;                   // the number of pairs of boxes that a pair of the sample stands for
-  std::vector<std::int32_t> group_of_;  // by place, if filters differ in their groups alone
-  core::LargeArray<Box<D>> boxes_;      // of one search
+  double weight_ = 0;               // the number of pairs of boxes that a pair of the sample stands for
+  core::LargeArray<Box<D>> boxes_;  // of one search
   core::LargeArray<Box<D, double>> doubles_;
   core::LargeArray<BoxId> ids_;
 };

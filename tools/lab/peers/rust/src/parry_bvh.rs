@@ -60,7 +60,13 @@ macro_rules! parry_bvh {
                     let (left, right) = boxes.split_at(left_count);
                     self.bvh = self.tree_of(left);
                     self.other = self.tree_of(right);
+                    let meet = |a: u32, b: u32| aabb_of(&left[a as usize]).intersects(&aabb_of(&right[b as usize]));
+                    // parry does not compare the root of a tree of one leaf.
+                    let one_leaf = left.len() == 1 || right.len() == 1;
                     for (a, b) in self.bvh.leaf_pairs(&self.other, |a, b| a.intersects(b)) {
+                        if one_leaf && !meet(a, b) {
+                            continue;
+                        }
                         pairs.add(a, left_count as u32 + b)?;
                     }
                     ControlFlow::Continue(())
