@@ -143,7 +143,7 @@ broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const 
     const BatchPairs found = with_kind(boxes->kind, [&]<int D, typename Real>() {
       return find_pairs_batch(view_of<D, Real>(*boxes), {offsets, worlds + 1}, which);
     });
-    std::ranges::copy(found.offsets, pair_offsets);
+    std::copy(found.offsets.begin(), found.offsets.end(), pair_offsets);
     copy_as(std::span(found.pairs).first(std::min(found.pairs.size(), room)), pairs);
     if (found.pairs.size() > room) throw too_small(room, "pairs", found.pairs.size());
   });

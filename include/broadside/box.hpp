@@ -151,7 +151,7 @@ template <int D, typename Real>
 }
 
 namespace detail {
-/// The greatest number below a finite number or +infinity.
+/// The greatest number below a finite one.
 template <typename Real>
 [[nodiscard]] constexpr Real next_below(Real number) noexcept {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
@@ -166,11 +166,12 @@ template <typename Real>
 /// The closed box that has the same numbers in it as the half-open box min[a] <= p[a] < max[a]: each max
 /// above its min becomes the next lower number. So boxes that only touch do not overlap, and a point on the
 /// border of two tiles belongs to the one that begins there. On an axis with min = max, the box keeps its one
-/// coordinate. NaNs and absent boxes do not change.
+/// coordinate. Infinite bounds, NaNs and absent boxes do not change.
 template <int D, typename Real>
 [[nodiscard]] constexpr Box<D, Real> half_open(Box<D, Real> box) noexcept {
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
-    if (box.min[axis] < box.max[axis]) box.max[axis] = detail::next_below(box.max[axis]);
+    if (box.min[axis] < box.max[axis] && box.max[axis] < std::numeric_limits<Real>::infinity())
+      box.max[axis] = detail::next_below(box.max[axis]);
   }
   return box;
 }

@@ -32,7 +32,7 @@ concept BoxKey = std::integral<Key> || std::is_enum_v<Key> || std::convertible_t
 
 /// A range of keys, one for each box.
 template <typename Keys>
-concept KeyRange = std::ranges::forward_range<const Keys> && BoxKey<std::ranges::range_value_t<Keys>>;
+concept KeyRange = std::ranges::input_range<const Keys> && BoxKey<std::ranges::range_value_t<Keys>>;
 
 namespace detail {
 
@@ -46,11 +46,12 @@ class KeyFilters {
   std::vector<Filter> filters(const Keys& keys, std::span<const Filter> given) {
     std::vector<Filter> made;
     if constexpr (std::ranges::sized_range<const Keys>) made.reserve(std::ranges::size(keys));
+    std::size_t count = 0;
     for (const auto& key : keys) {
-      if (!given.empty() && made.size() == given.size()) break;
-      made.push_back(filter(group(key), given.empty() ? Filter{} : given[made.size()]));
+      if (given.empty() || count < given.size())
+        made.push_back(filter(group(key), given.empty() ? Filter{} : given[count]));
+      ++count;
     }
-    const auto count = static_cast<std::size_t>(std::ranges::distance(keys));
     if (!given.empty() && given.size() != count) {
       throw InvalidFrame(std::to_string(given.size()) + " filters for " + std::to_string(count) +
                          " keys; expected one for each key, or none");

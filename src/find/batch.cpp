@@ -80,7 +80,7 @@ void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t absent,
   for (std::size_t i = 0; absent > 0 && i < boxes.size(); ++i) {
     if (core::is_invalid(boxes[i])) places.push_back(BoxId(i));
   }
-  std::ranges::copy(places, quarantined.resize(places.size()).begin());
+  std::copy(places.begin(), places.end(), quarantined.resize(places.size()).begin());
 }
 
 /// Searches worlds of one array of boxes.

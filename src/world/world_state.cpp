@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -73,7 +74,7 @@ void WorldState<D, Real>::shift_origin(const Point<D, Real>& origin) {
   // A half-open box is lowered again after the shift, or rounding would raise its maximum to the next tile.
   const auto shifted = [&](Box<D, Real> box) {
     for (int axis = 0; axis < D; ++axis) {
-      if (!parts.options.touching && box.min[axis] < box.max[axis])
+      if (!parts.options.touching && box.min[axis] < box.max[axis] && std::isfinite(box.max[axis]))
         box.max[axis] = -broadside::detail::next_below(-box.max[axis]);
       box.min[axis] -= origin[axis];
       box.max[axis] -= origin[axis];

@@ -41,6 +41,7 @@ SnapshotBytes any_snapshot(Bytes& bytes) {
   options.relative_margin = bytes.next() % 4 == 0 ? 0.5 : 0;
   if (kind % 2 == 1 && bytes.next() % 2 == 0) options.events = WorldEvents::enlarged;
   options.keep_pairs = bytes.next() % 4 != 0;
+  options.touching = bytes.next() % 4 != 0;
   WorldHistory<D, Real> history(bytes, course);
   const std::size_t frames = bytes.below(4);
   for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -66,6 +67,8 @@ WorldModel<D, Real> model_of(const SnapshotFields<D, Real>& fields) {
               {fields.filters.empty() ? Filter{} : fields.filters[slot],
                fields.user_data.empty() ? 0 : fields.user_data[slot]});
   }
+  // Only now: the snapshot has the boxes as the world keeps them.
+  model.options.touching = !fields.is_set(world::snapshot::leaves_out_touching);
   for (const Pair pair : fields.ignored)
     model.ignored.insert({handle(index(pair.first)), handle(index(pair.second))});
   return model;

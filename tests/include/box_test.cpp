@@ -72,13 +72,14 @@ TEST(HalfOpen, LowersEachMaximumAboveItsMinimumToTheNextNumber) {
   const auto max_of = []<typename Real>(Real min, Real max) {
     return half_open(Box<2, Real>{{min, 0}, {max, 0}}).max[0];
   };
-  for (const float max : {1.0F, -1.0F, 0.0F, -0.0F, 1e-45F, -1e-45F, 3.4e38F, infinity, 1.17549435e-38F})
+  for (const float max : {1.0F, -1.0F, 0.0F, -0.0F, 1e-45F, -1e-45F, 3.4e38F, 1.17549435e-38F})
     EXPECT_EQ(max_of(-infinity, max), std::nextafter(max, -infinity)) << max;
-  for (const double max : {1.0, -1.0, 0.0, 5e-324, -5e-324, 1e308, double{infinity}})
+  for (const double max : {1.0, -1.0, 0.0, 5e-324, -5e-324, 1e308})
     EXPECT_EQ(max_of(-double{infinity}, max), std::nextafter(max, -double{infinity})) << max;
   EXPECT_EQ(max_of(2.0F, 2.0F), 2.0F);
   EXPECT_EQ(max_of(-infinity, -infinity), -infinity);
   EXPECT_EQ(max_of(infinity, infinity), infinity);
+  EXPECT_EQ(max_of(0.0F, infinity), infinity);
   EXPECT_TRUE(is_absent(half_open(absent_box<2>())));
   static_assert(half_open(Box2{{0, 1}, {1, 1}}) == Box2{{0, 1}, {0.99999994F, 1}});
 }

@@ -2,6 +2,7 @@
 // maxima.
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,10 +24,13 @@
 namespace broadside::laws {
 namespace {
 
-/// Whether [a_min, a_max) and [b_min, b_max) share a number, where [x, x) has the number x.
+/// Whether [a_min, a_max) and [b_min, b_max) share a number, where [x, x) has the number x, and [x, infinity)
+/// has infinity.
 template <typename Real>
 bool share_number(Real a_min, Real a_max, Real b_min, Real b_max) {
-  const auto has = [](Real min, Real max, Real x) { return min == max ? x == min : min <= x && x < max; };
+  const auto has = [](Real min, Real max, Real x) {
+    return min == max ? x == min : min <= x && (x < max || max == std::numeric_limits<Real>::infinity());
+  };
   const Real x = std::max(a_min, b_min);
   return has(a_min, a_max, x) && has(b_min, b_max, x);
 }

@@ -173,7 +173,7 @@ class WorldHistory {
   /// Asks for what can be asked at any time.
   void look() {
     const Box<D, Real> place = course_.box(*choices_);
-    const Box<D, Real> kept = course_.options.touching ? place : half_open(place);
+    const Box<D, Real> kept = model_.options.touching ? place : half_open(place);
     if (attempt([&] { static_cast<void>(world_->box_index()); })) {
       std::vector<Handle> found;
       std::vector<Handle> expected;

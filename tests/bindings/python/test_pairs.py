@@ -155,5 +155,5 @@ def test_takes_specs_and_names_former_algorithms():
         assert as_set(broadside.pairs(boxes, algorithm=spec)) == expected
 
 
-def test_says_first_that_boxes_are_closed():
-    assert "closed" in broadside.pairs.__doc__.splitlines()[0]
+def test_says_first_that_touching_counts():
+    assert "touch overlap" in broadside.pairs.__doc__.splitlines()[0]

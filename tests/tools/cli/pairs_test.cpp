@@ -93,7 +93,7 @@ TEST(PairsVerb, RefusesKeysAndComponentsThatItCannotUse) {
        {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
        {{no_key, "--same", "image"}, {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
        {{file, "--different", ""}, {"--different is ''"}},
-       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with standard input"}},
+       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
        {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
        {{file, "--components", "--count"}, {"--components", "--count"}}});
 }
