@@ -87,15 +87,14 @@ TEST(PairsVerb, RefusesKeysAndComponentsThatItCannotUse) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", keyed_boxes);
   const std::string no_key = folder.put("no.csv", "image,min_x,min_y,max_x,max_y\na,0,0,1,1\n,1,1,2,2\n");
-  expect_refused(
-      "pairs",
-      {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
-       {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
-       {{no_key, "--same", "image"}, {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
-       {{file, "--different", ""}, {"--different is ''"}},
-       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
-       {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
-       {{file, "--components", "--count"}, {"--components", "--count"}}});
+  expect_refused("pairs", {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
+                           {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
+                           {{no_key, "--same", "image"},
+                            {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
+                           {{file, "--different", ""}, {"--different is ''"}},
+                           {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
+                           {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
+                           {{file, "--components", "--count"}, {"--components", "--count"}}});
 }
 
 std::string many_boxes(int count) {
