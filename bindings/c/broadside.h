@@ -179,20 +179,21 @@ BROADSIDE_API broadside_status broadside_for_each_pairs(const broadside_boxes* b
 
 /** Finds the pairs of many worlds in one call: world i has the boxes from offsets[i] up to offsets[i + 1], and
  * its pairs count from its first box, as a call of broadside_find_pairs() for each world gives them. There are
- * `worlds` + 1 offsets, none less than the one before, from 0 to the number of boxes. Writes to `pair_offsets`, with room for
- * `worlds` + 1, where each world's pairs begin and, last, how many pairs there are. Writes the pairs to `pairs`,
- * which has room for `room` of them; if there are more, the first `room`, and the status is BROADSIDE_TOO_SMALL.
+ * `worlds` + 1 offsets, none less than the one before, from 0 to the number of boxes. Writes to
+ * `pair_offsets`, with room for `worlds` + 1, where each world's pairs begin and, last, how many pairs there
+ * are. Writes the pairs to `pairs`, which has room for `room` of them; if there are more, the first `room`, and
+ * the status is BROADSIDE_TOO_SMALL. Each call searches, also one that only asks how many pairs there are.
  *
- * Of `options`, which may be null, filters are one for each of all boxes, and ignored pairs never count in any world.
- * With several threads ("auto:threads=0" takes all), the threads share the worlds. The index of an invalid box is its place in
- * `boxes`. */
+ * Of `options`, which may be null, filters are one for each of all boxes, and ignored pairs are left out in
+ * every world. With several threads ("auto:threads=0" takes all), the threads share the worlds. The index of an
+ * invalid box is its place in `boxes`. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_find_pairs_batch(
     const broadside_boxes* boxes, const size_t* offsets, size_t worlds, const broadside_find_options* options,
     broadside_pair* pairs, size_t room, size_t* pair_offsets, broadside_error* error);
 
-/** Finds the connected components of the pairs, and keeps no pair: sets labels[i], of which there are as many as
- * boxes, to the least place of a box in the connected component of box i. A box without pairs has its own. If
- * the call fails, `labels` are as they were. */
+/** Finds the connected components of the pairs without keeping these. Sets labels[i], one for each box, to the
+ * least place of a box in the component of box i. A box without pairs has its own place. If the call fails,
+ * `labels` are as they were. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_components(const broadside_boxes* boxes,
                                                              const broadside_find_options* options,
                                                              uint32_t* labels, broadside_error* error);

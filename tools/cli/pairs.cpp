@@ -348,8 +348,8 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       ->type_name("NAME");
   verb->add_flag(
       "--components", arguments->finds_components,
-      "Instead of pairs, write for each box the first box that it hangs together with by pairs: boxes "
-      "of a cluster have the same one. No pairs are kept");
+      "Instead of pairs, write each box with the first box of its connected component, such as a cluster "
+      "of boxes that touch. No pairs are kept");
   verb->add_option("--algorithm,--algorithms", arguments->algorithm,
                    "Name or spec such as grid:cell=2.5; it affects the time, not the pairs")
       ->capture_default_str();

@@ -241,8 +241,8 @@ export interface PairFinding {
   join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array;
   count(boxes: BoxArray, options?: CountOptions): number;
   /**
-   * Which boxes hang together by pairs, such as clusters of touching things: for each box, the least place of a box in
-   * its connected component. No pairs are kept.
+   * The connected components of the pairs, such as clusters of touching things: for each box, the least place of a box
+   * in its component. No pairs are kept.
    */
   components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array;
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number;
