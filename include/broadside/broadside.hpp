@@ -23,5 +23,6 @@
 #include "broadside/spec.hpp"
 #include "broadside/tracker.hpp"
 #include "broadside/version.hpp"
+#include "broadside/within.hpp"
 #include "broadside/world.hpp"
 // IWYU pragma: end_exports

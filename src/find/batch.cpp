@@ -77,9 +77,7 @@ template <int D, typename Real>
 void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t absent,
                   detail::Output<BoxId>& quarantined) {
   std::vector<BoxId> places;
-  for (std::size_t i = 0; absent > 0 && i < boxes.size(); ++i) {
-    if (core::is_invalid(boxes[i])) places.push_back(BoxId(i));
-  }
+  if (absent > 0) find::list_invalid(boxes, 0, places);
   std::copy(places.begin(), places.end(), quarantined.resize(places.size()).begin());
 }
 

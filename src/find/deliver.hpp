@@ -1,5 +1,5 @@
-// Shared by Finder and find_pairs_batch(): checks filters, prepares boxes, delivers pairs to the caller's
-// sink.
+// Shared by Finder, find_pairs_batch() and find_pairs_within(): checks filters, prepares boxes, delivers
+// pairs to the caller's sink.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "broadside/pair.hpp"
 
 #include "core/float_environment.hpp"
+#include "core/input_check.hpp"
 #include "core/message.hpp"
 
 namespace broadside::find {
@@ -25,8 +26,17 @@ inline void check_filters(std::span<const Filter> filters, std::size_t boxes, co
       {filters.size(), " filters for ", boxes, set, " boxes; expected one for each box, or none"}));
 }
 
-/// Refuses filters that do not suit a search in one set of `boxes` boxes.
-inline void check_filters(const PairFilters& filters, std::size_t boxes) {
+/// Refuses filters that do not suit a search in one set of `boxes` boxes or, if `right_boxes` is not null,
+/// between two sets.
+inline void check_filters(const PairFilters& filters, std::size_t boxes,
+                          const std::size_t* right_boxes = nullptr) {
+  if (right_boxes != nullptr) {
+    if (filters.ignored != nullptr && !filters.ignored->empty())
+      throw InvalidFrame("ignored pairs for a search between two sets; expected none");
+    check_filters(filters.filters, boxes, " left");
+    check_filters(filters.right_filters, *right_boxes, " right");
+    return;
+  }
   if (!filters.right_filters.empty())
     throw InvalidFrame(core::message(
         {filters.right_filters.size(), " right filters for a search in one set; expected none"}));
@@ -40,6 +50,14 @@ std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D
   gathered.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) gathered[i] = boxes[i];
   return gathered;
+}
+
+/// Appends the places of invalid boxes to `places`, counted on from `first`.
+template <int D, typename Real>
+void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first, std::vector<BoxId>& places) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (core::is_invalid(boxes[i])) places.push_back(BoxId(first + i));
+  }
 }
 
 /// Writes the half-open boxes to `gathered` and returns them. `boxes` may already lie in `gathered`.

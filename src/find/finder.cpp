@@ -17,17 +17,6 @@
 #include "find/search.hpp"
 
 namespace broadside {
-namespace {
-
-void check_filters(const PairFilters& filters, std::size_t left, std::size_t right) {
-  if (filters.ignored != nullptr && !filters.ignored->empty())
-    throw InvalidFrame("ignored pairs for a search between two sets; expected none");
-  find::check_filters(filters.filters, left, " left");
-  find::check_filters(filters.right_filters, right, " right");
-}
-
-}  // namespace
-
 template <int D, typename Real>
 class BROADSIDE_HIDDEN Finder<D, Real>::State {
  public:
@@ -53,7 +42,8 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
                                          PairSink& pairs, const PairFilters& filters) {
     const core::DefaultEnvironment environment;
     core::check_count(left_view.size() + right_view.size());
-    check_filters(filters, left_view.size(), right_view.size());
+    const std::size_t right_count = right_view.size();
+    find::check_filters(filters, left_view.size(), &right_count);
     std::span<const Box<D, Real>> left = find::array_of(left_view, gathered_[0]);
     std::span<const Box<D, Real>> right = find::array_of(right_view, gathered_[1]);
     const std::size_t absent = check(left, right);
@@ -105,12 +95,8 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
     return absent_left + absent_right;
   }
 
-  /// Appends the places of invalid boxes to quarantined_, counted on from `first`.
   void list_invalid(std::span<const Box<D, Real>> boxes, std::size_t first) {
-    if (bad_input == BadInput::reject) return;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (core::is_invalid(boxes[i])) quarantined_.push_back(BoxId(first + i));
-    }
+    if (bad_input == BadInput::quarantine) find::list_invalid(boxes, first, quarantined_);
   }
 
   find::Search<D, Real> search_;

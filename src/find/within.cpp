@@ -1,0 +1,294 @@
+// Within: pairs within a Euclidean distance. Searches boxes that are enlarged outwards, and tests the pairs.
+#include "broadside/within.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "broadside/algorithm.hpp"
+#include "broadside/error.hpp"
+
+#include "algorithms/registry.hpp"
+#include "core/filter_sink.hpp"
+#include "core/input_check.hpp"
+#include "core/large_array.hpp"
+#include "core/message.hpp"
+#include "core/number_text.hpp"
+#include "core/parallel.hpp"
+#include "find/deliver.hpp"
+#include "find/search.hpp"
+
+namespace broadside {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+template <int D>
+using Gaps = std::array<double, D>;
+
+/// The gap of two boxes on each axis. Infinities of the same sign have none.
+template <int D, typename Real>
+Gaps<D> gaps_of(const Box<D, Real>& a, const Box<D, Real>& b) {
+  Gaps<D> gaps;
+  for (int axis = 0; axis < D; ++axis) {
+    const double above = static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]);
+    const double below = static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]);
+    const double gap = above > below ? above : below;
+    gaps[axis] = gap > 0 ? gap : 0;
+  }
+  return gaps;
+}
+
+template <int D>
+double sum_of_squares(const Gaps<D>& gaps) {
+  double sum = 0;
+  for (const double gap : gaps) sum += gap * gap;
+  return sum;
+}
+
+/// The gaps times 2^-exponent.
+template <int D>
+Gaps<D> scaled(Gaps<D> gaps, int exponent) {
+  for (double& gap : gaps) gap = std::ldexp(gap, -exponent);
+  return gaps;
+}
+
+/// Whether no square overflows that matters beside the square of this number, and none that vanishes does.
+bool has_plain_square(double number) { return number >= 1e-100 && number <= 1e100; }
+
+template <int D>
+bool are_within(const Gaps<D>& gaps, double distance) {
+  if (has_plain_square(distance)) return sum_of_squares<D>(gaps) <= distance * distance;
+  double greatest = 0;
+  for (const double gap : gaps) greatest = gap > greatest ? gap : greatest;
+  if (distance == 0) return greatest == 0;
+  if (distance == infinite) return greatest < infinite;  // a sum of radii
+  const int exponent = std::ilogb(distance);
+  const double limit = std::ldexp(distance, -exponent);
+  return sum_of_squares<D>(scaled<D>(gaps, exponent)) <= limit * limit;
+}
+
+template <int D>
+double length_of(const Gaps<D>& gaps) {
+  double greatest = 0;
+  for (const double gap : gaps) greatest = gap > greatest ? gap : greatest;
+  if (has_plain_square(greatest)) return std::sqrt(sum_of_squares<D>(gaps));
+  if (greatest == 0 || greatest == infinite) return greatest;
+  const int exponent = std::ilogb(greatest);
+  return std::ldexp(std::sqrt(sum_of_squares<D>(scaled<D>(gaps, exponent))), exponent);
+}
+
+/// Passes on the pairs of boxes within a distance.
+template <int D, typename Real>
+struct PassWithin {
+  bool operator()(Pair pair, Pair& to) const {
+    to = pair;
+    return are_within<D>(gaps_of(left[index(pair.first)], right[index(pair.second)]), distance);
+  }
+
+  const Box<D, Real>* left;
+  const Box<D, Real>* right;
+  double distance;
+};
+
+/// Passes on the pairs of boxes within the sum of their radii.
+template <int D, typename Real>
+struct PassWithinRadii {
+  bool operator()(Pair pair, Pair& to) const {
+    to = pair;
+    return are_within<D>(gaps_of(left[index(pair.first)], right[index(pair.second)]),
+                         left_radii[index(pair.first)] + right_radii[index(pair.second)]);
+  }
+
+  const Box<D, Real>* left;
+  const Box<D, Real>* right;
+  const double* left_radii;
+  const double* right_radii;
+};
+
+void check_distance(double distance, const std::string& name) {
+  if (distance >= 0 && distance < infinite) return;
+  throw InvalidQuery(
+      core::message({name, " is ", core::text_of(distance), "; expected a finite number of 0 or more"}));
+}
+
+void check_radii(std::span<const double> radii, std::size_t boxes, const char* set) {
+  if (radii.size() != boxes)
+    throw InvalidFrame(
+        core::message({radii.size(), " radii for ", boxes, set, " boxes; expected one for each box"}));
+  for (std::size_t i = 0; i < boxes; ++i) {
+    if (!(radii[i] >= 0 && radii[i] < infinite))
+      check_distance(radii[i], core::message({"the radius of", set, " box ", i}));
+  }
+}
+
+/// How far a box is enlarged on each side. Two boxes overlap if their gap on every axis is at most the reach,
+/// even after the gap, the sum of two radii and the square have been rounded: together by less than 2^-50.
+double enlargement(double radius) {
+  return radius == 0 ? 0 : radius * (1 + 0x1p-50) + std::numeric_limits<double>::denorm_min();
+}
+
+/// A number of type Real that is less than the exact value of which `rounded` is the nearest double.
+template <typename Real>
+Real less_than(double rounded) {
+  const auto number = static_cast<Real>(rounded);
+  return number == -std::numeric_limits<Real>::infinity() ? number : detail::next_below(number);
+}
+
+template <int D, typename Real>
+Box<D, Real> enlarged_outwards(Box<D, Real> box, double by) {
+  if (!is_present(box)) return absent_box<D, Real>();
+  for (int axis = 0; axis < D; ++axis) {
+    box.min[axis] = less_than<Real>(static_cast<double>(box.min[axis]) - by);
+    box.max[axis] = -less_than<Real>(-static_cast<double>(box.max[axis]) - by);
+  }
+  return box;
+}
+
+/// A set of boxes, in which some may be absent, and what is searched in their stead.
+template <int D, typename Real>
+struct Set {
+  Set(BoxView<D, Real> view, std::vector<Box<D, Real>>& gathered, std::span<const double> set_radii)
+      : boxes(find::array_of(view, gathered)), radii(set_radii) {}
+
+  void enlarge(const Reach& reach, core::Parallel& parallel) {
+    core::renew(enlarged, boxes.size());
+    const double half = enlargement(reach.distance() / 2);
+    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i)
+        enlarged[i] = enlarged_outwards(boxes[i], reach.has_radii() ? enlargement(radii[i]) : half);
+    });
+  }
+
+  std::span<const Box<D, Real>> boxes;
+  std::span<const double> radii;
+  core::LargeArray<Box<D, Real>> enlarged{};
+};
+
+void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t second) {
+  for (const Pair pair : pairs) {
+    if (index(pair.first) < first && index(pair.second) < second) continue;
+    throw InvalidFrame(core::message({"a pair of box ", index(pair.first), " and box ", index(pair.second),
+                                      "; expected ids below ", first, " and ", second}));
+  }
+}
+
+}  // namespace
+
+template <int D, typename Real>
+double distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
+  const core::DefaultEnvironment environment;
+  const volatile double result = length_of<D>(gaps_of(a, b));
+  return result;
+}
+
+template <int D, typename Real>
+bool is_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) noexcept {
+  const core::DefaultEnvironment environment;
+  const volatile bool result = are_within<D>(gaps_of(a, b), distance);
+  return result;
+}
+
+template <int D, typename Real>
+void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* right_view, const Reach& reach,
+                               PairSink& pairs, const Spec& spec, const Workers& workers,
+                               const PairFilters& filters, Output<BoxId>* quarantined) {
+  const core::DefaultEnvironment environment;
+  const bool is_between = right_view != nullptr;
+  const std::size_t right_count = is_between ? right_view->size() : 0;
+  core::check_count(view.size() + right_count);
+  find::check_filters(filters, view.size(), is_between ? &right_count : nullptr);
+  if (!reach.has_radii()) {
+    check_distance(reach.distance(), "the distance");
+  } else {
+    check_radii(reach.radii(), view.size(), is_between ? " left" : "");
+    check_radii(reach.right_radii(), right_count, " right");
+  }
+
+  const Algorithm& algorithm = algorithm::require_algorithm(spec.name);
+  find::Search<D, Real> search(find::searcher_of<D>(algorithm, algorithm::settings_of(algorithm, spec)),
+                               algorithm.tests_doubles);
+  std::vector<Box<D, Real>> gathered;
+  std::vector<Box<D, Real>> right_gathered;
+  Set<D, Real> left(view, gathered, reach.radii());
+  Set<D, Real> right(is_between ? *right_view : BoxView<D, Real>(), right_gathered, reach.right_radii());
+  const BadInput bad_input = quarantined == nullptr ? BadInput::reject : BadInput::quarantine;
+  const std::size_t absent_left =
+      search.check_and_count_absent(left.boxes, workers, bad_input, is_between ? "left " : "");
+  const std::size_t absent_right = search.check_and_count_absent(right.boxes, workers, bad_input, "right ");
+  if (quarantined != nullptr) {
+    std::vector<BoxId> places;
+    if (absent_left > 0) find::list_invalid(left.boxes, 0, places);
+    if (absent_right > 0) find::list_invalid(right.boxes, left.boxes.size(), places);
+    std::copy(places.begin(), places.end(), quarantined->resize(places.size()).begin());
+  }
+
+  core::Parallel parallel;
+  parallel.start(workers, left.boxes.size() + right.boxes.size());
+  left.enlarge(reach, parallel);
+  right.enlarge(reach, parallel);
+  const Set<D, Real>& other = is_between ? right : left;
+  const auto find_through = [&](const auto& pass, PairSink& sink) {
+    const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
+    return core::search_through(core::PassingSink(pass, sink), [&](PairSink& candidates) {
+      return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
+                        : search.find(left.enlarged, options, candidates);
+    });
+  };
+  find::deliver(environment, pairs, [&](PairSink& sink) {
+    if (reach.has_radii())
+      return find_through(PassWithinRadii<D, Real>{left.boxes.data(), other.boxes.data(), left.radii.data(),
+                                                   other.radii.data()},
+                          sink);
+    return find_through(PassWithin<D, Real>{left.boxes.data(), other.boxes.data(), reach.distance()}, sink);
+  });
+}
+
+template <int D, typename Real>
+void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::span<const Pair> pairs,
+                           std::span<double> distances) {
+  const core::DefaultEnvironment environment;
+  check_ids(pairs, left.size(), right.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    distances[i] = length_of<D>(gaps_of(left[index(pairs[i].first)], right[index(pairs[i].second)]));
+}
+
+void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::span<std::size_t> offsets,
+                            std::span<BoxId> neighbours) {
+  const std::size_t boxes = offsets.size() - 1;
+  check_ids(sorted, boxes, is_full ? boxes : std::numeric_limits<std::size_t>::max());
+  // offsets[i + 1] becomes the begin of box i, and, as its neighbours are written, its end.
+  std::fill(offsets.begin(), offsets.end(), 0);
+  const auto count = [&](BoxId box) {
+    if (index(box) + std::size_t{2} < offsets.size()) ++offsets[index(box) + std::size_t{2}];
+  };
+  for (const Pair pair : sorted) {
+    count(pair.first);
+    if (is_full) count(pair.second);
+  }
+  for (std::size_t i = 2; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  // A box's lesser neighbours come before its greater ones, in the order of the pairs.
+  for (const Pair pair : sorted) {
+    neighbours[offsets[index(pair.first) + std::size_t{1}]++] = pair.second;
+    if (is_full) neighbours[offsets[index(pair.second) + std::size_t{1}]++] = pair.first;
+  }
+}
+
+#define BROADSIDE_WITHIN(D, Real)                                                                     \
+  template double distance(const Box<D, Real>&, const Box<D, Real>&) noexcept;                        \
+  template bool is_within(const Box<D, Real>&, const Box<D, Real>&, double) noexcept;                 \
+  template void detail::find_pairs_within(BoxView<D, Real>, const BoxView<D, Real>*, const Reach&,    \
+                                          PairSink&, const Spec&, const Workers&, const PairFilters&, \
+                                          Output<BoxId>*);                                            \
+  template void detail::set_distances(BoxView<D, Real>, BoxView<D, Real>, std::span<const Pair>,      \
+                                      std::span<double>);
+BROADSIDE_WITHIN(2, float)
+BROADSIDE_WITHIN(3, float)
+BROADSIDE_WITHIN(2, double)
+BROADSIDE_WITHIN(3, double)
+#undef BROADSIDE_WITHIN
+
+}  // namespace broadside
