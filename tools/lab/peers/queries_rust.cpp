@@ -27,11 +27,11 @@ class RustQueryPeer final : public QueryPeer<D> {
   bool computes_in_double() const override { return has_rays_; }
 
   Answers overlapping(std::span<const Box<D>> queries) override {
-    return ask(RUST_BOXES, coordinates(queries), queries.size());
+    return ask(rust_boxes, coordinates(queries), queries.size());
   }
   bool has_nearest() const override { return true; }
-  Answers first_hits(std::span<const Ray<D>> rays) override { return ask(RUST_FIRST_HITS, rays); }
-  Answers all_hits(std::span<const Ray<D>> rays) override { return ask(RUST_ALL_HITS, rays); }
+  Answers first_hits(std::span<const Ray<D>> rays) override { return ask(rust_first_hits, rays); }
+  Answers all_hits(std::span<const Ray<D>> rays) override { return ask(rust_all_hits, rays); }
 
   void nearest(std::span<const broadside::Point<D, float>> points, std::size_t count,
                std::vector<Pair>& found) override {

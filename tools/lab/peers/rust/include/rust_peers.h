@@ -56,7 +56,7 @@ typedef struct RustIndex RustIndex;
 
 /// What a query finds: the boxes that overlap a box, the first box that a ray hits, or all boxes that it
 /// hits. A ray is an origin, a direction and the maximum t.
-typedef enum RustQueries { RUST_BOXES, RUST_FIRST_HITS, RUST_ALL_HITS } RustQueries;
+typedef enum RustQueries { rust_boxes, rust_first_hits, rust_all_hits } RustQueries;
 
 /// Null on failure. All boxes are present.
 RustIndex* rust_index_new(const char* name, int dimension, const float* boxes, size_t count);

@@ -12,7 +12,7 @@ macro_rules! parry_bvh {
         pub mod $module {
             use std::ops::ControlFlow;
 
-            use $parry::bounding_volume::Aabb;
+            use $parry::bounding_volume::{Aabb, BoundingVolume};
             use $parry::partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhWorkspace};
 
             use super::{FEW, MARGIN};
