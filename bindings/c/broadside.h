@@ -247,6 +247,34 @@ BROADSIDE_API broadside_status broadside_tracker_update(broadside_tracker* track
                                                         const broadside_filter* filters,
                                                         broadside_pair_events* events, broadside_error* error);
 
+/** Follows the boxes of many small worlds from frame to frame, in one call for all. */
+typedef struct broadside_batch_tracker broadside_batch_tracker;
+
+/** The events of every world: world i has the pairs from begun_offsets[i] up to begun_offsets[i + 1], which count
+ * from its first box; likewise those that ended. They belong to the tracker and stay valid until its next update. */
+typedef struct broadside_batch_events {
+  const broadside_pair* begun;
+  const size_t* begun_offsets;
+  const broadside_pair* ended;
+  const size_t* ended_offsets;
+} broadside_batch_events;
+
+/** Makes a tracker for worlds with boxes of a kind. Of `options`, which may be null, only `algorithm`, `executor`
+ * and `leaves_out_touching` count here, and `quarantines` must be 0; the executor must live as long as the tracker. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_batch_tracker_create(int api_version, broadside_kind kind,
+                                                                       const broadside_find_options* options,
+                                                                       broadside_batch_tracker** tracker,
+                                                                       broadside_error* error);
+BROADSIDE_EXPERIMENTAL void broadside_batch_tracker_destroy(broadside_batch_tracker* tracker);
+
+/** Takes the boxes of the next frame; `boxes`, `offsets` and `worlds` are those of broadside_find_pairs_batch().
+ * `filters` is null or has one for each box. Each world must have as many boxes as in the update before; absent ones
+ * take the places of bodies that are missing. In the first frame all pairs begin. A call that fails has taken
+ * nothing. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_batch_tracker_update(
+    broadside_batch_tracker* tracker, const broadside_boxes* boxes, const size_t* offsets, size_t worlds,
+    const broadside_filter* filters, broadside_batch_events* events, broadside_error* error);
+
 /* ---- Worlds ---- */
 
 /** Boxes that come, move and go under handles, and the pairs that begin and end. */

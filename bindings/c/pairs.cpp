@@ -249,3 +249,61 @@ broadside_status broadside_tracker_update(broadside_tracker* tracker, const broa
     *events = {tracker->begun.data(), tracker->begun.size(), tracker->ended.data(), tracker->ended.size()};
   });
 }
+
+// ---- Trackers of many worlds ----
+
+namespace {
+
+template <int D, typename Real>
+struct BatchTrackerImpl {
+  explicit BatchTrackerImpl(const broadside_find_options& options)
+      : executor(make_executor(options.executor)), tracker(spec_of(options.algorithm)) {
+    if (options.quarantines != 0)
+      throw std::invalid_argument("quarantines is set for a batch tracker; expected 0");
+    Workers workers = tracker.workers();
+    workers.executor = executor.get();
+    tracker.set_workers(workers);
+    tracker.set_touching(options.leaves_out_touching == 0);
+  }
+
+  std::unique_ptr<Executor> executor;
+  BatchTracker<D, Real> tracker;
+};
+
+}  // namespace
+
+struct broadside_batch_tracker : AnyKind<BatchTrackerImpl> {
+  using AnyKind::AnyKind;
+  static constexpr const char* name = "batch tracker";
+
+  std::vector<broadside_pair> begun;
+  std::vector<broadside_pair> ended;
+};
+
+broadside_status broadside_batch_tracker_create(int api_version, broadside_kind kind,
+                                                const broadside_find_options* options,
+                                                broadside_batch_tracker** tracker, broadside_error* error) {
+  return create(api_version, tracker, error,
+                [&] { return new broadside_batch_tracker(kind, options_of(options, options_name)); });
+}
+
+void broadside_batch_tracker_destroy(broadside_batch_tracker* tracker) { delete tracker; }
+
+broadside_status broadside_batch_tracker_update(broadside_batch_tracker* tracker,
+                                                const broadside_boxes* boxes, const size_t* offsets,
+                                                size_t worlds, const broadside_filter* filters,
+                                                broadside_batch_events* events, broadside_error* error) {
+  return call(tracker, error, [&]<int D, typename Real>(BatchTrackerImpl<D, Real>& self) {
+    required(offsets, "offsets");
+    required(events, "events");
+    std::vector<Filter> kinds;
+    take_filters(filters, required(boxes, "boxes").count, kinds);
+    const BatchEvents found = self.tracker.update(view_of<D, Real>(*boxes), {offsets, worlds + 1}, kinds);
+    tracker->begun.resize(found.begun.pairs.size());
+    tracker->ended.resize(found.ended.pairs.size());
+    copy_as(found.begun.pairs, tracker->begun.data());
+    copy_as(found.ended.pairs, tracker->ended.data());
+    *events = {tracker->begun.data(), found.begun.offsets.data(), tracker->ended.data(),
+               found.ended.offsets.data()};
+  });
+}

@@ -4,6 +4,7 @@
 // IWYU pragma: begin_exports
 #include "broadside/algorithm.hpp"
 #include "broadside/batch.hpp"
+#include "broadside/batch_tracker.hpp"
 #include "broadside/box.hpp"
 #include "broadside/box_view.hpp"
 #include "broadside/components.hpp"

@@ -16,7 +16,7 @@ from broadside._errors import (
     InvalidSnapshotError,
 )
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
-from broadside._motion import Events, Tracker, World
+from broadside._motion import BatchEvents, BatchTracker, Events, Tracker, World
 from broadside._pairs import (
     BatchPairs,
     PairTable,
@@ -34,7 +34,9 @@ __all__ = [
     "Advice",
     "Algorithm",
     "Assignment",
+    "BatchEvents",
     "BatchPairs",
+    "BatchTracker",
     "Drawing",
     "Events",
     "FileError",

@@ -82,6 +82,12 @@ class Tracker:
     ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]: ...
     def bytes(self) -> int: ...
 
+class BatchTracker:
+    def update(
+        self, boxes: object, offsets: object, filters: object | None
+    ) -> tuple[tuple[NDArray[np.uint32], NDArray[np.int64]], tuple[NDArray[np.uint32], NDArray[np.int64]]]: ...
+    def bytes(self) -> int: ...
+
 def find(
     result: int,
     boxes: object,
@@ -118,6 +124,9 @@ def world_options() -> list[tuple[str, str, str, str, list[str], float, float]]:
 def make_tracker(
     dimension: int, has_doubles: bool, algorithm: str, threads: SupportsInt | None, quarantine: bool, touching: bool
 ) -> Tracker: ...
+def make_batch_tracker(
+    dimension: int, has_doubles: bool, algorithm: str, threads: SupportsInt | None, touching: bool
+) -> BatchTracker: ...
 
 _Choose = Callable[[list[list[str]]], list[int]]
 _Values = list[tuple[NDArray[Any], NDArray[np.uint8] | None]]

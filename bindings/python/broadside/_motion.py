@@ -1,4 +1,4 @@
-"""Boxes that move: World, under handles, and Tracker, over an array."""
+"""Boxes that move: World, under handles, Tracker, over an array, and BatchTracker, over the arrays of many worlds."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from broadside import _arguments, _convert, _core, _pickling, _world_options
 from broadside._columns import Columns
+from broadside._errors import InvalidBoxError
+from broadside._pairs import BatchPairs
 from broadside._queries import (
     FirstHits,
     Found,
@@ -358,3 +360,98 @@ class Tracker:
 
     def __repr__(self) -> str:
         return f"broadside.Tracker({self._dimension}D, {self._dtype})"
+
+
+class BatchEvents(NamedTuple):
+    """What an update brought in each world."""
+
+    begun: BatchPairs
+    """The pairs that hold now and did not before."""
+    ended: BatchPairs
+    """The pairs that held before and do not now."""
+
+
+class BatchTracker:
+    """Follows the boxes of many small worlds, such as the simulations in which a policy is trained.
+
+    One call takes all boxes of a frame, and tells for each world which pairs of rows begin and end.
+
+    Args:
+        dimension: 2 or 3.
+        dtype: float64 or float32, as in `World`.
+        algorithm: A spec: see `algorithms`.
+        threads: The most threads, which share the worlds; None: all cores, if there is enough to do.
+        touching: Whether boxes that only touch overlap, as in `pairs`.
+
+    Calls from several threads take turns. A batch tracker cannot be pickled or copied.
+    """
+
+    __slots__ = ("__weakref__", "_dimension", "_dtype", "_tracker")
+
+    def __init__(
+        self,
+        dimension: int,
+        *,
+        dtype: DTypeLike = np.float64,
+        algorithm: str = "auto",
+        threads: int | None = None,
+        touching: bool = True,
+    ) -> None:
+        has_doubles = _has_doubles(dtype)
+        self._dimension = _checked_dimension(dimension)
+        self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
+        self._tracker = _core.make_batch_tracker(
+            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(touching)
+        )
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self._dimension
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """float32 or float64."""
+        return self._dtype
+
+    def update(
+        self,
+        boxes: Any,
+        offsets: ArrayLike | None = None,
+        *,
+        filters: NDArray[np.void] | None = None,
+        columns: Columns | None = None,
+    ) -> BatchEvents:
+        """Takes the boxes of the next frame and returns the pairs that began and ended in each world.
+
+        In the first update all pairs begin.
+
+        Args:
+            boxes: The boxes of all worlds, as in `find_pairs_batch`: in an array of shape (worlds, n, 4) or
+                (worlds, n, 6), or in any form that `pairs` takes, with offsets. Each world has as many boxes as in the
+                update before; absent ones take the places of bodies that are missing.
+            offsets: World i has the rows from ``offsets[i]`` up to ``offsets[i + 1]``.
+            filters: A filter for each box of all worlds.
+            columns: As in `pairs`.
+
+        Raises InvalidBoxError and ValueError, and has taken nothing then; nor has it at Ctrl-C.
+        """
+        if offsets is None:
+            boxes, offsets = _convert.worlds(boxes, "boxes")
+        boxes = _convert.given(boxes, "boxes", columns)
+        try:
+            begun, ended = self._tracker.update(boxes, offsets, filters)
+        except InvalidBoxError as error:
+            raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
+        return BatchEvents(BatchPairs(*begun), BatchPairs(*ended))
+
+    @property
+    def nbytes(self) -> int:
+        """The bytes that the tracker holds."""
+        return self._tracker.bytes()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a BatchTracker cannot be pickled or copied; expected a new BatchTracker")
+
+    def __repr__(self) -> str:
+        return f"broadside.BatchTracker({self._dimension}D, {self._dtype})"

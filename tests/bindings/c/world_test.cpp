@@ -401,6 +401,44 @@ TEST_F(CPairs, OfManyWorldsRefuseWhatCannotBe) {
   EXPECT_EQ(pair_offsets[0], 7U);
 }
 
+TEST_F(CPairs, OfManyWorldsBeginAndEnd) {
+  std::vector<Box2> boxes = boxes_;
+  const broadside_boxes view = {BROADSIDE_FLOAT_2D, boxes.data(), boxes.size(), 0};
+  const std::size_t offsets[] = {0, 0, 1'000, 1'500, 3'000};
+  broadside_batch_tracker* tracker = nullptr;
+  broadside_find_options options;
+  broadside_find_options_init(&options);
+  options.quarantines = 1;
+  EXPECT_EQ(broadside_batch_tracker_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &tracker,
+                                           &error_),
+            BROADSIDE_INVALID_ARGUMENT);
+  options.quarantines = 0;
+  ASSERT_EQ(broadside_batch_tracker_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &tracker,
+                                           &error_),
+            BROADSIDE_OK)
+      << error_.message;
+  broadside_batch_events events;
+  const auto update = [&](std::size_t worlds) {
+    return broadside_batch_tracker_update(tracker, &view, offsets, worlds, nullptr, &events, &error_);
+  };
+  ASSERT_EQ(update(4), BROADSIDE_OK) << error_.message;
+  const BatchPairs expected = find_pairs_batch(boxes, offsets);
+  ASSERT_EQ(std::vector<std::size_t>(events.begun_offsets, events.begun_offsets + 5), expected.offsets);
+  EXPECT_EQ(events.ended_offsets[4], 0U);
+  for (std::size_t i = 0; i < expected.pairs.size(); ++i)
+    ASSERT_EQ((Pair{BoxId{events.begun[i].first}, BoxId{events.begun[i].second}}), expected.pairs[i]);
+
+  EXPECT_EQ(update(3), BROADSIDE_INVALID_FRAME);
+  EXPECT_NE(std::string(error_.message).find("the last offset of worlds is 1500"), std::string::npos);
+  std::fill(boxes.begin(), boxes.begin() + 1'000, absent_box<2>());
+  ASSERT_EQ(update(4), BROADSIDE_OK);
+  EXPECT_EQ(events.begun_offsets[4], 0U);
+  EXPECT_EQ(events.ended_offsets[2], expected.offsets[2]);
+  EXPECT_EQ(events.ended_offsets[4], expected.offsets[2]);
+  broadside_batch_tracker_destroy(tracker);
+  broadside_batch_tracker_destroy(nullptr);
+}
+
 TEST_F(CPairs, AreFoundInStructsOfTheCallers) {
   struct Body {
     char name[3];
