@@ -222,6 +222,13 @@ TEST(Within, TakesFiltersKeysAndIgnoredPairs) {
   EXPECT_EQ(sorted(find_pairs_within(points, 0.1, {.filters = filters, .ignored = &ignored})), expected);
 }
 
+TEST(Within, FindsBoxesWhoseGapIsRoundedToTheReach) {
+  const double next = std::nextafter(0.5, 1.0);
+  const std::vector<DoubleBox2> boxes = {{{-0.5, 0}, {-0.5, 0}}, {{next, 0}, {next, 0}}};
+  ASSERT_TRUE(is_within(boxes[0], boxes[1], 1));
+  EXPECT_EQ(find_pairs_within(boxes, 1), Pairs{pair(0, 1)});
+}
+
 TEST(Within, GivesDistancesOfAtMostTheReach) {
   const std::vector<Box3> points = drawn_points(500);
   const Pairs pairs = find_pairs_within(points, 0.1);
