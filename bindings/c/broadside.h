@@ -149,6 +149,13 @@ typedef struct broadside_find_options {
   const broadside_executor* executor; /**< runs searches if the spec allows several threads; null: the library's */
   int quarantines; /**< 1: invalid boxes pair with nothing, instead of being refused */
   int leaves_out_touching; /**< 1: boxes that only touch do not overlap: see half_open() in box.hpp */
+
+  /** If not 0, two boxes pair if their Euclidean distance is at most this, or if `radii` is not null, at most
+   * the sum of their radii: see within.hpp. Numbers are finite and at least 0. For searches alone: finders,
+   * trackers and batches refuse them. */
+  double distance;
+  const double* radii;       /**< one for each box (of the left set), or null; `distance` is then 0 */
+  const double* right_radii; /**< for two sets with radii: one for each box of the right one */
 } broadside_find_options;
 
 BROADSIDE_API void broadside_find_options_init(broadside_find_options* options);
@@ -197,6 +204,21 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_find_pairs_batch(
 BROADSIDE_EXPERIMENTAL broadside_status broadside_components(const broadside_boxes* boxes,
                                                              const broadside_find_options* options,
                                                              uint32_t* labels, broadside_error* error);
+
+/** Sets distances[i] to the Euclidean distance of the boxes of pairs[i]: the first one of `boxes`, the second
+ * one of `right` or, if that is null, of `boxes`. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_distances(const broadside_boxes* boxes,
+                                                            const broadside_boxes* right,
+                                                            const broadside_pair* pairs, size_t count,
+                                                            double* distances, broadside_error* error);
+
+/** Makes lists of neighbours of `count` pairs in any order: those of box i, ascending, are
+ * neighbours[offsets[i]] up to neighbours[offsets[i + 1]]. If `is_full` is 0, the first box of a pair has the
+ * second, and `neighbours` has room for `count`; also for pairs of two sets, of which the left one has `boxes`
+ * boxes. Otherwise each has the other, and there is room for twice as many. There are `boxes` + 1 offsets. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_neighbours(const broadside_pair* pairs, size_t count,
+                                                             size_t boxes, int is_full, size_t* offsets,
+                                                             uint32_t* neighbours, broadside_error* error);
 
 /** Finds pairs repeatedly, and keeps its memory from call to call. */
 typedef struct broadside_finder broadside_finder;

@@ -24,6 +24,28 @@ IgnoredPairs ignored_of(const broadside_find_options& options) {
   return ignored;
 }
 
+bool has_reach(const broadside_find_options& options) {
+  return !(options.distance == 0) || options.radii != nullptr || options.right_radii != nullptr;
+}
+
+/// The options of `what`, which refuses a distance and radii.
+broadside_find_options options_without_reach(const broadside_find_options* given, const char* what) {
+  const broadside_find_options options = options_of(given, options_name);
+  if (has_reach(options))
+    throw std::invalid_argument("distance, radii or right_radii are given for " + std::string(what) +
+                                "; expected 0 and null");
+  return options;
+}
+
+Reach reach_of(const broadside_find_options& options, std::size_t boxes, const broadside_boxes* right) {
+  if (options.radii == nullptr && options.right_radii == nullptr) return options.distance;
+  if (!(options.distance == 0)) throw std::invalid_argument("distance and radii are given; expected one");
+  if (options.radii == nullptr || (right == nullptr) != (options.right_radii == nullptr))
+    throw std::invalid_argument("expected radii and, for two sets alone, right_radii");
+  return {std::span(options.radii, boxes),
+          std::span(options.right_radii, right == nullptr ? 0 : right->count)};
+}
+
 /// Sets what finders and trackers have in common.
 template <typename Searching>
 void set_up(Searching& searching, const broadside_find_options& options, Executor* executor) {
@@ -49,10 +71,29 @@ struct FinderImpl {
       throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
     if (right != nullptr) take_filters(options.right_filters, right->count, right_filters);
     const PairFilters filters{left_filters, right_filters, ignored.empty() ? nullptr : &ignored};
-    if (right == nullptr)
+    if (has_reach(options))
+      find_within(view_of<D, Real>(boxes), right, options, found, filters);
+    else if (right == nullptr)
       finder.find(view_of<D, Real>(boxes), found, filters);
     else
       finder.find_between(view_of<D, Real>(boxes), view_of<D, Real>(*right), found, filters);
+  }
+
+  void find_within(BoxView<D, Real> boxes, const broadside_boxes* right,
+                   const broadside_find_options& options, PairSink& found, const PairFilters& filters) {
+    std::vector<BoxId> quarantined;
+    const FindOptions which{.algorithm = spec_of(options.algorithm),
+                            .filters = filters.filters,
+                            .right_filters = filters.right_filters,
+                            .ignored = filters.ignored,
+                            .executor = executor.get(),
+                            .touching = options.leaves_out_touching == 0,
+                            .quarantined = options.quarantines != 0 ? &quarantined : nullptr};
+    const Reach reach = reach_of(options, boxes.size(), right);
+    if (right == nullptr)
+      find_pairs_within(boxes, reach, found, which);
+    else
+      find_pairs_within(boxes, view_of<D, Real>(*right), reach, found, which);
   }
 
   std::unique_ptr<Executor> executor;
@@ -126,7 +167,7 @@ broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const 
     array_of(pairs, room, "pairs");
     required(offsets, "offsets");
     required(pair_offsets, "pair_offsets");
-    const broadside_find_options options = options_of(given, options_name);
+    const broadside_find_options options = options_without_reach(given, "a batch");
     if (options.right_filters != nullptr)
       throw std::invalid_argument("right_filters are given for a batch; expected null");
     const auto executor = make_executor(options.executor);
@@ -160,6 +201,34 @@ broadside_status broadside_components(const broadside_boxes* boxes, const broads
   });
 }
 
+broadside_status broadside_distances(const broadside_boxes* boxes, const broadside_boxes* right,
+                                     const broadside_pair* pairs, size_t count, double* found,
+                                     broadside_error* error) {
+  return guarded(error, [&] {
+    array_of(found, count, "distances");
+    std::vector<Pair> which;
+    copy_as(array_of(pairs, count, "pairs"), which);
+    const std::vector<double> all = with_kind(required(boxes, "boxes").kind, [&]<int D, typename Real>() {
+      return distances(view_of<D, Real>(*boxes), view_of<D, Real>(right == nullptr ? *boxes : *right), which);
+    });
+    copy_as(std::span(all), found);
+  });
+}
+
+broadside_status broadside_neighbours(const broadside_pair* pairs, size_t count, size_t boxes, int is_full,
+                                      size_t* offsets, uint32_t* ids, broadside_error* error) {
+  return guarded(error, [&] {
+    required(offsets, "offsets");
+    array_of(ids, count, "neighbours");
+    std::vector<Pair> which;
+    copy_as(array_of(pairs, count, "pairs"), which);
+    const Neighbours found =
+        neighbours(std::move(which), boxes, is_full != 0 ? NeighbourLists::full : NeighbourLists::half);
+    std::copy(found.offsets.begin(), found.offsets.end(), offsets);
+    copy_as(std::span(found.ids), ids);
+  });
+}
+
 // ---- Finders ----
 
 struct broadside_finder : AnyKind<FinderImpl> {
@@ -174,7 +243,7 @@ broadside_status broadside_finder_create(int api_version, broadside_kind kind,
                                          const broadside_find_options* options, broadside_finder** finder,
                                          broadside_error* error) {
   return create(api_version, finder, error,
-                [&] { return new broadside_finder(kind, options_of(options, options_name)); });
+                [&] { return new broadside_finder(kind, options_without_reach(options, "a finder")); });
 }
 
 void broadside_finder_destroy(broadside_finder* finder) { delete finder; }
@@ -187,7 +256,7 @@ broadside_status broadside_finder_find(broadside_finder* finder, const broadside
     required(count, "count");
     finder->pairs.clear();
     auto sink = collector(finder->pairs);
-    self.find(required(boxes, "boxes"), right, options_of(options, options_name), sink);
+    self.find(required(boxes, "boxes"), right, options_without_reach(options, "a finder"), sink);
     copy_as(self.finder.quarantined(), finder->quarantined);
     *pairs = finder->pairs.data();
     *count = finder->pairs.size();
@@ -229,7 +298,7 @@ broadside_status broadside_tracker_create(int api_version, broadside_kind kind,
                                           const broadside_find_options* options, broadside_tracker** tracker,
                                           broadside_error* error) {
   return create(api_version, tracker, error,
-                [&] { return new broadside_tracker(kind, options_of(options, options_name)); });
+                [&] { return new broadside_tracker(kind, options_without_reach(options, "a tracker")); });
 }
 
 void broadside_tracker_destroy(broadside_tracker* tracker) { delete tracker; }

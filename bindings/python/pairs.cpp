@@ -1,5 +1,6 @@
 // All pairs of one set of boxes, or of two.
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -50,9 +51,9 @@ enum class ResultForm { array, table, count, components };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
-                nb::handle quarantine, nb::handle touching) {
+                nb::handle quarantine, nb::handle touching, nb::handle within) {
   const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
-                               ignored, truth(quarantine), truth(touching));
+                               ignored, truth(quarantine), truth(touching), within);
   const bool sorts = truth(sort);
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   if (static_cast<ResultForm>(result) == ResultForm::components) return components(search);
@@ -93,6 +94,45 @@ nb::tuple find_batch(nb::handle boxes, nb::handle offsets, nb::handle algorithm,
                         array_of(std::vector<std::int64_t>(begins.begin(), begins.end())));
 }
 
+/// Rows of two integers as pairs.
+std::vector<Pair> pairs_of(nb::handle object, std::size_t first, std::size_t second) {
+  nb::ndarray<const std::uint32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu> given;
+  if (nb::try_cast(object, given, false)) {
+    std::vector<Pair> pairs(given.shape(0));
+    if (!pairs.empty()) std::memcpy(pairs.data(), given.data(), pairs.size() * sizeof(Pair));
+    return pairs;
+  }
+  const std::uint64_t most = std::max<std::size_t>({first, second, 1}) - 1;
+  const std::vector<std::uint64_t> places = pairs_of_integers(object, "pairs", most);
+  std::vector<Pair> pairs(places.size() / 2);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    pairs[i] = {static_cast<BoxId>(places[2 * i]), static_cast<BoxId>(places[2 * i + 1])};
+  return pairs;
+}
+
+/// The distance of the boxes of each pair.
+nb::object distances_of(nb::handle boxes, nb::handle other, nb::handle pairs) {
+  const SearchArguments sets(boxes, other, "auto", nb::none(), nb::none(), nb::none(), nb::none(), false,
+                             true);
+  const Rows& right = sets.other ? *sets.other : sets.boxes;
+  const std::vector<Pair> which = pairs_of(pairs, sets.boxes.size(), right.size());
+  return with_kind(sets.boxes.kind(), [&]<int D, typename Real>() {
+    return array_of(without_gil(
+        [&](WithoutGil&) { return distances(sets.boxes.boxes<D, Real>(), right.boxes<D, Real>(), which); }));
+  });
+}
+
+/// The offsets and ids of neighbour lists.
+nb::tuple neighbours_of(nb::handle pairs, std::size_t boxes, bool full) {
+  std::vector<Pair> which = pairs_of(pairs, boxes, full ? boxes : std::numeric_limits<std::uint32_t>::max());
+  Neighbours found = without_gil([&](WithoutGil&) {
+    return neighbours(std::move(which), boxes, full ? NeighbourLists::full : NeighbourLists::half);
+  });
+  const std::size_t count = found.ids.size();
+  return nb::make_tuple(array_of(std::vector<std::int64_t>(found.offsets.begin(), found.offsets.end())),
+                        array_of<std::uint32_t>(std::move(found.ids), {count}));
+}
+
 /// The places of invalid boxes.
 nb::object invalid_rows(nb::handle boxes) {
   const Rows rows = Rows::of_boxes_or_empty(boxes, "boxes");
@@ -118,7 +158,9 @@ void add_pairs(nb::module_& module) {
   module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
-             nb::arg("quarantine").none(), nb::arg("touching").none());
+             nb::arg("quarantine").none(), nb::arg("touching").none(), nb::arg("within").none());
+  module.def("distances", &distances_of, nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("pairs"));
+  module.def("neighbours", &neighbours_of, nb::arg("pairs"), nb::arg("boxes"), nb::arg("full"));
   module.def("find_batch", &find_batch, nb::arg("boxes").none(), nb::arg("offsets"),
              nb::arg("algorithm").none(), nb::arg("threads").none(), nb::arg("filters").none(),
              nb::arg("ignored").none(), nb::arg("quarantine").none(), nb::arg("touching").none());

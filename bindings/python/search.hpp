@@ -10,7 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include <nanobind/ndarray.h>
+
 #include "broadside/finder.hpp"
+#include "broadside/within.hpp"
 
 #include "bindings/python/input.hpp"
 #include "bindings/python/running.hpp"
@@ -44,6 +47,36 @@ inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
   sort_pairs(pairs, checkpoint);
 }
 
+/// The argument `within`: a distance, or the radii of one set or of two.
+struct Within {
+  /// Of what broadside._within gives: a float, or two arrays of doubles. Nothing of None.
+  static std::optional<Within> of(nb::handle object) {
+    if (object.is_none()) return std::nullopt;
+    Within within;
+    if (nb::isinstance<nb::tuple>(object)) {
+      within.has_radii = true;
+      within.radii = doubles(object[0]);
+      within.right_radii = doubles(object[1]);
+    } else {
+      within.distance = nb::cast<double>(object);
+    }
+    return within;
+  }
+
+  Reach reach() const { return has_radii ? Reach(radii, right_radii) : Reach(distance); }
+
+  bool has_radii = false;
+  double distance = 0;
+  std::vector<double> radii;
+  std::vector<double> right_radii;
+
+ private:
+  static std::vector<double> doubles(nb::handle object) {
+    const auto array = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(object);
+    return {array.data(), array.data() + array.shape(0)};
+  }
+};
+
 /// What is searched, and how.
 struct SearchArguments {
   Rows boxes;
@@ -55,6 +88,7 @@ struct SearchArguments {
   IgnoredPairs ignored;
   bool quarantine = false;
   bool touching = true;
+  std::optional<Within> within{};
 
   /// For boxes that are of the same kind.
   SearchArguments(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
@@ -65,13 +99,14 @@ struct SearchArguments {
 
   SearchArguments(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
                   nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs,
-                  bool quarantines, bool counts_touching)
+                  bool quarantines, bool counts_touching, nb::handle distance = nb::none())
       : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
         threads(threads_of(max_threads, algorithm)),
         filters(python::filters(first_filters, boxes.size(), "filters")),
         quarantine(quarantines),
-        touching(counts_touching) {
+        touching(counts_touching),
+        within(Within::of(distance)) {
     if (!second.is_none()) take_other(first, second, second_filters);
     if (other && !ignored_pairs.is_none())
       throw std::invalid_argument("ignored pairs are given with two sets; expected them with one set alone");
@@ -92,20 +127,38 @@ struct SearchArguments {
       if (boxes.size() + (other ? other->size() : 0) >= long_search) use.emplace(finder, threads, released);
       if (quarantine) finder.set_bad_input(BadInput::quarantine);
       finder.set_touching(touching);
-      const PairFilters which{filters, other_filters, &ignored};
-      if (other)
-        find_between(finder, pairs, which);
-      else
-        finder.find(boxes.boxes<D, Real>(), pairs, which);
+      const PairFilters which{filters, other_filters, other ? nullptr : &ignored};
+      const BoxView<D, Real> left = boxes.boxes<D, Real>();
+      const auto find = [&](const BoxView<D, Real>* right) {
+        if (within)
+          find_within(finder, left, right, pairs, which);
+        else if (right != nullptr)
+          finder.find_between(left, *right, pairs, which);
+        else
+          finder.find(left, pairs, which);
+      };
+      if (!other) return find(nullptr);
+      const BoxView<D, Real> right = other->boxes<D, Real>();
+      naming_sets(left, [&] { find(&right); });
     });
   }
 
  private:
   template <int D, typename Real>
-  void find_between(Finder<D, Real>& finder, PairSink& pairs, const PairFilters& which) const {
-    const BoxView<D, Real> left = boxes.boxes<D, Real>();
+  void find_within(const Finder<D, Real>& finder, BoxView<D, Real> left, const BoxView<D, Real>* right,
+                   PairSink& pairs, const PairFilters& which) const {
+    if (!touching) throw std::invalid_argument("touching is False with within; expected True");
+    std::vector<BoxId> places;
+    detail::OutputTo<std::vector<BoxId>> quarantined(places);
+    detail::find_pairs_within(left, right, within->reach(), pairs, algorithm, finder.workers(), which,
+                              quarantine ? &quarantined : nullptr);
+  }
+
+  /// Calls `find`, whose exceptions then name the arguments.
+  template <int D, typename Real, typename Find>
+  static void naming_sets(BoxView<D, Real> left, const Find& find) {
     try {
-      finder.find_between(left, other->boxes<D, Real>(), pairs, which);
+      find();
     } catch (const InvalidInput& error) {
       // The library checks the left set first; here it is `boxes`, and the right one is `other`.
       const bool is_left = error.index() < left.size() && is_invalid(left[error.index()]);

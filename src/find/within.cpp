@@ -1,10 +1,12 @@
 // Within: pairs within a Euclidean distance. Searches boxes that are enlarged outwards, and tests the pairs.
 #include "broadside/within.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <type_traits>
 
@@ -20,93 +22,103 @@
 #include "core/parallel.hpp"
 #include "find/deliver.hpp"
 #include "find/search.hpp"
+#include "kernels/squared_distances.hpp"
 
 namespace broadside {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-template <int D>
-using Gaps = std::array<double, D>;
-
-/// The gap of two boxes on each axis. Infinities of the same sign have none.
+/// The greatest gap of two boxes on any axis.
 template <int D, typename Real>
-Gaps<D> gaps_of(const Box<D, Real>& a, const Box<D, Real>& b) {
-  Gaps<D> gaps;
-  for (int axis = 0; axis < D; ++axis) {
-    const double above = static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]);
-    const double below = static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]);
-    const double gap = above > below ? above : below;
-    gaps[axis] = gap > 0 ? gap : 0;
-  }
-  return gaps;
+double greatest_gap(const Box<D, Real>& a, const Box<D, Real>& b) {
+  double greatest = 0;
+  for (std::size_t axis = 0; axis < D; ++axis) greatest = std::max(greatest, kernels::gap(a, b, axis));
+  return greatest;
 }
 
-template <int D>
-double sum_of_squares(const Gaps<D>& gaps) {
+/// The squared distance, with each gap times 2^-exponent.
+template <int D, typename Real>
+double scaled_square(const Box<D, Real>& a, const Box<D, Real>& b, int exponent) {
   double sum = 0;
-  for (const double gap : gaps) sum += gap * gap;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    const double gap = std::ldexp(kernels::gap(a, b, axis), -exponent);
+    sum += gap * gap;
+  }
   return sum;
 }
 
-/// The gaps times 2^-exponent.
-template <int D>
-Gaps<D> scaled(Gaps<D> gaps, int exponent) {
-  for (double& gap : gaps) gap = std::ldexp(gap, -exponent);
-  return gaps;
-}
-
-/// Whether no square overflows that matters beside the square of this number, and none that vanishes does.
+/// Whether sums of squares can be compared with the square of this number: no square overflows that is less,
+/// and those that vanish are too small to matter.
 bool has_plain_square(double number) { return number >= 1e-100 && number <= 1e100; }
 
-template <int D>
-bool are_within(const Gaps<D>& gaps, double distance) {
-  if (has_plain_square(distance)) return sum_of_squares<D>(gaps) <= distance * distance;
-  double greatest = 0;
-  for (const double gap : gaps) greatest = gap > greatest ? gap : greatest;
-  if (distance == 0) return greatest == 0;
-  if (distance == infinite) return greatest < infinite;  // a sum of radii
+/// The definition for any distance.
+template <int D, typename Real>
+bool are_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) {
+  if (has_plain_square(distance)) return kernels::squared_distance(a, b) <= distance * distance;
+  if (distance == 0) return greatest_gap(a, b) == 0;
+  if (distance == infinite) return greatest_gap(a, b) < infinite;  // a sum of radii
   const int exponent = std::ilogb(distance);
   const double limit = std::ldexp(distance, -exponent);
-  return sum_of_squares<D>(scaled<D>(gaps, exponent)) <= limit * limit;
+  return scaled_square(a, b, exponent) <= limit * limit;
 }
 
-template <int D>
-double length_of(const Gaps<D>& gaps) {
-  double greatest = 0;
-  for (const double gap : gaps) greatest = gap > greatest ? gap : greatest;
-  if (has_plain_square(greatest)) return std::sqrt(sum_of_squares<D>(gaps));
+template <int D, typename Real>
+double distance_of(const Box<D, Real>& a, const Box<D, Real>& b) {
+  const double greatest = greatest_gap(a, b);
+  if (has_plain_square(greatest)) return std::sqrt(kernels::squared_distance(a, b));
   if (greatest == 0 || greatest == infinite) return greatest;
   const int exponent = std::ilogb(greatest);
-  return std::ldexp(std::sqrt(sum_of_squares<D>(scaled<D>(gaps, exponent))), exponent);
+  return std::ldexp(std::sqrt(scaled_square(a, b, exponent)), exponent);
 }
 
-/// Passes on the pairs of boxes within a distance.
-template <int D, typename Real>
-struct PassWithin {
-  bool operator()(Pair pair, Pair& to) const {
-    to = pair;
-    return are_within<D>(gaps_of(left[index(pair.first)], right[index(pair.second)]), distance);
-  }
+/// One distance for all pairs.
+struct OneDistance {
+  double operator()(Pair) const { return distance; }
 
-  const Box<D, Real>* left;
-  const Box<D, Real>* right;
   double distance;
 };
 
-/// Passes on the pairs of boxes within the sum of their radii.
-template <int D, typename Real>
-struct PassWithinRadii {
-  bool operator()(Pair pair, Pair& to) const {
-    to = pair;
-    return are_within<D>(gaps_of(left[index(pair.first)], right[index(pair.second)]),
-                         left_radii[index(pair.first)] + right_radii[index(pair.second)]);
+/// The sum of two boxes' radii.
+struct SumOfRadii {
+  double operator()(Pair pair) const { return left[index(pair.first)] + right[index(pair.second)]; }
+
+  const double* left;
+  const double* right;
+};
+
+/// Passes on the pairs of boxes within limit(pair) of each other, in the same order.
+template <int D, typename Real, typename Limit>
+class WithinSink final : public core::FilterSink {
+ public:
+  WithinSink(const Box<D, Real>* left, const Box<D, Real>* right, Limit limit, PairSink& target)
+      : FilterSink(target), left_(left), right_(right), limit_(limit) {}
+
+  std::unique_ptr<FilterSink> onto(PairSink& target) const override {
+    return std::make_unique<WithinSink>(left_, right_, limit_, target);
   }
 
-  const Box<D, Real>* left;
-  const Box<D, Real>* right;
-  const double* left_radii;
-  const double* right_radii;
+ private:
+  void consume(std::span<const Pair> pairs) override {
+    while (!pairs.empty()) {
+      const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
+      std::array<double, max_room> squares;
+      kernels::set_squared_distances(left_, right_, some, squares.data());
+      const double* next = squares.data();
+      pass_on(some, [&](Pair pair, Pair& to) {
+        to = pair;
+        const double limit = limit_(pair);
+        const double square = *next++;
+        if (has_plain_square(limit)) return square <= limit * limit;
+        return are_within(left_[index(pair.first)], right_[index(pair.second)], limit);
+      });
+      pairs = pairs.subspan(some.size());
+    }
+  }
+
+  const Box<D, Real>* left_;
+  const Box<D, Real>* right_;
+  Limit limit_;
 };
 
 void check_distance(double distance, const std::string& name) {
@@ -181,14 +193,14 @@ void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t secon
 template <int D, typename Real>
 double distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   const core::DefaultEnvironment environment;
-  const volatile double result = length_of<D>(gaps_of(a, b));
+  const volatile double result = distance_of(a, b);
   return result;
 }
 
 template <int D, typename Real>
 bool is_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) noexcept {
   const core::DefaultEnvironment environment;
-  const volatile bool result = are_within<D>(gaps_of(a, b), distance);
+  const volatile bool result = are_within(a, b, distance);
   return result;
 }
 
@@ -231,19 +243,18 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
   left.enlarge(reach, parallel);
   right.enlarge(reach, parallel);
   const Set<D, Real>& other = is_between ? right : left;
-  const auto find_through = [&](const auto& pass, PairSink& sink) {
+  const auto find_within = [&](auto limit, PairSink& sink) {
     const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
-    return core::search_through(core::PassingSink(pass, sink), [&](PairSink& candidates) {
-      return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
-                        : search.find(left.enlarged, options, candidates);
-    });
+    return core::search_through(
+        WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(), limit, sink),
+        [&](PairSink& candidates) {
+          return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
+                            : search.find(left.enlarged, options, candidates);
+        });
   };
   find::deliver(environment, pairs, [&](PairSink& sink) {
-    if (reach.has_radii())
-      return find_through(PassWithinRadii<D, Real>{left.boxes.data(), other.boxes.data(), left.radii.data(),
-                                                   other.radii.data()},
-                          sink);
-    return find_through(PassWithin<D, Real>{left.boxes.data(), other.boxes.data(), reach.distance()}, sink);
+    return reach.has_radii() ? find_within(SumOfRadii{left.radii.data(), other.radii.data()}, sink)
+                             : find_within(OneDistance{reach.distance()}, sink);
   });
 }
 
@@ -252,8 +263,16 @@ void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::s
                            std::span<double> distances) {
   const core::DefaultEnvironment environment;
   check_ids(pairs, left.size(), right.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    distances[i] = length_of<D>(gaps_of(left[index(pairs[i].first)], right[index(pairs[i].second)]));
+  std::vector<Box<D, Real>> gathered;
+  std::vector<Box<D, Real>> right_gathered;
+  const Box<D, Real>* const lefts = find::array_of(left, gathered).data();
+  const Box<D, Real>* const rights = find::array_of(right, right_gathered).data();
+  kernels::set_squared_distances(lefts, rights, pairs, distances.data());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const bool is_plain = distances[i] >= 1e-190 && distances[i] <= 1e190;
+    distances[i] = is_plain ? std::sqrt(distances[i])
+                            : distance_of(lefts[index(pairs[i].first)], rights[index(pairs[i].second)]);
+  }
 }
 
 void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::span<std::size_t> offsets,

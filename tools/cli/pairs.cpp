@@ -153,7 +153,9 @@ class PairsCommand {
     }
     return fmt::format(
         "{} in {}D: {}{}{}, {}; read in {}, joined by {} in {}", sets, lab::dimension(sets_[0].boxes), found,
-        arguments_.within.empty() ? "" : fmt::format(" within {}", arguments_.within),
+        arguments_.within.empty()
+            ? ""
+            : fmt::format(" within {}{}", arguments_.within, arguments_.is_euclidean ? " (Euclidean)" : ""),
         arguments_.leaves_out_touching ? ", without pairs that only touch" : "", precision_text(),
         lab::duration(read_ms_ / 1e3), entry_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
@@ -206,10 +208,11 @@ class PairsCommand {
     const PairFilters filters{filters_, right_filters_};
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
+      const lab::Metric metric = arguments_.is_euclidean ? lab::Metric::euclidean : lab::Metric::per_axis;
       if (is_between())
-        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs, filters);
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs, filters, metric);
       else
-        lab::join_within(sets_[0].boxes, distance, entry_, pairs, filters);
+        lab::join_within(sets_[0].boxes, distance, entry_, pairs, filters, metric);
       return;
     }
     if (is_between())
@@ -332,8 +335,11 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   verb->add_option(
           "--within", arguments->within,
           "Find the pairs of boxes with a gap of at most this on each axis: all within that distance, and "
-          "a few past corners")
+          "a few past corners, which --euclidean leaves out")
       ->type_name("DISTANCE");
+  verb->add_flag("--euclidean", arguments->is_euclidean,
+                 "With --within: measure the distance in a straight line, also past corners, instead of "
+                 "on each axis");
   verb->add_flag(
       "--no-touching", arguments->leaves_out_touching,
       "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "

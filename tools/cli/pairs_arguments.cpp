@@ -186,6 +186,8 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
+  if (arguments.is_euclidean && arguments.within.empty())
+    throw Unusable("--euclidean without --within; expected a distance");
   if (!arguments.within.empty() && arguments.leaves_out_touching)
     throw Unusable(
         "--no-touching with --within, which finds boxes that do not even touch; expected one or the other");

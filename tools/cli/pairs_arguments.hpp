@@ -20,6 +20,7 @@ struct PairsArguments {
   InputOptions input;
   std::vector<std::string> ids;  // one for both files, or one for each
   std::string within;
+  bool is_euclidean = false;  // how the distance of --within is measured
   bool leaves_out_touching = false;
   std::string algorithm{default_algorithm};
   std::string threads{};  ///< empty: as the spec says

@@ -29,6 +29,7 @@ from broadside._pairs import (
 )
 from broadside._partition import Assignment, Partition
 from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
+from broadside._within import NeighbourLists, distances, neighbour_lists
 
 __all__ = [
     "Advice",
@@ -49,6 +50,7 @@ __all__ = [
     "InvalidHandleError",
     "InvalidQueryError",
     "InvalidSnapshotError",
+    "NeighbourLists",
     "Neighbours",
     "PairTable",
     "Partition",
@@ -59,10 +61,12 @@ __all__ = [
     "algorithms",
     "components",
     "count",
+    "distances",
     "draw",
     "filters",
     "find_pairs_batch",
     "invalid_rows",
+    "neighbour_lists",
     "pairs",
     "read",
 ]

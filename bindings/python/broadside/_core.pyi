@@ -100,7 +100,10 @@ def find(
     ignored: object | None,
     quarantine: object,
     touching: object,
+    within: float | tuple[NDArray[np.float64], NDArray[np.float64]] | None,
 ) -> Any: ...
+def distances(boxes: object, other: object | None, pairs: object) -> NDArray[np.float64]: ...
+def neighbours(pairs: object, boxes: int, full: bool) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
 def find_batch(
     boxes: object,
     offsets: object,

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from broadside import _arguments, _convert, _core
+from broadside import _arguments, _convert, _core, _within
 from broadside._columns import Columns
 from broadside._core import PairTable as PairTable
 from broadside._errors import InvalidBoxError
@@ -36,6 +36,7 @@ def pairs(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> NDArray[np.uint32]: ...
 @overload
 def pairs(
@@ -55,6 +56,7 @@ def pairs(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> PairTable: ...
 @overload
 def pairs(
@@ -74,6 +76,7 @@ def pairs(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> Any: ...
 def pairs(
     boxes: Any,
@@ -92,6 +95,7 @@ def pairs(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> Any:
     """Every pair of overlapping boxes, once. Boxes that touch overlap, unless `touching` is False.
 
@@ -129,6 +133,10 @@ def pairs(
             or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
             Filters may only say which boxes are static.
         different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out.
+        within: Find the boxes whose Euclidean distance is at most this number (a cutoff), instead of those that
+            overlap; or a radius for each box, shape (n,): two pair if their distance is at most the sum of their radii;
+            of two sets, the radii of both as a tuple. The sets may then be points as well: arrays of shape (n, 2) or
+            (n, 3). `distances` and `neighbour_lists` take the pairs.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
@@ -138,6 +146,7 @@ def pairs(
         InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` and ``argument`` say which.
         InvalidAlgorithmError: `algorithm` does not exist or has no such tunable or value.
         TypeError: Something is of another type or dtype than these.
+        InvalidQueryError: `within` has a number that is not finite, or is negative.
         ValueError: Something has another shape, or does not fit to the rest.
 
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends
@@ -147,7 +156,9 @@ def pairs(
     filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
-    which = (threads, filters, other_filters, ignored, quarantine, touching)
+    if within is not None:
+        boxes, other, within = _reaching(boxes, other, within)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within)
     try:
         if output == "numpy":
             return _find(_ARRAY, boxes, other, algorithm, sort, *which)
@@ -184,6 +195,11 @@ def _sets(boxes: Any, other: Any, columns: Columns | None, other_columns: Column
     return _convert.given(boxes, "boxes", columns), other
 
 
+def _reaching(boxes: Any, other: Any, within: Any) -> tuple[Any, Any, Any]:
+    """Both sets, points among them as boxes, and the reach as the extension module takes it."""
+    return _within.boxes_of(boxes), _within.boxes_of(other), _within.checked(within, other is not None)
+
+
 def _kept(boxes: Any, name: str) -> Any:
     return boxes if _convert.is_empty_sequence(boxes) else _convert.boxes(boxes, name)
 
@@ -203,13 +219,15 @@ def count(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
     filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns)
-    found: int = _find(
-        _core.COUNT, boxes, other, algorithm, False, threads, filters, other_filters, ignored, quarantine, touching
-    )
+    if within is not None:
+        boxes, other, within = _reaching(boxes, other, within)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within)
+    found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
     return found
 
 
@@ -274,6 +292,7 @@ def components(
     touching: bool = True,
     same: Any = None,
     different: Any = None,
+    within: Any = None,
 ) -> NDArray[np.uint32]:
     """The connected components of the pairs that `pairs` gives for the same arguments.
 
@@ -285,9 +304,10 @@ def components(
     """
     filters, _ = with_keys(filters, None, same, different, False)
     boxes, _ = _sets(boxes, None, columns, None)
-    found: NDArray[np.uint32] = _find(
-        _core.COMPONENTS, boxes, None, algorithm, False, threads, filters, None, ignored, quarantine, touching
-    )
+    if within is not None:
+        boxes, _, within = _reaching(boxes, None, within)
+    which = (threads, filters, None, ignored, quarantine, touching, within)
+    found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
     return found
 
 

@@ -1,12 +1,14 @@
 // Finders and trackers that JavaScript holds.
 #include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "broadside/components.hpp"
 #include "broadside/finder.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
+#include "broadside/within.hpp"
 
 #include "core/bit_cast.hpp"
 #include "module/calls.hpp"
@@ -15,7 +17,15 @@ namespace broadside::wasm {
 namespace {
 
 /// The results of a search, as bits.
-enum Mode : std::uint32_t { counts = 1, sorts = 2, joins = 4, leaves_out_touching = 8, labels = 16 };
+enum Mode : std::uint32_t {
+  counts = 1,
+  sorts = 2,
+  joins = 4,
+  leaves_out_touching = 8,
+  labels = 16,
+  has_distance = 32,
+  has_radii = 64
+};
 
 /// The boxes of a search, and which of their pairs count.
 struct PairsCall {
@@ -26,11 +36,13 @@ struct PairsCall {
   const Filter* filters;
   const Filter* right_filters;
   std::uint32_t mode;
+  const double* within;        ///< a distance, or the radii of the left set
+  const double* right_within;  ///< the radii of the right set
 };
 
 class WasmFinder {
  public:
-  explicit WasmFinder(std::string_view spec) : finder_(spec) {}
+  explicit WasmFinder(std::string_view spec) : spec_(spec), finder_(spec) {}
 
   void find(const PairsCall& search) {
     if ((search.mode & counts) != 0) {
@@ -60,12 +72,32 @@ class WasmFinder {
     const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     const PairFilters filters{filters_at(search.filters, search.count),
                               filters_at(search.right_filters, search.right_count)};
-    if ((search.mode & joins) == 0)
+    if ((search.mode & (has_distance | has_radii)) != 0)
+      find_within(search, pairs, filters);
+    else if ((search.mode & joins) == 0)
       finder_.find(boxes, pairs, filters);
     else
       finder_.find_between(boxes, boxes_at<dimension>(search.right, search.right_count), pairs, filters);
   }
 
+  void find_within(const PairsCall& search, PairSink& pairs, const PairFilters& filters) const {
+    const bool is_between = (search.mode & joins) != 0;
+    const FindOptions options{.algorithm = spec_,
+                              .filters = filters.filters,
+                              .right_filters = filters.right_filters,
+                              .touching = (search.mode & leaves_out_touching) == 0};
+    const Reach reach = (search.mode & has_distance) != 0
+                            ? Reach(*search.within)
+                            : Reach({search.within, search.count},
+                                    {search.right_within, is_between ? search.right_count : 0});
+    const auto boxes = boxes_at<dimension>(search.boxes, search.count);
+    if (is_between)
+      find_pairs_within(boxes, boxes_at<dimension>(search.right, search.right_count), reach, pairs, options);
+    else
+      find_pairs_within(boxes, reach, pairs, options);
+  }
+
+  std::string spec_;
   Finder<dimension> finder_;
   std::vector<Pair> pairs_;
   std::vector<Pair> scratch_;
@@ -137,8 +169,11 @@ BROADSIDE_EXPORT(finder_free) void finder_free(WasmFinder* finder) { delete find
 BROADSIDE_EXPORT(finder_find)
 broadside_status finder_find(WasmFinder* finder, const float* boxes, std::size_t count, const float* right,
                              std::size_t right_count, const Filter* filters, const Filter* right_filters,
-                             std::uint32_t mode) {
-  return guarded([&] { finder->find({boxes, count, right, right_count, filters, right_filters, mode}); });
+                             std::uint32_t mode, const double* within, const double* right_within) {
+  return guarded([&] {
+    finder->find(
+        {boxes, count, right, right_count, filters, right_filters, mode, within, right_within});
+  });
 }
 
 BROADSIDE_EXPORT(tracker_make)

@@ -85,6 +85,13 @@ export function putWords(core: Core, numbers: ArrayLike<number>): number {
   return address;
 }
 
+export function putDoubles(core: Core, numbers: ArrayLike<number>): number {
+  if (numbers.length === 0) return 0;
+  const address = core.take(8 * numbers.length);
+  core.f64.set(numbers, address / 8);
+  return address;
+}
+
 // ---- Filters: six words each, as the module has them ----
 
 export const bytesOfFilter = 24;

@@ -1,11 +1,12 @@
 // The face of the smaller modules: pairs, trackers and worlds.
 import type {
-  BoxArray, Boxes, ComponentsOptions, CountJoinOptions, CountOptions, Dimension, JoinOptions, PairFinding, PairsOptions, Tracker,
+  BoxArray, Boxes, ComponentsOptions, CountJoinOptions, CountOptions, Dimension, JoinOptions, NeighbourLists,
+  NeighboursOptions, PairFinding, PairsOptions, Tracker,
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, KeptBoxes } from "./boxes.ts";
 import { Cores } from "./core.ts";
-import { Pairs } from "./pairs.ts";
+import { Pairs, neighboursOf } from "./pairs.ts";
 import { KeptTracker } from "./tracker.ts";
 import { KeptWorld } from "./world.ts";
 
@@ -53,6 +54,10 @@ export class PairFindingFace implements PairFinding {
 
   components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array {
     return this.#of(options).components(boxes as Given, options);
+  }
+
+  neighbours(pairs: ArrayLike<number>, count: number, options?: NeighboursOptions): NeighbourLists {
+    return neighboursOf(pairs, count, options);
   }
 
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number {

@@ -1,19 +1,20 @@
 // All pairs of boxes of one dimension: by finders that stay in the module, one for each algorithm, so that calls ask for no memory.
 import type {
-  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, Keys, PairsOptions,
+  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, Keys, NeighbourLists, NeighboursOptions,
+  PairsOptions,
 } from "../types/types.d.ts";
-import { type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters } from "./boxes.ts";
+import { type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putDoubles, putFilters } from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
-const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8, labels = 16 }
+const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8, labels = 16, hasDistance = 32, hasRadii = 64 }
 
-const countOptions = ["dimension", "algorithm", "filters", "same", "different", "touching"];
+const countOptions = ["dimension", "algorithm", "filters", "same", "different", "touching", "within"];
 const pairsOptions = [...countOptions, "sorted", "view"];
 const componentsOptions = [...countOptions, "view"];
-const rightOptions = ["rightFilters", "rightSame", "rightDifferent"];
+const rightOptions = ["rightFilters", "rightSame", "rightDifferent", "rightWithin"];
 const countJoinOptions = [...countOptions, ...rightOptions];
 const joinOptions = [...pairsOptions, ...rightOptions];
 
@@ -56,7 +57,8 @@ export class Pairs {
     // options is looked at here, for calling it would take as long as comparing two boxes.
     if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
         options === this.#lastChecked && options.filters === undefined && options.same === undefined &&
-        options.different === undefined && options.algorithm === undefined && options.touching !== false ||
+        options.different === undefined && options.algorithm === undefined && options.touching !== false &&
+        options.within === undefined ||
         this.#meansFew(options))) {
       if (this.#fewPairs.length === 0) this.#renewFew();
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
@@ -98,7 +100,7 @@ export class Pairs {
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     const { algorithm } = options;
     return options.filters === undefined && options.same === undefined && options.different === undefined &&
-      options.touching !== false &&
+      options.touching !== false && options.within === undefined &&
       (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
@@ -159,14 +161,17 @@ export class Pairs {
       [filters, rightFilters] = filtersOfKeys(options, count, right === undefined ? undefined : rightCount);
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
+    const [reach, within, rightWithin] = reachOf(options, count, right === undefined ? undefined : rightCount);
     const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
     core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
-      (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)));
+      (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)) +
+      8 * (within.length + rightWithin.length));
     const at = put(core, boxes);
     const rightAt = right === undefined ? 0 : put(core, right);
     core.check(core.exports.finder_find(finder, at, count, rightAt, rightCount,
       putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount),
-      options.touching === false ? mode | Mode.leavesOutTouching : mode));
+      reach | (options.touching === false ? mode | Mode.leavesOutTouching : mode), putDoubles(core, within),
+      putDoubles(core, rightWithin)));
   }
 
   #finder(algorithm: string): number {
@@ -213,6 +218,56 @@ function filtersOfKeys(options: JoinOptions, count: number, rightCount: number |
   const filters = made(isSame ? options.same : options.different, options.filters, count, false);
   if (rightCount === undefined) return [filters];
   return [filters, made(isSame ? options.rightSame : options.rightDifferent, options.rightFilters, rightCount, true)];
+}
+
+type Reach = readonly [mode: number, within: ArrayLike<number>, rightWithin: ArrayLike<number>];
+
+const noNumbers: ArrayLike<number> = [];
+const noReach: Reach = [0, noNumbers, noNumbers];
+
+/** The mode of `within`, and its distance or its radii of both sets. */
+function reachOf(options: JoinOptions, count: number, rightCount: number | undefined): Reach {
+  const { within, rightWithin } = options;
+  if (within === undefined || typeof within === "number") {
+    if (rightWithin !== undefined) refuse("rightWithin", rightWithin, "nothing, as within is no array of radii");
+    return within === undefined ? noReach : [Mode.hasDistance, [within], noNumbers];
+  }
+  const checked = (radii: ArrayLike<number> | undefined, name: string, boxes: number) => {
+    if (radii === undefined || countIn(radii, 1, name) !== boxes)
+      refuse(`the length of ${name}`, radii?.length, `${boxes}, one for each box`);
+    return radii;
+  };
+  return [Mode.hasRadii, checked(within, "within", count),
+    rightCount === undefined ? noNumbers : checked(rightWithin, "rightWithin", rightCount)];
+}
+
+/** The neighbours of each of `count` boxes. */
+export function neighboursOf(pairs: ArrayLike<number>, count: number, options: NeighboursOptions = {}): NeighbourLists {
+  checkOptions(options, ["full"]);
+  checkSwitch("full", options.full);
+  const full = options.full !== false;
+  if (!(Number.isInteger(count) && count >= 0)) refuse("count", count, "a whole number of 0 or more");
+  const all = 2 * countIn(pairs, 2, "pairs");
+  const offsets = new Uint32Array(count + 1);
+  for (let i = 0; i < all; ++i) {
+    const box = pairs[i] as number;
+    if (full || i % 2 === 0) {
+      if (!(Number.isInteger(box) && box >= 0 && box < count)) refuse(`pairs[${i}]`, box, `an id below ${count}`);
+      offsets[box] = (offsets[box] as number) + 1;
+    }
+  }
+  for (let i = 1; i <= count; ++i) offsets[i] = (offsets[i] as number) + (offsets[i - 1] as number);
+  // Each offset is now the end of its box's neighbours, and becomes their begin as they are written.
+  const ids = new Uint32Array(full ? all : all / 2);
+  const write = (box: number, neighbour: number) => {
+    ids[offsets[box] = (offsets[box] as number) - 1] = neighbour;
+  };
+  for (let i = 0; i < all; i += 2) {
+    write(pairs[i] as number, pairs[i + 1] as number);
+    if (full) write(pairs[i + 1] as number, pairs[i] as number);
+  }
+  for (let i = 0; i < count; ++i) ids.subarray(offsets[i], offsets[i + 1]).sort();
+  return { offsets, ids };
 }
 
 /** Filters that say anything. */

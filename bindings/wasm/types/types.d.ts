@@ -53,6 +53,11 @@ export interface CountOptions {
    * on an axis where minimum and maximum are equal.
    */
   readonly touching?: boolean;
+  /**
+   * Find the boxes whose Euclidean distance is at most this number, instead of those that overlap. Or a radius for each
+   * box: two pair if their distance is at most the sum of their radii. Points are boxes of equal minima and maxima.
+   */
+  readonly within?: number | ArrayLike<number>;
 }
 
 export interface ResultOptions {
@@ -76,9 +81,25 @@ export interface CountJoinOptions extends CountOptions {
   readonly rightSame?: Keys;
   /** The right set's keys, with `different`. */
   readonly rightDifferent?: Keys;
+  /** The right set's radii, if `within` is an array of radii. */
+  readonly rightWithin?: ArrayLike<number>;
 }
 
 export interface JoinOptions extends CountJoinOptions, PairsOptions {}
+
+export interface NeighboursOptions {
+  /**
+   * Whether each box of a pair has the other one as a neighbour: true by default. If false, the first box has the
+   * second, so that each pair is listed once; also for pairs of two sets.
+   */
+  readonly full?: boolean;
+}
+
+/** The neighbours of box i, ascending, are `ids.subarray(offsets[i], offsets[i + 1])`. */
+export interface NeighbourLists {
+  readonly offsets: Uint32Array;
+  readonly ids: Uint32Array;
+}
 
 export interface TrackerOptions {
   readonly dimension?: Dimension;
@@ -245,6 +266,8 @@ export interface PairFinding {
    * in its component. No pairs are kept.
    */
   components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array;
+  /** The neighbours of each of `count` boxes, of pairs in any order. */
+  neighbours(pairs: ArrayLike<number>, count: number, options?: NeighboursOptions): NeighbourLists;
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number;
   /** Room for `count` boxes in the module's memory, absent until you set them. */
   boxes(count: number, dimension?: Dimension): Boxes;

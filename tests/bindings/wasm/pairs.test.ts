@@ -190,6 +190,49 @@ test("refuses keys that it cannot use", () => {
   assert.throws(() => broadside.join(boxes, boxes, { same: [1, 2] }), /the length of rightSame is undefined/);
 });
 
+test("finds what is within a distance or radii, and lists neighbours", () => {
+  for (const { broadside } of builds) {
+    const count = 300;
+    const boxes = Array.from({ length: count }, (_, i) => [i * 7 % 41, i * 11 % 37]).flatMap(([x, y]) => [x!, y!, x! + 1, y!]);
+    const radii = Array.from({ length: count }, (_, i) => i % 3);
+    const gap = (a: number, b: number, axis: number) => Math.max(0, boxes[4 * a + axis]! - boxes[4 * b + axis + 2]!,
+      boxes[4 * b + axis]! - boxes[4 * a + axis + 2]!);
+    const expected = (reach: (a: number, b: number) => number) => {
+      const pairs: number[] = [];
+      for (let a = 0; a < count; ++a)
+        for (let b = a + 1; b < count; ++b)
+          if (gap(a, b, 0) ** 2 + gap(a, b, 1) ** 2 <= reach(a, b) ** 2) pairs.push(a, b);
+      return pairs;
+    };
+    for (const within of [0, 1, 5])
+      assert.deepEqual([...broadside.pairs(boxes, { within, sorted: true })], expected(() => within));
+    const found = broadside.pairs(boxes, { within: radii, sorted: true });
+    assert.deepEqual([...found], expected((a, b) => radii[a]! + radii[b]!));
+    assert.equal(broadside.countJoin(boxes, boxes, { within: radii, rightWithin: radii }), found.length + count);
+    const full = broadside.neighbours(found, count);
+    const half = broadside.neighbours(found, count, { full: false });
+    for (let i = 0; i < count; ++i) {
+      const greater: number[] = [];
+      const all: number[] = [];
+      for (let k = 0; k < found.length; k += 2) {
+        const [a, b] = [found[k]!, found[k + 1]!];
+        if (a === i) greater.push(b);
+        if (a === i || b === i) all.push(a + b - i);
+      }
+      assert.deepEqual([...half.ids.subarray(half.offsets[i], half.offsets[i + 1])], greater);
+      assert.deepEqual([...full.ids.subarray(full.offsets[i], full.offsets[i + 1])], all.sort((a, b) => a - b));
+    }
+    const refused = (options: object, code: string, message: RegExp) =>
+      assert.throws(() => broadside.pairs(boxes, options), { code, message });
+    refused({ within: -1 }, "INVALID_QUERY", /the distance is -1; expected a finite number of 0 or more/);
+    refused({ within: radii.map(() => NaN) }, "INVALID_QUERY", /radius of box 0 is nan/);
+    refused({ within: [1] }, "INVALID_ARGUMENT", /the length of within is 1; expected 300, one for each box/);
+    refused({ within: 1, touching: false }, "INVALID_ARGUMENT", /touching is false/);
+    assert.throws(() => broadside.join(boxes, boxes, { within: radii }), /the length of rightWithin is undefined/);
+    assert.throws(() => broadside.neighbours([0, 2], 2), /pairs\[1\] is 2; expected an id below 2/);
+  }
+});
+
 test("components are the boxes that hang together", () => {
   for (const { broadside } of builds) {
     for (const count of [0, 1, 40, 700]) {

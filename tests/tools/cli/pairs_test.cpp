@@ -328,6 +328,17 @@ TEST(PairsVerb, FindsWhatIsWithinADistance) {
                           });
 }
 
+TEST(PairsVerb, MeasuresADistanceInAStraightLineIfAsked) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv", "xmin,ymin,xmax,ymax\n0,0,1,1\n4,5,6,6\n4,1,4,1\n");
+  EXPECT_EQ(run({"pairs", file, "--within", "4"}).output, "first,second\n0,1\n0,2\n1,2\n");
+  const Ended ended = run({"pairs", file, "--within", "4.9", "--euclidean"});
+  EXPECT_EQ(ended.output, "first,second\n0,2\n1,2\n");
+  EXPECT_THAT(ended.errors, HasSubstr("2 pairs within 4.9 (Euclidean)"));
+  EXPECT_EQ(run({"pairs", file, file, "--within", "5", "--euclidean", "--count"}).output, "9\n");
+  expect_refused("pairs", {{{file, "--euclidean"}, {"--euclidean without --within"}}});
+}
+
 TEST(PairsVerb, LeavesOutWhatOnlyTouches) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);

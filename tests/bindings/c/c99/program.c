@@ -41,6 +41,44 @@ static void try_floats(void) {
            "components without labels", &error);
   }
 
+  {
+    /* Within a distance: the last two are 3 apart on both axes, which is 4.24. */
+    const double radii[3] = {0, 2, 2.25};
+    const double wrong[3] = {0, 2, -1};
+    double distances[2] = {9, 9};
+    size_t offsets[4] = {9, 9, 9, 9};
+    uint32_t neighbours[4] = {9, 9, 9, 9};
+    broadside_find_options options;
+    broadside_finder* finder = NULL;
+    broadside_find_options_init(&options);
+    options.distance = 4.2;
+    status = broadside_find_pairs(&boxes, NULL, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_OK && count == 1, "within 4.2", &error);
+    options.distance = 4.25;
+    status = broadside_find_pairs(&boxes, &boxes, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_TOO_SMALL && count == 7, "within 4.25 of two sets", &error);
+    status = broadside_finder_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &finder, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT && strstr(error.message, "distance") != NULL, "finder", &error);
+    options.radii = radii;
+    status = broadside_count_pairs(&boxes, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT, "a distance and radii", &error);
+    options.distance = 0;
+    status = broadside_find_pairs(&boxes, NULL, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_OK && count == 2, "radii", &error);
+    status = broadside_distances(&boxes, NULL, pairs, 2, distances, &error);
+    expect(status == BROADSIDE_OK && fabs(distances[0] + distances[1] - 3 * sqrt(2)) < 1e-9, "distances", &error);
+    status = broadside_neighbours(pairs, 2, 3, 1, offsets, neighbours, &error);
+    expect(status == BROADSIDE_OK && offsets[1] == 1 && offsets[2] == 3 && offsets[3] == 4 && neighbours[0] == 1 &&
+               neighbours[1] == 0 && neighbours[2] == 2 && neighbours[3] == 1,
+           "neighbours", &error);
+    options.radii = wrong;
+    status = broadside_count_pairs(&boxes, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_INVALID_QUERY && strstr(error.message, "box 2 is -1") != NULL, "a radius", &error);
+    options.right_radii = radii;
+    status = broadside_count_pairs(&boxes, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT, "right radii of one set", &error);
+  }
+
   bodies[2].box[0] = NAN;
   status = broadside_count_pairs(&boxes, NULL, NULL, &count, &error);
   expect(status == BROADSIDE_INVALID_INPUT && error.index == 2 && strstr(error.message, "box 2") != NULL,

@@ -1,0 +1,81 @@
+"""Pairs within a distance: the argument `within`, points as boxes, distances and neighbour lists of pairs."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from broadside import _arguments, _core
+
+
+def checked(within: Any, is_between: bool) -> Any:
+    """A float, or the radii of both sets, as the extension module takes them."""
+    if within is None:
+        return None
+    if is_between and isinstance(within, (tuple, list)):
+        if len(within) != 2:
+            raise ValueError(f"within has {len(within)} elements; expected a number, or the radii of both sets")
+        return _radii(within[0]), _radii(within[1])
+    if np.ndim(within) == 0:
+        return _arguments.number(within, "within")
+    if is_between:
+        raise TypeError("within is an array; expected a number, or the radii of both sets as a tuple")
+    return _radii(within), np.empty(0)
+
+
+def _radii(found: Any) -> NDArray[np.float64]:
+    array = np.asarray(found)
+    if array.size and array.dtype.kind not in "iuf":
+        raise TypeError(f"within has dtype {array.dtype}; expected numbers")
+    if array.ndim != 1:
+        raise ValueError(f"within has shape {array.shape}; expected a number, or (n,): a radius for each box")
+    return np.ascontiguousarray(array, np.float64)
+
+
+def boxes_of(found: Any) -> Any:
+    """Points, an array of shape (n, 2) or (n, 3), as boxes; others as they are."""
+    if isinstance(found, np.ndarray) and found.ndim == 2 and found.shape[1] in (2, 3):
+        return np.concatenate((found, found), axis=1)
+    return found
+
+
+class NeighbourLists(NamedTuple):
+    """The neighbours of every box, ascending: those of box i are ``ids[offsets[i]:offsets[i + 1]]``.
+
+    They are a matrix in CSR form: ``scipy.sparse.csr_array((values, ids, offsets))``.
+    """
+
+    offsets: NDArray[np.int64]
+    """shape (n + 1,)"""
+    ids: NDArray[np.uint32]
+    """shape (k,)"""
+
+
+def distances(boxes: Any, pairs: ArrayLike, other: Any = None) -> NDArray[np.float64]:
+    """The Euclidean distance of the boxes of each pair: 0 for boxes that overlap.
+
+    Args:
+        boxes: The boxes, or points, that the pairs were found in, as `pairs` takes them.
+        pairs: Rows of two ids, shape (k, 2), such as ``pairs(boxes, within=r)``, whose distances are at most r.
+        other: The second set, if the pairs are of two sets.
+
+    Raises ValueError for an id that is out of range.
+    """
+    return _core.distances(boxes_of(boxes), boxes_of(other), pairs)
+
+
+def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> NeighbourLists:
+    """The neighbours of each of `n` boxes, of pairs in any order.
+
+    Args:
+        pairs: Rows of two ids, shape (k, 2), such as ``pairs(points, within=cutoff)``.
+        n: How many boxes there are; of two sets, in the first.
+        full: Each box of a pair has the other one as a neighbour (each pair twice). If False, the first has the second
+            (each pair once): a half list, or one of two sets.
+
+    Raises ValueError for an id that is out of range.
+    """
+    count = _arguments.integer(n, "n", 0, 2**32 - 1)
+    return NeighbourLists(*_core.neighbours(pairs, count, bool(full)))
