@@ -13,6 +13,7 @@
 #include <nanobind/ndarray.h>
 
 #include "broadside/finder.hpp"
+#include "broadside/sinks.hpp"
 #include "broadside/within.hpp"
 
 #include "bindings/python/input.hpp"
@@ -27,15 +28,15 @@ inline constexpr std::size_t long_search = 4096;
 class InterruptibleCollector final : public PairSink {
  public:
   InterruptibleCollector(std::vector<Pair>& pairs, WithoutGil& released)
-      : pairs_(pairs), released_(released) {}
+      : collector_(pairs), released_(released) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
-    pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+    collector_.put(pairs);
     if (++chunks_ % 64 == 0) released_.check_signals();
   }
 
-  std::vector<Pair>& pairs_;
+  PairCollector collector_;
   WithoutGil& released_;
   unsigned chunks_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -14,12 +15,14 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/registry.hpp"
+#include "core/cell_axis.hpp"
 #include "core/filter_sink.hpp"
 #include "core/input_check.hpp"
 #include "core/large_array.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "core/parallel.hpp"
+#include "core/radix_sort.hpp"
 #include "find/deliver.hpp"
 #include "find/search.hpp"
 #include "kernels/squared_distances.hpp"
@@ -87,15 +90,17 @@ struct SumOfRadii {
   const double* right;
 };
 
-/// Passes on the pairs of boxes within limit(pair) of each other, in the same order.
+/// Passes on the pairs of boxes within limit(pair) of each other, in the same order, under their `ids` unless
+/// these are null.
 template <int D, typename Real, typename Limit>
 class WithinSink final : public core::FilterSink {
  public:
-  WithinSink(const Box<D, Real>* left, const Box<D, Real>* right, Limit limit, PairSink& target)
-      : FilterSink(target), left_(left), right_(right), limit_(limit) {}
+  WithinSink(const Box<D, Real>* left, const Box<D, Real>* right, const BoxId* ids, Limit limit,
+             PairSink& target)
+      : FilterSink(target), left_(left), right_(right), ids_(ids), limit_(limit) {}
 
   std::unique_ptr<FilterSink> onto(PairSink& target) const override {
-    return std::make_unique<WithinSink>(left_, right_, limit_, target);
+    return std::make_unique<WithinSink>(left_, right_, ids_, limit_, target);
   }
 
  private:
@@ -104,20 +109,34 @@ class WithinSink final : public core::FilterSink {
       const std::span<const Pair> some = pairs.first(std::min(pairs.size(), max_room));
       std::array<double, max_room> squares;
       kernels::set_squared_distances(left_, right_, some, squares.data());
-      const double* next = squares.data();
-      pass_on(some, [&](Pair pair, Pair& to) {
-        to = pair;
-        const double limit = limit_(pair);
-        const double square = *next++;
-        if (has_plain_square(limit)) return square <= limit * limit;
-        return are_within(left_[index(pair.first)], right_[index(pair.second)], limit);
-      });
+      Pair* const out = target().room(some.size());
+      std::size_t passed = 0;
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        out[passed] = some[i];
+        const double limit = limit_(some[i]);
+        passed += (has_plain_square(limit)
+                       ? squares[i] <= limit * limit
+                       : are_within(left_[index(some[i].first)], right_[index(some[i].second)], limit))
+                      ? 1
+                      : 0;
+      }
+      if (ids_ != nullptr) std::transform(out, out + passed, out, [this](Pair pair) { return named(pair); });
+      target().commit(passed);
       pairs = pairs.subspan(some.size());
     }
   }
 
+  Pair named(Pair pair) const {
+    const std::uint32_t a = ids_[index(pair.first)];
+    const std::uint32_t b = ids_[index(pair.second)];
+    const std::uint32_t swap =
+        (a ^ b) & (0U - static_cast<std::uint32_t>(b < a));  // a branch would mispredict
+    return {BoxId{a ^ swap}, BoxId{b ^ swap}};
+  }
+
   const Box<D, Real>* left_;
   const Box<D, Real>* right_;
+  const BoxId* ids_;
   Limit limit_;
 };
 
@@ -160,11 +179,80 @@ Box<D, Real> enlarged_outwards(Box<D, Real> box, double by) {
   return box;
 }
 
+/// From this number of boxes on, which no cache of a core holds, sorting them by place pays: a search writes
+/// the pairs of neighbours one after the other, and each looks up two boxes.
+constexpr std::size_t min_sorted_boxes = std::size_t{1} << 15;
+
+/// Puts a zero, or two in 3D, between the bits of a number.
+template <int D>
+std::uint32_t spread(std::uint32_t number) {
+  std::uint32_t bits = 0;
+  for (int bit = 0; bit < 11; ++bit) bits |= (number >> bit & 1) << (D * bit);
+  return bits;
+}
+
+/// A box's place on a Z-order curve through cells: 2^11 of them on each axis in 2D, 2^7 in 3D, which two
+/// passes of a radix sort put in order.
+template <int D, typename Real>
+class Curve {
+ public:
+  explicit Curve(std::span<const Box<D, Real>> boxes) : low_(boxes[0].min) {
+    Point<D, Real> high = low_;
+    for (const Box<D, Real>& box : boxes) {
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        low_[axis] = std::min(low_[axis], box.min[axis]);
+        high[axis] = std::max(high[axis], box.min[axis]);
+      }
+    }
+    for (std::size_t axis = 0; axis < D; ++axis)
+      cells_[axis] = {0, cells_per_axis / static_cast<float>(high[axis] - low_[axis]), cells_per_axis - 1};
+    for (std::uint32_t cell = 0; cell < spread_.size(); ++cell) spread_[cell] = spread<D>(cell);
+  }
+
+  std::uint32_t operator()(const Box<D, Real>& box) const {
+    std::uint32_t key = 0;
+    for (std::size_t axis = 0; axis < D; ++axis)
+      key |= spread_[cells_[axis](static_cast<float>(box.min[axis] - low_[axis]))] << axis;
+    return key;
+  }
+
+ private:
+  static constexpr float cells_per_axis = D == 2 ? 1 << 11 : 1 << 7;
+
+  Point<D, Real> low_;
+  std::array<core::CellAxis, D> cells_;
+  std::array<std::uint32_t, static_cast<std::size_t>(cells_per_axis)> spread_;
+};
+
 /// A set of boxes, in which some may be absent, and what is searched in their stead.
 template <int D, typename Real>
 struct Set {
   Set(BoxView<D, Real> view, std::vector<Box<D, Real>>& gathered, std::span<const double> set_radii)
       : boxes(find::array_of(view, gathered)), radii(set_radii) {}
+
+  /// Sorts the boxes by place. None may be absent.
+  void sort(bool has_radii, core::Parallel& parallel) {
+    const Curve<D, Real> curve(boxes);
+    core::RadixSort radix;
+    const std::span<core::KeyedPlace> places = radix.places(boxes.size());
+    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i)
+        places[i] = {curve(boxes[i]), static_cast<std::uint32_t>(i)};
+    });
+    const std::span<const core::KeyedPlace> order = radix.sort(parallel);
+    core::renew(sorted, boxes.size());
+    core::renew(ids, boxes.size());
+    if (has_radii) core::renew(sorted_radii, boxes.size());
+    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        sorted[i] = boxes[order[i].place];
+        ids[i] = BoxId{order[i].place};
+        if (has_radii) sorted_radii[i] = radii[order[i].place];
+      }
+    });
+    boxes = sorted;
+    radii = sorted_radii;
+  }
 
   void enlarge(const Reach& reach, core::Parallel& parallel) {
     core::renew(enlarged, boxes.size());
@@ -178,6 +266,9 @@ struct Set {
   std::span<const Box<D, Real>> boxes;
   std::span<const double> radii;
   core::LargeArray<Box<D, Real>> enlarged{};
+  core::LargeArray<Box<D, Real>> sorted{};
+  core::LargeArray<double> sorted_radii{};
+  core::LargeArray<BoxId> ids{};  // of sorted boxes
 };
 
 void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t second) {
@@ -240,13 +331,17 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
 
   core::Parallel parallel;
   parallel.start(workers, left.boxes.size() + right.boxes.size());
+  const bool sorts = !is_between && absent_left == 0 && left.boxes.size() >= min_sorted_boxes &&
+                     filters.filters.empty() && (filters.ignored == nullptr || filters.ignored->empty());
+  if (sorts) left.sort(reach.has_radii(), parallel);
   left.enlarge(reach, parallel);
   right.enlarge(reach, parallel);
   const Set<D, Real>& other = is_between ? right : left;
   const auto find_within = [&](auto limit, PairSink& sink) {
     const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
     return core::search_through(
-        WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(), limit, sink),
+        WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(),
+                                             sorts ? left.ids.data() : nullptr, limit, sink),
         [&](PairSink& candidates) {
           return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
                             : search.find(left.enlarged, options, candidates);

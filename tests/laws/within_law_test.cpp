@@ -185,7 +185,7 @@ TEST_P(WithinLaw, FindsEachPairOfAnyNumbers) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, WithinLaw, testing::ValuesIn(law_cases_without_peers()), case_name);
 
-/// Points in a cube of the unit, of which the distance 0.1 makes some hundred thousand pairs.
+/// Points in the unit cube.
 std::vector<Box3> drawn_points(std::size_t count) {
   Rng rng(3);
   std::vector<Box3> points(count);
@@ -196,16 +196,25 @@ std::vector<Box3> drawn_points(std::size_t count) {
   return points;
 }
 
+/// So many boxes are sorted by place, unless they have filters.
 TEST(Within, GivesTheSamePairsInTheSameOrderWhateverTheThreads) {
-  const std::vector<Box3> points = drawn_points(reduced(12'000, 1));
-  const Pairs alone = find_pairs_within(points, 0.05, {.algorithm = "auto:threads=1"});
-  EXPECT_GT(alone.size(), points.size());
-  EXPECT_EQ(find_pairs_within(points, 0.05, {.algorithm = "auto:threads=4"}), alone);
-  Components components(points.size());
-  find_pairs_within(points, 0.05, static_cast<PairSink&>(components), {.algorithm = "auto:threads=4"});
-  Components expected(points.size());
-  for (const Pair pair : alone) expected.add(pair.first, pair.second);
-  EXPECT_EQ(components.labels(), expected.labels());
+  std::vector<Box3> points = drawn_points(33'000);
+  points[7].min[1] = -infinity;
+  points[8].max[2] = infinity;
+  std::vector<double> radii(points.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = 0.005 * static_cast<double>(i % 4);
+  const std::vector<Filter> all(points.size());
+  for (const Reach& reach : {Reach(0.02), Reach(radii)}) {
+    const Pairs alone = find_pairs_within(points, reach, {.algorithm = "auto:threads=1"});
+    EXPECT_GT(alone.size(), points.size() / 4);
+    EXPECT_EQ(find_pairs_within(points, reach, {.algorithm = "auto:threads=4"}), alone);
+    EXPECT_EQ(sorted(alone), sorted(find_pairs_within(points, reach, {.filters = all})));
+    Components components(points.size());
+    find_pairs_within(points, reach, static_cast<PairSink&>(components), {.algorithm = "auto:threads=4"});
+    Components expected(points.size());
+    for (const Pair pair : alone) expected.add(pair.first, pair.second);
+    EXPECT_EQ(components.labels(), expected.labels());
+  }
 }
 
 TEST(Within, TakesFiltersKeysAndIgnoredPairs) {
