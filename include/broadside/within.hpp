@@ -1,6 +1,7 @@
 // find_pairs_within(): the pairs of boxes within a Euclidean distance, and neighbour lists of pairs.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,19 @@ template <int D, typename Real>
 [[nodiscard]] BROADSIDE_PUBLIC bool is_within(const Box<D, Real>& a, const Box<D, Real>& b,
                                               double distance) noexcept;
 
+/// The distance() of two present boxes in space that repeats: `periods` has a length for each axis after
+/// which it does, or infinity if it does not. It is that of the images which are nearest on every axis.
+///
+/// First each box is moved by whole periods until its min is in [0, period]. Bounds that already are stay as
+/// they are, to the bit; otherwise the min becomes its exact remainder, and the box keeps its length, both
+/// rounded to double once. A box at least as long as the period becomes the whole axis. Then on each axis one
+/// of the two boxes is moved back by a period, also rounded once, if that brings them nearer.
+///
+/// Throws InvalidQuery as find_pairs_within() does for periods.
+template <int D, typename Real>
+[[nodiscard]] BROADSIDE_PUBLIC double distance(const Box<D, Real>& a, const Box<D, Real>& b,
+                                               std::span<const double> periods);
+
 /// How near two boxes must be to count as a pair: one distance for all (a cutoff), or a radius for each box.
 /// Two boxes with radii pair if their distance is at most the sum of the two, rounded to double. The radii
 /// must outlive it.
@@ -56,16 +70,43 @@ class Reach {
   Reach(std::span<const double> left, std::span<const double> right)
       : radii_(left), right_radii_(right), has_radii_(true) {}
 
+  /// The same reach in space that repeats: `periods` are those of distance(). With a distance of 0, boxes
+  /// pair if they overlap around the edge.
+  ///
+  ///     find_pairs_within(atoms, Reach(cutoff).periodic({10.0, 10.0, 10.0}), ...)
+  ///     find_pairs_within(parcels, Reach(0).periodic({360.0, infinity}), ...)     // longitude and latitude
+  [[nodiscard]] Reach periodic(std::span<const double> periods) const {
+    Reach result = *this;
+    result.period_count_ = periods.size();
+    for (std::size_t axis = 0; axis < periods_.size() && axis < periods.size(); ++axis)
+      result.periods_[axis] = periods[axis];
+    return result;
+  }
+  template <std::size_t axes>
+  [[nodiscard]] Reach periodic(const double (&periods)[axes]) const {
+    return periodic(std::span<const double>(periods));
+  }
+
   [[nodiscard]] bool has_radii() const noexcept { return has_radii_; }
   [[nodiscard]] double distance() const noexcept { return distance_; }
   [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
   [[nodiscard]] std::span<const double> right_radii() const noexcept { return right_radii_; }
+
+  /// How many periods were given; 0 if space does not repeat.
+  [[nodiscard]] std::size_t period_count() const noexcept { return period_count_; }
+
+  /// The periods of the first three axes.
+  [[nodiscard]] std::span<const double> periods() const noexcept {
+    return std::span(periods_).first(period_count_ < periods_.size() ? period_count_ : periods_.size());
+  }
 
  private:
   double distance_ = 0;
   std::span<const double> radii_;
   std::span<const double> right_radii_;
   bool has_radii_ = false;
+  std::size_t period_count_ = 0;
+  std::array<double, 3> periods_{};
 };
 
 namespace detail {
@@ -95,10 +136,11 @@ BROADSIDE_CALLERS_VECTOR void find_pairs_within(BoxView<D, Real> boxes, const Bo
 }
 
 /// Sets distances[i] to the distance of the boxes of pairs[i]: of the first from `left`, the second from
-/// `right`.
+/// `right`. `periods` is empty if space does not repeat.
 template <int D, typename Real>
 BROADSIDE_PUBLIC void set_distances(BoxView<D, Real> left, BoxView<D, Real> right,
-                                    std::span<const Pair> pairs, std::span<double> distances);
+                                    std::span<const Pair> pairs, std::span<const double> periods,
+                                    std::span<double> distances);
 
 /// Fills the neighbour lists of sorted pairs.
 BROADSIDE_PUBLIC void set_neighbours(std::span<const Pair> sorted, bool is_full,
@@ -114,8 +156,9 @@ BROADSIDE_PUBLIC void set_neighbours(std::span<const Pair> sorted, bool is_full,
 ///     find_pairs_within(boxes, 0.5, [&](Pair pair) { ... });
 ///
 /// Throws what find_pairs() throws; InvalidQuery for a distance or a radius that is not a finite number of 0
-/// or more; InvalidFrame if there are radii, but not one for each box; std::invalid_argument if
-/// options.touching is false. Nothing has been written then.
+/// or more, for a period that is not above 0, or if there is not one for each axis; InvalidFrame if there are
+/// radii, but not one for each box; std::invalid_argument if options.touching is false. Nothing has been
+/// written then.
 template <BoxRange Boxes, PairTarget Target>
 void find_pairs_within(const Boxes& boxes, const Reach& reach, Target&& pairs,
                        const FindOptions& options = {}) {
@@ -153,20 +196,22 @@ template <BoxRange Left, BoxRange Right>
   });
 }
 
-/// The distance() of the boxes of each pair. Pairs that find_pairs_within() finds for a distance have none
-/// that is greater. Throws InvalidFrame for an id that is out of range.
+/// The distance() of the boxes of each pair, around the edge if there are `periods`. Pairs that
+/// find_pairs_within() finds for a distance have none that is greater. Throws InvalidFrame for an id that is
+/// out of range.
 template <BoxRange Boxes>
-[[nodiscard]] std::vector<double> distances(const Boxes& boxes, std::span<const Pair> pairs) {
-  return distances(boxes, boxes, pairs);
+[[nodiscard]] std::vector<double> distances(const Boxes& boxes, std::span<const Pair> pairs,
+                                            std::span<const double> periods = {}) {
+  return distances(boxes, boxes, pairs, periods);
 }
 
 /// The same for pairs of two sets.
 template <BoxRange Left, BoxRange Right>
-[[nodiscard]] std::vector<double> distances(const Left& left, const Right& right,
-                                            std::span<const Pair> pairs) {
+[[nodiscard]] std::vector<double> distances(const Left& left, const Right& right, std::span<const Pair> pairs,
+                                            std::span<const double> periods = {}) {
   using View = detail::ViewOf<Left>;
   std::vector<double> found(pairs.size());
-  detail::set_distances(View(left), View(right), pairs, found);
+  detail::set_distances(View(left), View(right), pairs, periods, found);
   return found;
 }
 

@@ -8,8 +8,10 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "broadside/algorithm.hpp"
 #include "broadside/error.hpp"
@@ -24,6 +26,7 @@
 #include "core/parallel.hpp"
 #include "core/radix_sort.hpp"
 #include "find/deliver.hpp"
+#include "find/periodic.hpp"
 #include "find/search.hpp"
 #include "kernels/squared_distances.hpp"
 
@@ -169,14 +172,15 @@ Real less_than(double rounded) {
   return number == -std::numeric_limits<Real>::infinity() ? number : detail::next_below(number);
 }
 
-template <int D, typename Real>
-Box<D, Real> enlarged_outwards(Box<D, Real> box, double by) {
+template <typename Real, int D, typename Given>
+Box<D, Real> enlarged_outwards(const Box<D, Given>& box, double by) {
   if (!is_present(box)) return absent_box<D, Real>();
+  Box<D, Real> enlarged;
   for (int axis = 0; axis < D; ++axis) {
-    box.min[axis] = less_than<Real>(static_cast<double>(box.min[axis]) - by);
-    box.max[axis] = -less_than<Real>(-static_cast<double>(box.max[axis]) - by);
+    enlarged.min[axis] = less_than<Real>(static_cast<double>(box.min[axis]) - by);
+    enlarged.max[axis] = -less_than<Real>(-static_cast<double>(box.max[axis]) - by);
   }
-  return box;
+  return enlarged;
 }
 
 /// From this number of boxes on, which no cache of a core holds, sorting them by place pays: a search writes
@@ -256,11 +260,17 @@ struct Set {
 
   void enlarge(const Reach& reach, core::Parallel& parallel) {
     core::renew(enlarged, boxes.size());
-    const double half = enlargement(reach.distance() / 2);
+    const auto by = enlargements(reach);
     parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
       for (std::size_t i = range.begin; i < range.end; ++i)
-        enlarged[i] = enlarged_outwards(boxes[i], reach.has_radii() ? enlargement(radii[i]) : half);
+        enlarged[i] = enlarged_outwards<Real>(boxes[i], by(i));
     });
+  }
+
+  /// How far each box is enlarged.
+  auto enlargements(const Reach& reach) const {
+    return [half = enlargement(reach.distance() / 2), set_radii = radii, has_radii = reach.has_radii()](
+               std::size_t box) { return has_radii ? enlargement(set_radii[box]) : half; };
   }
 
   std::span<const Box<D, Real>> boxes;
@@ -270,6 +280,72 @@ struct Set {
   core::LargeArray<double> sorted_radii{};
   core::LargeArray<BoxId> ids{};  // of sorted boxes
 };
+
+/// The periods; infinite if there are none. Throws InvalidQuery.
+template <int D>
+find::Periods<D> checked_periods(std::span<const double> periods, std::size_t count) {
+  find::Periods<D> checked;
+  checked.fill(infinite);
+  if (count == 0) return checked;
+  if (count != D) {
+    throw InvalidQuery(core::message({count, " periods for boxes of ", D, " dimensions; expected ", D,
+                                      ", with infinity for an axis that does not repeat"}));
+  }
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    if (!(periods[axis] > 0)) {
+      throw InvalidQuery(core::message({"the period of axis ", axis, " is ", core::text_of(periods[axis]),
+                                        "; expected a number above 0, or infinity for an axis that does not "
+                                        "repeat"}));
+    }
+    checked[axis] = periods[axis];
+  }
+  return checked;
+}
+
+/// Finds the pairs within limit(pair) in space that repeats. `right` is `left` if there is one set.
+template <int D, typename Real, typename Limit>
+std::optional<Statistics> find_periodic(const Set<D, Real>& left, const Set<D, Real>& right,
+                                        const Reach& reach, const find::Periods<D>& periods, Limit limit,
+                                        find::Search<D, Real>& search, find::SearchOptions<D> options,
+                                        PairSink& pairs) {
+  const bool is_between = &left != &right;
+  double most = enlargement(reach.distance() / 2);
+  for (const std::span<const double> radii : {left.radii, right.radii}) {
+    for (const double radius : radii) most = std::max(most, enlargement(radius));
+  }
+  const auto enlarge = [](const Box<D, double>& box, double by) { return enlarged_outwards<Real>(box, by); };
+  find::PeriodicSet<D, Real> left_places(left.boxes, periods);
+  left_places.make_places(left.enlargements(reach), most, enlarge);
+  find::PeriodicSet<D, Real> right_places(is_between ? right.boxes : std::span<const Box<D, Real>>(),
+                                          periods);
+  right_places.make_places(right.enlargements(reach), most, enlarge);
+  core::check_count(left_places.places().size() + right_places.places().size());
+
+  const core::PairSet* const ignored = core::PairSet::of(std::exchange(options.filters.ignored, nullptr));
+  const std::vector<Filter> filters = left_places.filters_of_places(options.filters.filters);
+  const std::vector<Filter> right_filters = right_places.filters_of_places(options.filters.right_filters);
+  options.filters.filters = filters;
+  options.filters.right_filters = right_filters;
+  const auto is_within = [limit](const Box<D, double>& a, const Box<D, double>& b, Pair pair) {
+    return are_within(a, b, limit(pair));
+  };
+  return core::search_through(
+      find::PeriodicSink<D, Real, decltype(is_within)>(left_places, is_between ? right_places : left_places,
+                                                       periods, ignored, is_within, pairs),
+      [&](PairSink& candidates) {
+        return is_between
+                   ? search.find_between(left_places.places(), right_places.places(), options, candidates)
+                   : search.find(left_places.places(), options, candidates);
+      });
+}
+
+template <int D, typename Real>
+double distance_around(const Box<D, Real>& a, const Box<D, Real>& b, const find::Periods<D>& periods) {
+  Box<D, double> moved_a = find::in_cell(a, periods);
+  Box<D, double> moved_b = find::in_cell(b, periods);
+  find::move_to_nearest(moved_a, moved_b, periods);
+  return distance_of(moved_a, moved_b);
+}
 
 void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t second) {
   for (const Pair pair : pairs) {
@@ -285,6 +361,13 @@ template <int D, typename Real>
 double distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   const core::DefaultEnvironment environment;
   const volatile double result = distance_of(a, b);
+  return result;
+}
+
+template <int D, typename Real>
+double distance(const Box<D, Real>& a, const Box<D, Real>& b, std::span<const double> periods) {
+  const core::DefaultEnvironment environment;
+  const volatile double result = distance_around(a, b, checked_periods<D>(periods, periods.size()));
   return result;
 }
 
@@ -310,6 +393,8 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
     check_radii(reach.radii(), view.size(), is_between ? " left" : "");
     check_radii(reach.right_radii(), right_count, " right");
   }
+  const bool is_periodic = reach.period_count() > 0;
+  const find::Periods<D> periods = checked_periods<D>(reach.periods(), reach.period_count());
 
   const Algorithm& algorithm = algorithm::require_algorithm(spec.name);
   find::Search<D, Real> search(find::searcher_of<D>(algorithm, algorithm::settings_of(algorithm, spec)),
@@ -331,14 +416,18 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
 
   core::Parallel parallel;
   parallel.start(workers, left.boxes.size() + right.boxes.size());
-  const bool sorts = !is_between && absent_left == 0 && left.boxes.size() >= min_sorted_boxes &&
-                     filters.filters.empty() && (filters.ignored == nullptr || filters.ignored->empty());
+  const bool sorts = !is_periodic && !is_between && absent_left == 0 &&
+                     left.boxes.size() >= min_sorted_boxes && filters.filters.empty() &&
+                     (filters.ignored == nullptr || filters.ignored->empty());
   if (sorts) left.sort(reach.has_radii(), parallel);
-  left.enlarge(reach, parallel);
-  right.enlarge(reach, parallel);
+  if (!is_periodic) {
+    left.enlarge(reach, parallel);
+    right.enlarge(reach, parallel);
+  }
   const Set<D, Real>& other = is_between ? right : left;
   const auto find_within = [&](auto limit, PairSink& sink) {
     const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
+    if (is_periodic) return find_periodic(left, other, reach, periods, limit, search, options, sink);
     return core::search_through(
         WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(),
                                              sorts ? left.ids.data() : nullptr, limit, sink),
@@ -355,9 +444,16 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
 
 template <int D, typename Real>
 void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::span<const Pair> pairs,
-                           std::span<double> distances) {
+                           std::span<const double> periods, std::span<double> distances) {
   const core::DefaultEnvironment environment;
   check_ids(pairs, left.size(), right.size());
+  const find::Periods<D> checked = checked_periods<D>(periods, periods.size());
+  if (!periods.empty()) {
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      distances[i] =
+          distance_around<D, Real>(left[index(pairs[i].first)], right[index(pairs[i].second)], checked);
+    return;
+  }
   std::vector<Box<D, Real>> gathered;
   std::vector<Box<D, Real>> right_gathered;
   const Box<D, Real>* const lefts = find::array_of(left, gathered).data();
@@ -397,8 +493,9 @@ void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::spa
   template void detail::find_pairs_within(BoxView<D, Real>, const BoxView<D, Real>*, const Reach&,    \
                                           PairSink&, const Spec&, const Workers&, const PairFilters&, \
                                           Output<BoxId>*);                                            \
+  template double distance(const Box<D, Real>&, const Box<D, Real>&, std::span<const double>);        \
   template void detail::set_distances(BoxView<D, Real>, BoxView<D, Real>, std::span<const Pair>,      \
-                                      std::span<double>);
+                                      std::span<const double>, std::span<double>);
 BROADSIDE_WITHIN(2, float)
 BROADSIDE_WITHIN(3, float)
 BROADSIDE_WITHIN(2, double)
