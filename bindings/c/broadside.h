@@ -156,6 +156,11 @@ typedef struct broadside_find_options {
   double distance;
   const double* radii;       /**< one for each box (of the left set), or null; `distance` is then 0 */
   const double* right_radii; /**< for two sets with radii: one for each box of the right one */
+
+  /** If not null, space repeats: one length for each axis, infinity for an axis that does not repeat. Boxes then
+   * pair around the edge if they overlap, or within the distance: see Reach::periodic() in within.hpp. For the
+   * same calls as `distance`. */
+  const double* periods;
 } broadside_find_options;
 
 BROADSIDE_API void broadside_find_options_init(broadside_find_options* options);

@@ -25,14 +25,15 @@ IgnoredPairs ignored_of(const broadside_find_options& options) {
 }
 
 bool has_reach(const broadside_find_options& options) {
-  return !(options.distance == 0) || options.radii != nullptr || options.right_radii != nullptr;
+  return !(options.distance == 0) || options.radii != nullptr || options.right_radii != nullptr ||
+         options.periods != nullptr;
 }
 
 /// The options of `what`, which refuses a distance and radii.
 broadside_find_options options_without_reach(const broadside_find_options* given, const char* what) {
   const broadside_find_options options = options_of(given, options_name);
   if (has_reach(options))
-    throw std::invalid_argument("distance, radii or right_radii are given for " + std::string(what) +
+    throw std::invalid_argument("distance, radii, right_radii or periods are given for " + std::string(what) +
                                 "; expected 0 and null");
   return options;
 }
@@ -89,7 +90,8 @@ struct FinderImpl {
                             .executor = executor.get(),
                             .touching = options.leaves_out_touching == 0,
                             .quarantined = options.quarantines != 0 ? &quarantined : nullptr};
-    const Reach reach = reach_of(options, boxes.size(), right);
+    Reach reach = reach_of(options, boxes.size(), right);
+    if (options.periods != nullptr) reach = reach.periodic(std::span<const double>(options.periods, D));
     if (right == nullptr)
       find_pairs_within(boxes, reach, found, which);
     else

@@ -111,14 +111,16 @@ std::vector<Pair> pairs_of(nb::handle object, std::size_t first, std::size_t sec
 }
 
 /// The distance of the boxes of each pair.
-nb::object distances_of(nb::handle boxes, nb::handle other, nb::handle pairs) {
+nb::object distances_of(nb::handle boxes, nb::handle other, nb::handle pairs, nb::handle period) {
   const SearchArguments sets(boxes, other, "auto", nb::none(), nb::none(), nb::none(), nb::none(), false,
                              true);
   const Rows& right = sets.other ? *sets.other : sets.boxes;
   const std::vector<Pair> which = pairs_of(pairs, sets.boxes.size(), right.size());
+  const std::vector<double> periods = doubles_of(period);
   return with_kind(sets.boxes.kind(), [&]<int D, typename Real>() {
-    return array_of(without_gil(
-        [&](WithoutGil&) { return distances(sets.boxes.boxes<D, Real>(), right.boxes<D, Real>(), which); }));
+    return array_of(without_gil([&](WithoutGil&) {
+      return distances(sets.boxes.boxes<D, Real>(), right.boxes<D, Real>(), which, periods);
+    }));
   });
 }
 
@@ -159,7 +161,8 @@ void add_pairs(nb::module_& module) {
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
              nb::arg("quarantine").none(), nb::arg("touching").none(), nb::arg("within").none());
-  module.def("distances", &distances_of, nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("pairs"));
+  module.def("distances", &distances_of, nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("pairs"),
+             nb::arg("period"));
   module.def("neighbours", &neighbours_of, nb::arg("pairs"), nb::arg("boxes"), nb::arg("full"));
   module.def("find_batch", &find_batch, nb::arg("boxes").none(), nb::arg("offsets"),
              nb::arg("algorithm").none(), nb::arg("threads").none(), nb::arg("filters").none(),

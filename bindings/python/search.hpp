@@ -48,34 +48,37 @@ inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
   sort_pairs(pairs, checkpoint);
 }
 
-/// The argument `within`: a distance, or the radii of one set or of two.
+/// Doubles of an array that broadside._within has made.
+inline std::vector<double> doubles_of(nb::handle object) {
+  const auto array = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(object);
+  return {array.data(), array.data() + array.shape(0)};
+}
+
+/// The arguments `within`, a distance, or the radii of one set or of two, and `period`.
 struct Within {
-  /// Of what broadside._within gives: a float, or two arrays of doubles. Nothing of None.
+  /// Of what broadside._within gives: a float, or two arrays of doubles; and the periods. Nothing of None.
   static std::optional<Within> of(nb::handle object) {
     if (object.is_none()) return std::nullopt;
     Within within;
-    if (nb::isinstance<nb::tuple>(object)) {
+    const nb::object reach = object[0];
+    if (nb::isinstance<nb::tuple>(reach)) {
       within.has_radii = true;
-      within.radii = doubles(object[0]);
-      within.right_radii = doubles(object[1]);
+      within.radii = doubles_of(reach[0]);
+      within.right_radii = doubles_of(reach[1]);
     } else {
-      within.distance = nb::cast<double>(object);
+      within.distance = nb::cast<double>(reach);
     }
+    within.periods = doubles_of(object[1]);
     return within;
   }
 
-  Reach reach() const { return has_radii ? Reach(radii, right_radii) : Reach(distance); }
+  Reach reach() const { return (has_radii ? Reach(radii, right_radii) : Reach(distance)).periodic(periods); }
 
   bool has_radii = false;
   double distance = 0;
   std::vector<double> radii;
   std::vector<double> right_radii;
-
- private:
-  static std::vector<double> doubles(nb::handle object) {
-    const auto array = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(object);
-    return {array.data(), array.data() + array.shape(0)};
-  }
+  std::vector<double> periods;
 };
 
 /// What is searched, and how.
@@ -148,7 +151,7 @@ struct SearchArguments {
   template <int D, typename Real>
   void find_within(const Finder<D, Real>& finder, BoxView<D, Real> left, const BoxView<D, Real>* right,
                    PairSink& pairs, const PairFilters& which) const {
-    if (!touching) throw std::invalid_argument("touching is False with within; expected True");
+    if (!touching) throw std::invalid_argument("touching is False with within or period; expected True");
     std::vector<BoxId> places;
     detail::OutputTo<std::vector<BoxId>> quarantined(places);
     detail::find_pairs_within(left, right, within->reach(), pairs, algorithm, finder.workers(), which,

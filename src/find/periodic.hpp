@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,7 @@ using Periods = std::array<double, D>;
 /// are stay as they are, to the bit. Otherwise the min becomes its exact remainder and the box keeps its
 /// length, both rounded to double once. A box at least as long as the period becomes the whole axis.
 template <int D, typename Real>
-Box<D, double> in_cell(const Box<D, Real>& box, const Periods<D>& periods) {
+Box<D, double> in_cell(const Box<D, Real>& box, const std::type_identity_t<Periods<D>>& periods) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box<D, double> moved;
   for (std::size_t axis = 0; axis < D; ++axis) {
@@ -77,7 +78,7 @@ void move_back(Box<D, double>& box, std::size_t axis, double period) {
 
 /// Moves one of two boxes in the cell back by one period on each axis on which that brings them nearer.
 template <int D>
-void move_to_nearest(Box<D, double>& a, Box<D, double>& b, const Periods<D>& periods) {
+void move_to_nearest(Box<D, double>& a, Box<D, double>& b, const std::type_identity_t<Periods<D>>& periods) {
   for (std::size_t axis = 0; axis < D; ++axis) {
     const Moved moved = nearest_image(a.min[axis], a.max[axis], b.min[axis], b.max[axis], periods[axis]);
     if (moved == Moved::first) move_back(a, axis, periods[axis]);

@@ -367,7 +367,7 @@ double distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
 template <int D, typename Real>
 double distance(const Box<D, Real>& a, const Box<D, Real>& b, std::span<const double> periods) {
   const core::DefaultEnvironment environment;
-  const volatile double result = distance_around(a, b, checked_periods<D>(periods, periods.size()));
+  const volatile double result = distance_around<D, Real>(a, b, checked_periods<D>(periods, periods.size()));
   return result;
 }
 
@@ -427,7 +427,7 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
   const Set<D, Real>& other = is_between ? right : left;
   const auto find_within = [&](auto limit, PairSink& sink) {
     const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
-    if (is_periodic) return find_periodic(left, other, reach, periods, limit, search, options, sink);
+    if (is_periodic) return find_periodic<D, Real>(left, other, reach, periods, limit, search, options, sink);
     return core::search_through(
         WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(),
                                              sorts ? left.ids.data() : nullptr, limit, sink),

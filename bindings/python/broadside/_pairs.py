@@ -37,6 +37,7 @@ def pairs(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> NDArray[np.uint32]: ...
 @overload
 def pairs(
@@ -57,6 +58,7 @@ def pairs(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> PairTable: ...
 @overload
 def pairs(
@@ -77,6 +79,7 @@ def pairs(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> Any: ...
 def pairs(
     boxes: Any,
@@ -96,6 +99,7 @@ def pairs(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> Any:
     """Every pair of overlapping boxes, once. Boxes that touch overlap, unless `touching` is False.
 
@@ -137,6 +141,10 @@ def pairs(
             overlap; or a radius for each box, shape (n,): two pair if their distance is at most the sum of their radii;
             of two sets, the radii of both as a tuple. The sets may then be points as well: arrays of shape (n, 2) or
             (n, 3). `distances` and `neighbour_lists` take the pairs.
+        period: Space repeats: the length after which it does on each axis, None on an axis on which it does not. For
+            ``(360, None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie
+            in any cell; one at least as long as the period is the whole axis. With `within`, the distance is that of
+            the nearest images.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
@@ -146,7 +154,8 @@ def pairs(
         InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` and ``argument`` say which.
         InvalidAlgorithmError: `algorithm` does not exist or has no such tunable or value.
         TypeError: Something is of another type or dtype than these.
-        InvalidQueryError: `within` has a number that is not finite, or is negative.
+        InvalidQueryError: `within` has a number that is not finite, or is negative; `period` has one that is not above
+            0, or not one for each axis.
         ValueError: Something has another shape, or does not fit to the rest.
 
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends
@@ -156,8 +165,8 @@ def pairs(
     filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
-    if within is not None:
-        boxes, other, within = _reaching(boxes, other, within)
+    if within is not None or period is not None:
+        boxes, other, within = _reaching(boxes, other, within, period)
     which = (threads, filters, other_filters, ignored, quarantine, touching, within)
     try:
         if output == "numpy":
@@ -195,9 +204,9 @@ def _sets(boxes: Any, other: Any, columns: Columns | None, other_columns: Column
     return _convert.given(boxes, "boxes", columns), other
 
 
-def _reaching(boxes: Any, other: Any, within: Any) -> tuple[Any, Any, Any]:
+def _reaching(boxes: Any, other: Any, within: Any, period: Any) -> tuple[Any, Any, Any]:
     """Both sets, points among them as boxes, and the reach as the extension module takes it."""
-    return _within.boxes_of(boxes), _within.boxes_of(other), _within.checked(within, other is not None)
+    return _within.boxes_of(boxes), _within.boxes_of(other), _within.checked(within, period, other is not None)
 
 
 def _kept(boxes: Any, name: str) -> Any:
@@ -220,12 +229,13 @@ def count(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
     filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns)
-    if within is not None:
-        boxes, other, within = _reaching(boxes, other, within)
+    if within is not None or period is not None:
+        boxes, other, within = _reaching(boxes, other, within, period)
     which = (threads, filters, other_filters, ignored, quarantine, touching, within)
     found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
     return found
@@ -293,6 +303,7 @@ def components(
     same: Any = None,
     different: Any = None,
     within: Any = None,
+    period: Any = None,
 ) -> NDArray[np.uint32]:
     """The connected components of the pairs that `pairs` gives for the same arguments.
 
@@ -304,8 +315,8 @@ def components(
     """
     filters, _ = with_keys(filters, None, same, different, False)
     boxes, _ = _sets(boxes, None, columns, None)
-    if within is not None:
-        boxes, _, within = _reaching(boxes, None, within)
+    if within is not None or period is not None:
+        boxes, _, within = _reaching(boxes, None, within, period)
     which = (threads, filters, None, ignored, quarantine, touching, within)
     found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
     return found

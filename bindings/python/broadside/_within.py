@@ -1,4 +1,5 @@
-"""Pairs within a distance: the argument `within`, points as boxes, distances and neighbour lists of pairs."""
+"""Pairs within a distance or around an edge: the arguments `within` and `period`, points as boxes, distances and
+neighbour lists of pairs."""
 
 from __future__ import annotations
 
@@ -10,10 +11,26 @@ from numpy.typing import ArrayLike, NDArray
 from broadside import _arguments, _core
 
 
-def checked(within: Any, is_between: bool) -> Any:
-    """A float, or the radii of both sets, as the extension module takes them."""
-    if within is None:
+def checked(within: Any, period: Any, is_between: bool) -> Any:
+    """The reach and the periods as the extension module takes them; None if there are neither."""
+    if within is None and period is None:
         return None
+    return _reach(within, is_between), periods(period)
+
+
+def periods(period: Any) -> NDArray[np.float64]:
+    """An array of the periods, infinite where they are None; empty for None."""
+    if period is None:
+        return np.empty(0)
+    if np.ndim(period) == 0:
+        raise TypeError(f"period is {period!r}; expected a number for each axis, or None for one that does not repeat")
+    return np.array([np.inf if one is None else _arguments.number(one, "period") for one in period], np.float64)
+
+
+def _reach(within: Any, is_between: bool) -> Any:
+    """A float, or the radii of both sets."""
+    if within is None:
+        return 0.0
     if is_between and isinstance(within, (tuple, list)):
         if len(within) != 2:
             raise ValueError(f"within has {len(within)} elements; expected a number, or the radii of both sets")
@@ -53,17 +70,20 @@ class NeighbourLists(NamedTuple):
     """shape (k,)"""
 
 
-def distances(boxes: Any, pairs: ArrayLike, other: Any = None) -> NDArray[np.float64]:
+def distances(
+    boxes: Any, pairs: ArrayLike, other: Any = None, *, period: ArrayLike | None = None
+) -> NDArray[np.float64]:
     """The Euclidean distance of the boxes of each pair: 0 for boxes that overlap.
 
     Args:
         boxes: The boxes, or points, that the pairs were found in, as `pairs` takes them.
         pairs: Rows of two ids, shape (k, 2), such as ``pairs(boxes, within=r)``, whose distances are at most r.
         other: The second set, if the pairs are of two sets.
+        period: As in `pairs`.
 
     Raises ValueError for an id that is out of range.
     """
-    return _core.distances(boxes_of(boxes), boxes_of(other), pairs)
+    return _core.distances(boxes_of(boxes), boxes_of(other), pairs, periods(period))
 
 
 def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> NeighbourLists:

@@ -24,7 +24,8 @@ enum Mode : std::uint32_t {
   leaves_out_touching = 8,
   labels = 16,
   has_distance = 32,
-  has_radii = 64
+  has_radii = 64,
+  is_periodic = 128
 };
 
 /// The boxes of a search, and which of their pairs count.
@@ -86,10 +87,14 @@ class WasmFinder {
                               .filters = filters.filters,
                               .right_filters = filters.right_filters,
                               .touching = (search.mode & leaves_out_touching) == 0};
-    const Reach reach = (search.mode & has_distance) != 0
-                            ? Reach(*search.within)
-                            : Reach({search.within, search.count},
-                                    {search.right_within, is_between ? search.right_count : 0});
+    const bool has_one_distance = (search.mode & has_distance) != 0;
+    Reach reach = has_one_distance ? Reach(*search.within)
+                                   : Reach({search.within, search.count},
+                                           {search.right_within, is_between ? search.right_count : 0});
+    if ((search.mode & is_periodic) != 0) {
+      const double* const periods = search.within + (has_one_distance ? 1 : search.count);
+      reach = reach.periodic(std::span<const double>(periods, dimension));
+    }
     const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     if (is_between)
       find_pairs_within(boxes, boxes_at<dimension>(search.right, search.right_count), reach, pairs, options);

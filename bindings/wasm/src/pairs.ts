@@ -9,9 +9,9 @@ import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
 
 /** As in module/pairs.cpp. */
-const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8, labels = 16, hasDistance = 32, hasRadii = 64 }
+const enum Mode { counts = 1, sorts = 2, joins = 4, leavesOutTouching = 8, labels = 16, hasDistance = 32, hasRadii = 64, isPeriodic = 128 }
 
-const countOptions = ["dimension", "algorithm", "filters", "same", "different", "touching", "within"];
+const countOptions = ["dimension", "algorithm", "filters", "same", "different", "touching", "within", "period"];
 const pairsOptions = [...countOptions, "sorted", "view"];
 const componentsOptions = [...countOptions, "view"];
 const rightOptions = ["rightFilters", "rightSame", "rightDifferent", "rightWithin"];
@@ -58,7 +58,7 @@ export class Pairs {
     if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
         options === this.#lastChecked && options.filters === undefined && options.same === undefined &&
         options.different === undefined && options.algorithm === undefined && options.touching !== false &&
-        options.within === undefined ||
+        options.within === undefined && options.period === undefined ||
         this.#meansFew(options))) {
       if (this.#fewPairs.length === 0) this.#renewFew();
       const found = this.#isFlat ? fewPairs2(boxes, this.#fewPairs) : fewPairs3(boxes, this.#fewPairs);
@@ -100,7 +100,7 @@ export class Pairs {
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     const { algorithm } = options;
     return options.filters === undefined && options.same === undefined && options.different === undefined &&
-      options.touching !== false && options.within === undefined &&
+      options.touching !== false && options.within === undefined && options.period === undefined &&
       (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
@@ -161,7 +161,7 @@ export class Pairs {
       [filters, rightFilters] = filtersOfKeys(options, count, right === undefined ? undefined : rightCount);
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
-    const [reach, within, rightWithin] = reachOf(options, count, right === undefined ? undefined : rightCount);
+    const [reach, within, rightWithin] = periodicReachOf(options, core.dimension, count, right === undefined ? undefined : rightCount);
     const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
     core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
       (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)) +
@@ -239,6 +239,19 @@ function reachOf(options: JoinOptions, count: number, rightCount: number | undef
   };
   return [Mode.hasRadii, checked(within, "within", count),
     rightCount === undefined ? noNumbers : checked(rightWithin, "rightWithin", rightCount)];
+}
+
+/** The same with the periods after the distance or the left radii. */
+function periodicReachOf(
+  options: JoinOptions, dimension: number, count: number, rightCount: number | undefined,
+): Reach {
+  const { period } = options;
+  const [mode, within, rightWithin] = reachOf(options, count, rightCount);
+  if (period === undefined) return [mode, within, rightWithin];
+  if (countIn(period, 1, "period") !== dimension)
+    refuse("the length of period", period.length, `${dimension}, one for each axis, Infinity for one that does not repeat`);
+  return [Mode.isPeriodic | (mode === 0 ? Mode.hasDistance : mode),
+    [...Array.from(mode === 0 ? [0] : within), ...Array.from(period)], rightWithin];
 }
 
 /** The neighbours of each of `count` boxes. */

@@ -58,6 +58,11 @@ export interface CountOptions {
    * box: two pair if their distance is at most the sum of their radii. Points are boxes of equal minima and maxima.
    */
   readonly within?: number | ArrayLike<number>;
+  /**
+   * Space repeats: the length after which it does on each axis, Infinity on an axis on which it does not, such as
+   * `[360, Infinity]` for longitude and latitude. Boxes then also pair around the edge.
+   */
+  readonly period?: ArrayLike<number>;
 }
 
 export interface ResultOptions {
