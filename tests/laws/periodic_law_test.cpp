@@ -217,7 +217,7 @@ TEST(Periodic, RefusesOtherPeriods) {
       "the period of axis 0 is 0; expected a number above 0, or infinity for an axis that does not repeat");
   EXPECT_EQ(
       message_of(Reach(1).periodic({1.0, std::numeric_limits<double>::quiet_NaN()})),
-      "the period of axis 1 is NaN; expected a number above 0, or infinity for an axis that does not repeat");
+      "the period of axis 1 is nan; expected a number above 0, or infinity for an axis that does not repeat");
   EXPECT_EQ(
       message_of(Reach(1).periodic({1.0, 1.0, 1.0, 1.0})),
       "4 periods for boxes of 2 dimensions; expected 2, with infinity for an axis that does not repeat");
