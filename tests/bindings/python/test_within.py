@@ -56,7 +56,7 @@ def test_takes_points_and_lists_their_neighbours() -> None:
     same = np.arange(400) % 2
     kept = broadside.pairs(points, within=0.15, same=same, sort=True)
     assert kept.tolist() == [[a, b] for a, b in np.argwhere(np.triu(near)).tolist() if same[a] == same[b]]
-    assert broadside.components(np.array([[0, 0], [1, 0], [3, 0], [2, 0.5]]), within=1.2).tolist() == [0, 0, 2, 0]
+    assert broadside.components(np.array([[0, 0], [1, 0], [5, 0], [2, 0.5]]), within=1.2).tolist() == [0, 0, 2, 0]
     assert broadside.neighbour_lists([[0, 2]], 3).ids.tolist() == [2, 0]
 
 
