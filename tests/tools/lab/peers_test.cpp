@@ -15,6 +15,7 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/catalogue.hpp"
+#include "lab/measure/compare.hpp"
 #include "lab/peers/queries.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/scenes/scene.hpp"
@@ -119,6 +120,34 @@ TEST(Peers, ThatJoinTwoSetsFindNoPairsWithinASet) {
     if (peer.has_dimension(3)) expect_a_join_of_two_sets<3>(peer);
   }
   EXPECT_EQ(count == 0, peers::peers().empty());
+}
+
+TEST(Peers, FindTheSamePairsBySeveralThreads) {
+  CompareOptions options;
+  for (const Algorithm& peer : peers::peers()) {
+    if (has_threads(peer)) options.algorithms += (options.algorithms.empty() ? "" : ",") + peer.name;
+  }
+  if (options.algorithms.empty()) GTEST_SKIP() << "no peer that can use several threads is in this build";
+  options.threads = {3};
+  // packed_spatial_index uses threads from 32,000 boxes on.
+  options.plan = {{.scene = "uniform", .dimension = 2, .boxes = 33'000},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000, .left = 0.3},
+                  {.scene = "uniform", .dimension = 2, .boxes = 5'000, .moving = 0.5, .frames = 3},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000, .moving = 0.5, .frames = 3}};
+  options.effort = {.budget_seconds = 60, .history_seconds = 60, .share_seconds = 0, .min_rounds = 1};
+  const Catalogue catalogue;
+  const Comparison comparison = compare(catalogue, options);
+  EXPECT_EQ(comparison.cases.size(), options.plan.size());
+  std::size_t verified = 0;
+  for (const CaseResult& result : comparison.cases) {
+    for (const Measurement& measurement : result.measurements) {
+      EXPECT_THAT(measurement.algorithm, HasSubstr(":threads=3"));
+      EXPECT_NE(measurement.outcome, Outcome::failed) << measurement.algorithm << ": " << measurement.reason;
+      if (measurement.outcome == Outcome::verified) ++verified;
+    }
+  }
+  EXPECT_GT(verified, 0u);
 }
 
 template <int D>

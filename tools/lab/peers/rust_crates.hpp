@@ -58,8 +58,8 @@ template <int D>
 class RustCrateSearcher final : public Searcher<D>, public TearDown {
  public:
   /// `needs_length` if the library is told the length of a typical box.
-  explicit RustCrateSearcher(const std::string& name, bool needs_length = false)
-      : name_(name), needs_length_(needs_length), searcher_(rust_searcher_new(name.c_str(), D)) {
+  explicit RustCrateSearcher(const std::string& name, bool needs_length = false, std::size_t threads = 1)
+      : name_(name), needs_length_(needs_length), searcher_(rust_searcher_new(name.c_str(), D, threads)) {
     if (!searcher_) throw RustError(name_);
   }
 
@@ -89,8 +89,8 @@ class RustCrateSearcher final : public Searcher<D>, public TearDown {
 template <int D>
 class RustCrateFollower final : public Follower<D> {
  public:
-  explicit RustCrateFollower(const std::string& name)
-      : name_(name), follower_(rust_follower_new(name.c_str(), D)) {
+  explicit RustCrateFollower(const std::string& name, std::size_t threads = 1)
+      : name_(name), follower_(rust_follower_new(name.c_str(), D, threads)) {
     if (!follower_) throw RustError(name_);
   }
 
@@ -143,6 +143,15 @@ template <int D>
 MakeSearcher<D> rust_searcher(std::string name, bool needs_length = false) {
   return [name = std::move(name), needs_length](const Settings&) {
     return std::make_unique<RustCrateSearcher<D>>(name, needs_length);
+  };
+}
+
+/// Likewise for a library that can use several threads and has the tunable `threads`.
+template <int D>
+MakeSearcher<D> threaded_rust_searcher(std::string name) {
+  return [name = std::move(name)](const Settings& settings) {
+    return std::make_unique<RustCrateSearcher<D>>(name, false,
+                                                  static_cast<std::size_t>(settings.integer("threads")));
   };
 }
 

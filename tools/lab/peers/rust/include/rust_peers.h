@@ -26,9 +26,10 @@ const char* rust_peer_error(void);
 /// The version of a crate in Cargo.lock; null if it is not there. Never freed.
 const char* rust_peer_version(const char* crate_name);
 
-/// Null on failure. `dimension` is 2 or 3.
-RustSearcher* rust_searcher_new(const char* name, int dimension);
-RustFollower* rust_follower_new(const char* name, int dimension);
+/// Null on failure. `dimension` is 2 or 3. `threads` is the number of threads for a library that can use
+/// several; 0: all of the machine's.
+RustSearcher* rust_searcher_new(const char* name, int dimension, size_t threads);
+RustFollower* rust_follower_new(const char* name, int dimension, size_t threads);
 void rust_searcher_free(RustSearcher* searcher);
 void rust_follower_free(RustFollower* follower);
 

@@ -8,6 +8,9 @@ const MAX_MARGIN: f32 = 0.05;
 /// `B2_AABB_MARGIN_FRACTION`, of half a diagonal.
 const MARGIN_FRACTION: f32 = 0.125;
 
+/// The queries that a thread takes at once: `b2UpdateBroadPhasePairs` has at least so many.
+const QUERIES: usize = 64;
+
 macro_rules! dynamic_tree {
     (
         $module:ident, $dimension:literal, $ffi:ident, $aabb:ident, $tree:ident, $create:ident, $destroy:ident,
@@ -24,8 +27,11 @@ macro_rules! dynamic_tree {
                 $rebuild, $root_bounds, $tree,
             };
 
-            use super::{MARGIN_FRACTION, MAX_MARGIN};
-            use crate::peer::{Bounds, Follower, Frame, Pairs, Searcher};
+            use rayon::prelude::*;
+            use rayon::ThreadPool;
+
+            use super::{MARGIN_FRACTION, MAX_MARGIN, QUERIES};
+            use crate::peer::{pool_of, Bounds, Follower, Frame, Pairs, Searcher};
 
             const CATEGORY: u64 = 1;
 
@@ -35,6 +41,9 @@ macro_rules! dynamic_tree {
             }
 
             struct Tree($tree);
+
+            // SAFETY: queries only read; the engine runs them in several threads.
+            unsafe impl Sync for Tree {}
 
             // SAFETY, in these functions: the tree was created, and callers give proxies that are in it.
             impl Tree {
@@ -94,18 +103,56 @@ macro_rules! dynamic_tree {
                 }
             }
 
+            /// Calls `query` with each of `ids` and a list for the pairs that it finds, in several threads.
+            fn pairs_of(
+                pool: &ThreadPool,
+                ids: &[u32],
+                query: impl Fn(u32, &mut Vec<(u32, u32)>) + Sync,
+            ) -> Vec<Vec<(u32, u32)>> {
+                let of_some = |some: &[u32]| {
+                    let mut found = Vec::new();
+                    some.iter().for_each(|&id| query(id, &mut found));
+                    found
+                };
+                pool.install(|| ids.par_chunks(QUERIES).map(of_some).collect())
+            }
+
             #[derive(Default)]
-            pub struct TreeSearcher(Tree);
+            pub struct TreeSearcher {
+                pool: Option<ThreadPool>,
+                tree: Tree,
+            }
+
+            impl TreeSearcher {
+                pub fn new(threads: usize) -> Self {
+                    Self { pool: pool_of(threads), ..Self::default() }
+                }
+            }
 
             impl Searcher<$dimension> for TreeSearcher {
                 fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
-                    self.0 = Tree::with_capacity(boxes.len());
+                    self.tree = Tree::with_capacity(boxes.len());
                     for (id, &bounds) in (0..).zip(boxes) {
-                        self.0.create_proxy(id, bounds);
+                        self.tree.create_proxy(id, bounds);
+                    }
+                    if let Some(pool) = &self.pool {
+                        let tree = &self.tree;
+                        let query = |a, found: &mut Vec<_>| {
+                            tree.query(aabb_of(boxes[a as usize]), |b| {
+                                if a < b {
+                                    found.push((a, b));
+                                }
+                                true
+                            });
+                        };
+                        for &(a, b) in pairs_of(pool, &tree.leaves(), query).iter().flatten() {
+                            pairs.add(a, b)?;
+                        }
+                        return ControlFlow::Continue(());
                     }
                     let mut flow = ControlFlow::Continue(());
-                    for a in self.0.leaves() {
-                        self.0.query(aabb_of(boxes[a as usize]), |b| {
+                    for a in self.tree.leaves() {
+                        self.tree.query(aabb_of(boxes[a as usize]), |b| {
                             if a < b {
                                 flow = pairs.add(a, b);
                             }
@@ -117,7 +164,7 @@ macro_rules! dynamic_tree {
                 }
 
                 fn tear_down(&mut self) {
-                    self.0 = Tree::default();
+                    self.tree = Tree::default();
                 }
             }
 
@@ -131,6 +178,7 @@ macro_rules! dynamic_tree {
 
             #[derive(Default)]
             pub struct TreeFollower {
+                pool: Option<ThreadPool>,
                 tree: Tree,
                 max_margin: f32,
                 proxies: Vec<Proxy>,    // by the boxes' ids
@@ -139,6 +187,10 @@ macro_rules! dynamic_tree {
             }
 
             impl TreeFollower {
+                pub fn new(threads: usize) -> Self {
+                    Self { pool: pool_of(threads), ..Self::default() }
+                }
+
                 fn grow(&mut self, count: usize) {
                     let enlarged = Bounds { min: [0.0; $dimension], max: [0.0; $dimension] };
                     self.proxies.resize(count, Proxy { proxy: None, enlarged, moved: false });
@@ -177,15 +229,21 @@ macro_rules! dynamic_tree {
                     // Box2D does this after the queries, beside its narrow phase; doing it first was up to a tenth
                     // faster.
                     self.tree.rebuild_enlarged();
-                    for &a in &self.moved {
-                        self.tree.query(aabb_of(self.proxies[a as usize].enlarged), |b| {
-                            if a < b || a > b && !self.proxies[b as usize].moved {
-                                self.pairs.push((a, b));
-                                found(a, b);
+                    let first = self.pairs.len();
+                    let (tree, proxies) = (&self.tree, &self.proxies);
+                    let query = |a: u32, pairs: &mut Vec<_>| {
+                        tree.query(aabb_of(proxies[a as usize].enlarged), |b| {
+                            if a < b || a > b && !proxies[b as usize].moved {
+                                pairs.push((a, b));
                             }
                             true
                         });
+                    };
+                    match &self.pool {
+                        None => self.moved.iter().for_each(|&a| query(a, &mut self.pairs)),
+                        Some(pool) => self.pairs.extend(pairs_of(pool, &self.moved, query).iter().flatten()),
                     }
+                    self.pairs[first..].iter().for_each(|&(a, b)| found(a, b));
                     for id in self.moved.drain(..) {
                         self.proxies[id as usize].moved = false;
                     }
@@ -194,7 +252,11 @@ macro_rules! dynamic_tree {
 
             impl Follower<$dimension> for TreeFollower {
                 fn build(&mut self, boxes: &[Bounds<$dimension>], length: f32) {
-                    *self = Self { tree: Tree::with_capacity(boxes.len()), max_margin: MAX_MARGIN * length, ..Self::default() };
+                    self.tree = Tree::with_capacity(boxes.len());
+                    self.max_margin = MAX_MARGIN * length;
+                    self.proxies.clear();
+                    self.moved.clear();
+                    self.pairs.clear();
                     self.grow(boxes.len());
                     for (id, bounds) in (0..).zip(boxes).filter(|(_, bounds)| bounds.is_present()) {
                         self.put(id, bounds);

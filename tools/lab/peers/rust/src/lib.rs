@@ -91,15 +91,15 @@ pub enum AnyFollower {
     Solid(Box<dyn Follower<3>>),
 }
 
-fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
+fn searcher_named(name: &str, dimension: c_int, threads: usize) -> AnySearcher {
     use AnySearcher::{Flat, Solid};
     match (name, dimension) {
-        ("packed_spatial_index", 2) => Flat(Box::<packed_index::Searcher2>::default()),
-        ("packed_spatial_index", 3) => Solid(Box::<packed_index::Searcher3>::default()),
+        ("packed_spatial_index", 2) => Flat(Box::new(packed_index::Searcher2::new(threads))),
+        ("packed_spatial_index", 3) => Solid(Box::new(packed_index::Searcher3::new(threads))),
         #[cfg(feature = "engines")]
-        ("parry", 2) => Flat(Box::<parry_bvh::flat::BvhSearcher>::default()),
+        ("parry", 2) => Flat(Box::new(parry_bvh::flat::BvhSearcher::new(threads))),
         #[cfg(feature = "engines")]
-        ("parry", 3) => Solid(Box::<parry_bvh::solid::BvhSearcher>::default()),
+        ("parry", 3) => Solid(Box::new(parry_bvh::solid::BvhSearcher::new(threads))),
         #[cfg(feature = "engines")]
         ("rapier", 2) => Flat(Box::<rapier_broad_phase::flat::BroadPhaseSearcher>::default()),
         #[cfg(feature = "engines")]
@@ -109,9 +109,9 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
         #[cfg(feature = "engines")]
         ("obvhs", 3) => Solid(Box::<obvhs_bvh::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
-        ("box2d3", 2) => Flat(Box::<dynamic_tree::box2d::TreeSearcher>::default()),
+        ("box2d3", 2) => Flat(Box::new(dynamic_tree::box2d::TreeSearcher::new(threads))),
         #[cfg(feature = "engines")]
-        ("box3d", 3) => Solid(Box::<dynamic_tree::box3d::TreeSearcher>::default()),
+        ("box3d", 3) => Solid(Box::new(dynamic_tree::box3d::TreeSearcher::new(threads))),
         #[cfg(feature = "engines")]
         ("physx_abp", 3) => Solid(Box::new(physx_broad_phase::PhaseSearcher::new(PxBroadPhaseType::Abp))),
         #[cfg(feature = "engines")]
@@ -139,20 +139,20 @@ fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) ->
     }
 }
 
-fn follower_named(name: &str, dimension: c_int) -> AnyFollower {
+fn follower_named(name: &str, dimension: c_int, threads: usize) -> AnyFollower {
     match (name, dimension) {
         #[cfg(feature = "engines")]
-        ("parry", 2) => AnyFollower::Flat(Box::<parry_bvh::flat::BvhFollower>::default()),
+        ("parry", 2) => AnyFollower::Flat(Box::new(parry_bvh::flat::BvhFollower::new(threads))),
         #[cfg(feature = "engines")]
-        ("parry", 3) => AnyFollower::Solid(Box::<parry_bvh::solid::BvhFollower>::default()),
+        ("parry", 3) => AnyFollower::Solid(Box::new(parry_bvh::solid::BvhFollower::new(threads))),
         #[cfg(feature = "engines")]
         ("rapier", 2) => AnyFollower::Flat(Box::<rapier_broad_phase::flat::BroadPhaseFollower>::default()),
         #[cfg(feature = "engines")]
         ("rapier", 3) => AnyFollower::Solid(Box::<rapier_broad_phase::solid::BroadPhaseFollower>::default()),
         #[cfg(feature = "engines")]
-        ("box2d3", 2) => AnyFollower::Flat(Box::<dynamic_tree::box2d::TreeFollower>::default()),
+        ("box2d3", 2) => AnyFollower::Flat(Box::new(dynamic_tree::box2d::TreeFollower::new(threads))),
         #[cfg(feature = "engines")]
-        ("box3d", 3) => AnyFollower::Solid(Box::<dynamic_tree::box3d::TreeFollower>::default()),
+        ("box3d", 3) => AnyFollower::Solid(Box::new(dynamic_tree::box3d::TreeFollower::new(threads))),
         #[cfg(feature = "engines")]
         ("physx_abp", 3) => AnyFollower::Solid(Box::new(physx_broad_phase::PhaseFollower::new(PxBroadPhaseType::Abp))),
         #[cfg(feature = "engines")]
@@ -194,13 +194,13 @@ pub unsafe extern "C" fn rust_peer_version(crate_name: *const c_char) -> *const 
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn rust_searcher_new(name: *const c_char, dimension: c_int) -> *mut AnySearcher {
-    guarded(|| Box::into_raw(Box::new(searcher_named(text(name), dimension)))).unwrap_or(std::ptr::null_mut())
+pub unsafe extern "C" fn rust_searcher_new(name: *const c_char, dimension: c_int, threads: usize) -> *mut AnySearcher {
+    guarded(|| Box::into_raw(Box::new(searcher_named(text(name), dimension, threads)))).unwrap_or(std::ptr::null_mut())
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn rust_follower_new(name: *const c_char, dimension: c_int) -> *mut AnyFollower {
-    guarded(|| Box::into_raw(Box::new(follower_named(text(name), dimension)))).unwrap_or(std::ptr::null_mut())
+pub unsafe extern "C" fn rust_follower_new(name: *const c_char, dimension: c_int, threads: usize) -> *mut AnyFollower {
+    guarded(|| Box::into_raw(Box::new(follower_named(text(name), dimension, threads)))).unwrap_or(std::ptr::null_mut())
 }
 
 #[no_mangle]

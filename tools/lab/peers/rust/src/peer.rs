@@ -1,7 +1,11 @@
 //! What a crate implements to take part: `Searcher` and `Follower`.
 
 use std::ffi::c_void;
+use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::thread::available_parallelism;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// A box: Broadside's `Box<D>` in memory.
 #[derive(Clone, Copy)]
@@ -72,6 +76,14 @@ impl Pairs {
             false => ControlFlow::Break(()),
         }
     }
+}
+
+/// The threads for a library that can use several, at most as many as the machine has: `None` for one thread, which is
+/// the calling one; 0 for all.
+pub fn pool_of(threads: usize) -> Option<ThreadPool> {
+    let all = available_parallelism().map_or(1, NonZero::get);
+    let count = if threads == 0 { all } else { threads.min(all) };
+    (threads != 1).then(|| ThreadPoolBuilder::new().num_threads(count).build().expect("threads"))
 }
 
 /// Finds pairs from scratch.
