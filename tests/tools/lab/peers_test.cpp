@@ -16,10 +16,12 @@
 
 #include "lab/catalogue.hpp"
 #include "lab/measure/compare.hpp"
+#include "lab/peers/filtering.hpp"
 #include "lab/peers/queries.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/scenes/scene.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/rng.hpp"
 #include "tests/support/searchers.hpp"
 #include "tests/support/text_of.hpp"
 
@@ -120,6 +122,47 @@ TEST(Peers, ThatJoinTwoSetsFindNoPairsWithinASet) {
     if (peer.has_dimension(3)) expect_a_join_of_two_sets<3>(peer);
   }
   EXPECT_EQ(count == 0, peers::peers().empty());
+}
+
+template <int D>
+void expect_the_pairs_that_filters_accept(const Algorithm& peer) {
+  std::unique_ptr<Searcher<D>> searcher = searcher_of<D>(peer);
+  auto* const filtering = dynamic_cast<peers::Filtering*>(searcher.get());
+  if (filtering == nullptr) return;
+  const Scene scene = find_scene("uniform").scene;
+  Rng rng(5);
+  for (const std::size_t count : {300, 200}) {
+    const std::vector<Box<D>> boxes =
+        make_history<D>(scene, {scene.name, {}}, {.boxes = count, .seed = count}).boxes;
+    std::vector<Filter> filters(count);
+    for (Filter& filter : filters) {
+      filter = {.category = rng.below(8),
+                .mask = rng.below(8),
+                .group = static_cast<std::int32_t>(rng.below(5)) - 2,
+                .is_static = rng.below(3) == 0};
+    }
+    const auto rejected = [&filters](Pair pair) {
+      return !accepts(filters[index(pair.first)], filters[index(pair.second)]);
+    };
+    std::vector<Pair> expected = find_pairs(boxes, {.algorithm = "brute_force"});
+    std::erase_if(expected, rejected);
+    std::ranges::sort(expected);
+    filtering->set_filters(filters);
+    std::vector<Pair> found;
+    PairCollector collector(found);
+    searcher->search({.boxes = boxes}, collector);
+    collector.flush();
+    std::erase_if(found, rejected);
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << peer.name;
+  }
+}
+
+TEST(Peers, ThatFilterLeaveOutNoPairThatFiltersAccept) {
+  for (const Algorithm& peer : peers::peers()) {
+    if (peer.has_dimension(2)) expect_the_pairs_that_filters_accept<2>(peer);
+    if (peer.has_dimension(3)) expect_the_pairs_that_filters_accept<3>(peer);
+  }
 }
 
 TEST(Peers, FindTheSamePairsBySeveralThreads) {

@@ -47,11 +47,8 @@ Algorithm parry_bvh() {
   Algorithm algorithm = rust_crate("parry2d", "parry_bvh",
                                    "Parry's hierarchy of boxes, built by binning and joined with itself",
                                    "parry, Bvh, after Wald 2007");
-  algorithm.tunables = {threads_tunable()};
-  algorithm.in_2d = {.searcher = threaded_rust_searcher<2>("parry"),
-                     .followers = {threaded_rust_follower<2>("parry", "Bvh")}};
-  algorithm.in_3d = {.searcher = threaded_rust_searcher<3>("parry"),
-                     .followers = {threaded_rust_follower<3>("parry", "Bvh")}};
+  algorithm.in_2d = {.searcher = rust_searcher<2>("parry"), .followers = {rust_follower<2>("parry", "Bvh")}};
+  algorithm.in_3d = {.searcher = rust_searcher<3>("parry"), .followers = {rust_follower<3>("parry", "Bvh")}};
   return algorithm;
 }
 

@@ -35,11 +35,20 @@ void rust_follower_free(RustFollower* follower);
 
 /// The functions below return false on failure. `boxes` has the minimum and then the maximum of each box.
 
+/// Broadside's Filter.
+typedef struct RustFilter {
+  uint64_t category;
+  uint64_t mask;
+  int32_t group;
+  bool is_static;
+} RustFilter;
+
 /// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, that many boxes at the
-/// front are the left set, and only pairs across the sets count; others may be given. `length` is that of a
+/// front are the left set, and only pairs across the sets count; others may be given. If `filters` is not
+/// null, it has a filter for each box, and pairs that these reject may be left out. `length` is that of a
 /// typical box, 0 if not needed.
 bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, size_t left_count,
-                          float length, RustPeerTakes takes, void* context);
+                          const RustFilter* filters, float length, RustPeerTakes takes, void* context);
 
 /// Destroys the structure that the last search left.
 bool rust_searcher_tear_down(RustSearcher* searcher);

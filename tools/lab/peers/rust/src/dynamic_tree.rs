@@ -31,9 +31,11 @@ macro_rules! dynamic_tree {
             use rayon::ThreadPool;
 
             use super::{MARGIN_FRACTION, MAX_MARGIN, QUERIES};
-            use crate::peer::{pool_of, Bounds, Follower, Frame, Pairs, Searcher};
+            use crate::peer::{pool_of, Bounds, Filter, Follower, Frame, Pairs, Searcher};
 
+            /// The defaults of a box without a filter.
             const CATEGORY: u64 = 1;
+            const MASK: u64 = u64::MAX;
 
             fn aabb_of(bounds: Bounds<$dimension>) -> $aabb {
                 // SAFETY: both are the floats of the minimum and then those of the maximum.
@@ -51,8 +53,8 @@ macro_rules! dynamic_tree {
                     Self(unsafe { $create(count as c_int) })
                 }
 
-                fn create_proxy(&mut self, id: u32, bounds: Bounds<$dimension>) -> c_int {
-                    unsafe { $create_proxy(&mut self.0, aabb_of(bounds), CATEGORY, id.into()) }
+                fn create_proxy(&mut self, id: u32, bounds: Bounds<$dimension>, category: u64) -> c_int {
+                    unsafe { $create_proxy(&mut self.0, aabb_of(bounds), category, id.into()) }
                 }
 
                 fn destroy_proxy(&mut self, proxy: c_int) {
@@ -74,20 +76,21 @@ macro_rules! dynamic_tree {
                 /// The ids of all boxes, in the order of the leaves.
                 fn leaves(&self) -> Vec<u32> {
                     let mut ids = Vec::new();
-                    self.query(unsafe { $root_bounds(&self.0) }, |id| {
+                    self.query(unsafe { $root_bounds(&self.0) }, MASK, |id| {
                         ids.push(id);
                         true
                     });
                     ids
                 }
 
-                /// Calls `found` with the id of each box that overlaps `bounds`, as long as it returns true.
-                fn query<F: FnMut(u32) -> bool>(&self, bounds: $aabb, mut found: F) {
+                /// Calls `found` with the id of each box that overlaps `bounds` and has a category in `mask`, as long as
+                /// it returns true.
+                fn query<F: FnMut(u32) -> bool>(&self, bounds: $aabb, mask: u64, mut found: F) {
                     unsafe extern "C" fn call<F: FnMut(u32) -> bool>(_: c_int, id: u64, found: *mut c_void) -> bool {
                         (*found.cast::<F>())(id as u32)
                     }
                     let context = (&raw mut found).cast();
-                    unsafe { $query(&self.0, bounds, CATEGORY, $($require_all_bits,)? Some(call::<F>), context) };
+                    unsafe { $query(&self.0, bounds, mask, $($require_all_bits,)? Some(call::<F>), context) };
                 }
             }
 
@@ -129,19 +132,54 @@ macro_rules! dynamic_tree {
                 }
             }
 
+            /// Calls `found` with the boxes that overlap `a`, one of each pair, as long as it returns true. With filters,
+            /// static boxes look for none, and the others only for the categories of their masks: `b2FindPairsTask` does
+            /// the first and considers the second.
+            fn look(
+                tree: &Tree,
+                boxes: &[Bounds<$dimension>],
+                filters: &[Filter],
+                a: u32,
+                mut found: impl FnMut(u32) -> bool,
+            ) {
+                let filter = filters.get(a as usize);
+                if filter.is_some_and(|filter| filter.is_static) {
+                    return;
+                }
+                // A common positive group overrides masks.
+                let mask = filter.filter(|filter| filter.group <= 0).map_or(MASK, |filter| filter.mask);
+                let looks = |id: u32| !filters.get(id as usize).is_some_and(|filter| filter.is_static);
+                tree.query(aabb_of(boxes[a as usize]), mask, |b| {
+                    if a < b || a > b && !looks(b) {
+                        found(b)
+                    } else {
+                        true
+                    }
+                });
+            }
+
             impl Searcher<$dimension> for TreeSearcher {
-                fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+                fn search(&mut self, boxes: &[Bounds<$dimension>], length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+                    self.search_filtered(boxes, &[], length, pairs)
+                }
+
+                fn search_filtered(
+                    &mut self,
+                    boxes: &[Bounds<$dimension>],
+                    filters: &[Filter],
+                    _: f32,
+                    pairs: &mut Pairs,
+                ) -> ControlFlow<()> {
                     self.tree = Tree::with_capacity(boxes.len());
                     for (id, &bounds) in (0..).zip(boxes) {
-                        self.tree.create_proxy(id, bounds);
+                        let category = filters.get(id as usize).map_or(CATEGORY, |filter| filter.category);
+                        self.tree.create_proxy(id, bounds, category);
                     }
+                    let tree = &self.tree;
                     if let Some(pool) = &self.pool {
-                        let tree = &self.tree;
                         let query = |a, found: &mut Vec<_>| {
-                            tree.query(aabb_of(boxes[a as usize]), |b| {
-                                if a < b {
-                                    found.push((a, b));
-                                }
+                            look(tree, boxes, filters, a, |b| {
+                                found.push((a, b));
                                 true
                             });
                         };
@@ -151,11 +189,9 @@ macro_rules! dynamic_tree {
                         return ControlFlow::Continue(());
                     }
                     let mut flow = ControlFlow::Continue(());
-                    for a in self.tree.leaves() {
-                        self.tree.query(aabb_of(boxes[a as usize]), |b| {
-                            if a < b {
-                                flow = pairs.add(a, b);
-                            }
+                    for a in tree.leaves() {
+                        look(tree, boxes, filters, a, |b| {
+                            flow = pairs.add(a, b);
                             flow.is_continue()
                         });
                         flow?;
@@ -206,7 +242,7 @@ macro_rules! dynamic_tree {
                     let enlarged = self.enlarged(bounds);
                     let known = &mut self.proxies[id as usize];
                     match known.proxy {
-                        None => known.proxy = Some(self.tree.create_proxy(id, enlarged)),
+                        None => known.proxy = Some(self.tree.create_proxy(id, enlarged, CATEGORY)),
                         Some(_) if known.enlarged.contains(bounds) => return,
                         Some(proxy) if known.enlarged.overlaps(bounds) => self.tree.enlarge_proxy(proxy, enlarged),
                         Some(proxy) => self.tree.move_proxy(proxy, enlarged), // as b2Body_SetTransform
@@ -232,7 +268,7 @@ macro_rules! dynamic_tree {
                     let first = self.pairs.len();
                     let (tree, proxies) = (&self.tree, &self.proxies);
                     let query = |a: u32, pairs: &mut Vec<_>| {
-                        tree.query(aabb_of(proxies[a as usize].enlarged), |b| {
+                        tree.query(aabb_of(proxies[a as usize].enlarged), MASK, |b| {
                             if a < b || a > b && !proxies[b as usize].moved {
                                 pairs.push((a, b));
                             }

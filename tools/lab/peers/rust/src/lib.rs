@@ -33,7 +33,7 @@ use std::sync::Once;
 #[cfg(feature = "engines")]
 use physx_sys::PxBroadPhaseType;
 
-use peer::{Bounds, Follower, Frame, Pairs, Searcher, Takes};
+use peer::{Bounds, Filter, Follower, Frame, Pairs, Searcher, Takes};
 use queries::{AnyIndex, Geo, Packed2, Packed3, Rstar};
 
 thread_local! {
@@ -97,9 +97,9 @@ fn searcher_named(name: &str, dimension: c_int, threads: usize) -> AnySearcher {
         ("packed_spatial_index", 2) => Flat(Box::new(packed_index::Searcher2::new(threads))),
         ("packed_spatial_index", 3) => Solid(Box::new(packed_index::Searcher3::new(threads))),
         #[cfg(feature = "engines")]
-        ("parry", 2) => Flat(Box::new(parry_bvh::flat::BvhSearcher::new(threads))),
+        ("parry", 2) => Flat(Box::<parry_bvh::flat::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
-        ("parry", 3) => Solid(Box::new(parry_bvh::solid::BvhSearcher::new(threads))),
+        ("parry", 3) => Solid(Box::<parry_bvh::solid::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
         ("rapier", 2) => Flat(Box::<rapier_broad_phase::flat::BroadPhaseSearcher>::default()),
         #[cfg(feature = "engines")]
@@ -142,9 +142,9 @@ fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) ->
 fn follower_named(name: &str, dimension: c_int, threads: usize) -> AnyFollower {
     match (name, dimension) {
         #[cfg(feature = "engines")]
-        ("parry", 2) => AnyFollower::Flat(Box::new(parry_bvh::flat::BvhFollower::new(threads))),
+        ("parry", 2) => AnyFollower::Flat(Box::<parry_bvh::flat::BvhFollower>::default()),
         #[cfg(feature = "engines")]
-        ("parry", 3) => AnyFollower::Solid(Box::new(parry_bvh::solid::BvhFollower::new(threads))),
+        ("parry", 3) => AnyFollower::Solid(Box::<parry_bvh::solid::BvhFollower>::default()),
         #[cfg(feature = "engines")]
         ("rapier", 2) => AnyFollower::Flat(Box::<rapier_broad_phase::flat::BroadPhaseFollower>::default()),
         #[cfg(feature = "engines")]
@@ -217,11 +217,13 @@ fn run<const D: usize>(
     searcher: &mut dyn Searcher<D>,
     boxes: &[Bounds<D>],
     left_count: usize,
+    filters: &[Filter],
     length: f32,
     pairs: &mut Pairs,
 ) -> ControlFlow<()> {
     match left_count {
-        0 => searcher.search(boxes, length, pairs),
+        0 if filters.is_empty() => searcher.search(boxes, length, pairs),
+        0 => searcher.search_filtered(boxes, filters, length, pairs),
         _ => searcher.join(boxes, left_count, length, pairs),
     }
 }
@@ -232,6 +234,7 @@ pub unsafe extern "C" fn rust_searcher_search(
     boxes: *const f32,
     count: usize,
     left_count: usize,
+    filters: *const Filter,
     length: f32,
     takes: Takes,
     context: *mut c_void,
@@ -241,9 +244,14 @@ pub unsafe extern "C" fn rust_searcher_search(
             return;
         }
         let mut pairs = Pairs::new(takes, context);
+        let filters = slice(filters, if filters.is_null() { 0 } else { count });
         let found = match &mut *searcher {
-            AnySearcher::Flat(flat) => run(&mut **flat, slice(boxes.cast(), count), left_count, length, &mut pairs),
-            AnySearcher::Solid(solid) => run(&mut **solid, slice(boxes.cast(), count), left_count, length, &mut pairs),
+            AnySearcher::Flat(flat) => {
+                run(&mut **flat, slice(boxes.cast(), count), left_count, filters, length, &mut pairs)
+            }
+            AnySearcher::Solid(solid) => {
+                run(&mut **solid, slice(boxes.cast(), count), left_count, filters, length, &mut pairs)
+            }
         };
         if found.is_continue() {
             let _ = pairs.flush();

@@ -12,12 +12,11 @@ macro_rules! parry_bvh {
         pub mod $module {
             use std::ops::ControlFlow;
 
-            use rayon::ThreadPool;
             use $parry::bounding_volume::{Aabb, BoundingVolume};
             use $parry::partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhWorkspace};
 
             use super::{FEW, MARGIN};
-            use crate::peer::{pool_of, Bounds, Follower, Frame, Pairs, Searcher};
+            use crate::peer::{Bounds, Follower, Frame, Pairs, Searcher};
 
             fn aabb_of(bounds: &Bounds<$dimension>) -> Aabb {
                 Aabb::new(bounds.min.into(), bounds.max.into())
@@ -25,7 +24,6 @@ macro_rules! parry_bvh {
 
             #[derive(Default)]
             pub struct BvhSearcher {
-                pool: Option<ThreadPool>,
                 bvh: Bvh,
                 other: Bvh, // the right set's, if there are two
                 workspace: BvhWorkspace,
@@ -33,10 +31,6 @@ macro_rules! parry_bvh {
             }
 
             impl BvhSearcher {
-                pub fn new(threads: usize) -> Self {
-                    Self { pool: pool_of(threads), ..Self::default() }
-                }
-
                 fn tree_of(&mut self, boxes: &[Bounds<$dimension>]) -> Bvh {
                     self.aabbs.clear();
                     self.aabbs.extend(boxes.iter().map(aabb_of));
@@ -47,12 +41,6 @@ macro_rules! parry_bvh {
             impl Searcher<$dimension> for BvhSearcher {
                 fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
                     self.bvh = self.tree_of(boxes);
-                    if let Some(pool) = &self.pool {
-                        for (a, b) in pool.install(|| self.bvh.traverse_bvtt_single_tree_parallel::<false>()) {
-                            pairs.add(a, b)?;
-                        }
-                        return ControlFlow::Continue(());
-                    }
                     let mut flow = ControlFlow::Continue(());
                     self.bvh.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |a, b| {
                         if flow.is_continue() {
@@ -92,7 +80,6 @@ macro_rules! parry_bvh {
 
             #[derive(Default)]
             pub struct BvhFollower {
-                pool: Option<ThreadPool>,
                 bvh: Bvh,
                 workspace: BvhWorkspace,
                 margin: f32,
@@ -100,19 +87,6 @@ macro_rules! parry_bvh {
                 moved: Vec<bool>,       // by id: whether the leaf was moved in this frame
                 moved_before: Vec<u32>,
                 moved_now: Vec<u32>,
-            }
-
-            impl BvhFollower {
-                pub fn new(threads: usize) -> Self {
-                    Self { pool: pool_of(threads), ..Self::default() }
-                }
-
-                fn refit(&mut self) {
-                    match &self.pool {
-                        None => self.bvh.refit(&mut self.workspace),
-                        Some(pool) => pool.install(|| self.bvh.refit_parallel(&mut self.workspace)),
-                    }
-                }
             }
 
             impl Follower<$dimension> for BvhFollower {
@@ -174,7 +148,7 @@ macro_rules! parry_bvh {
                         if !few {
                             self.bvh.optimize_incremental(&mut self.workspace);
                         }
-                        self.refit();
+                        self.bvh.refit(&mut self.workspace);
                     } else {
                         self.bvh.refit_partial(&self.moved_before, &self.moved_now);
                     }
@@ -189,20 +163,12 @@ macro_rules! parry_bvh {
                         !(moved[a as usize] || moved[b as usize])
                     });
                     let kept = &mut self.pairs;
-                    let mut found = |a, b| {
+                    self.bvh.traverse_bvtt_single_tree::<true>(&mut self.workspace, &mut |a, b| {
                         kept.push((a, b));
                         if flow.is_continue() {
                             flow = pairs.add(a, b);
                         }
-                    };
-                    match &self.pool {
-                        None => self.bvh.traverse_bvtt_single_tree::<true>(&mut self.workspace, &mut found),
-                        Some(pool) => {
-                            for (a, b) in pool.install(|| self.bvh.traverse_bvtt_single_tree_parallel::<true>()) {
-                                found(a, b);
-                            }
-                        }
-                    }
+                    });
                     flow
                 }
             }

@@ -30,6 +30,16 @@ impl<const D: usize> Bounds<D> {
     }
 }
 
+/// Broadside's `Filter` in memory.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Filter {
+    pub category: u64,
+    pub mask: u64,
+    pub group: i32,
+    pub is_static: bool,
+}
+
 pub type Takes = unsafe extern "C" fn(*mut c_void, *const u32, usize) -> bool;
 
 const CHUNK: usize = 512; // as many as PairSink takes at once
@@ -95,6 +105,18 @@ pub trait Searcher<const D: usize> {
     /// Adds each overlapping pair of the first `left_count` boxes and the others once, and may add pairs within these
     /// sets. Neither is empty. By default, a library without a join of two sets finds all pairs.
     fn join(&mut self, boxes: &[Bounds<D>], _left_count: usize, length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+        self.search(boxes, length, pairs)
+    }
+
+    /// Like `search`. A library that filters may leave out pairs that the boxes' filters reject; the caller drops them
+    /// in any case.
+    fn search_filtered(
+        &mut self,
+        boxes: &[Bounds<D>],
+        _filters: &[Filter],
+        length: f32,
+        pairs: &mut Pairs,
+    ) -> ControlFlow<()> {
         self.search(boxes, length, pairs)
     }
 
