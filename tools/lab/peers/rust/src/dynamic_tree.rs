@@ -33,9 +33,14 @@ macro_rules! dynamic_tree {
             use super::{MARGIN_FRACTION, MAX_MARGIN, QUERIES};
             use crate::peer::{pool_of, Bounds, Filter, Follower, Frame, Pairs, Searcher};
 
-            /// The defaults of a box without a filter.
-            const CATEGORY: u64 = 1;
-            const MASK: u64 = u64::MAX;
+            /// All categories: of a box without a filter, and of one in a positive group, which overrides the bits.
+            const ALL: u64 = u64::MAX;
+
+            /// The category and the mask of a box.
+            fn bits_of(filters: &[Filter], id: u32) -> (u64, u64) {
+                let filter = filters.get(id as usize).filter(|filter| filter.group <= 0);
+                filter.map_or((ALL, ALL), |filter| (filter.category, filter.mask))
+            }
 
             fn aabb_of(bounds: Bounds<$dimension>) -> $aabb {
                 // SAFETY: both are the floats of the minimum and then those of the maximum.
@@ -76,7 +81,7 @@ macro_rules! dynamic_tree {
                 /// The ids of all boxes, in the order of the leaves.
                 fn leaves(&self) -> Vec<u32> {
                     let mut ids = Vec::new();
-                    self.query(unsafe { $root_bounds(&self.0) }, MASK, |id| {
+                    self.query(unsafe { $root_bounds(&self.0) }, ALL, |id| {
                         ids.push(id);
                         true
                     });
@@ -142,13 +147,11 @@ macro_rules! dynamic_tree {
                 a: u32,
                 mut found: impl FnMut(u32) -> bool,
             ) {
-                let filter = filters.get(a as usize);
-                if filter.is_some_and(|filter| filter.is_static) {
+                let looks = |id: u32| !filters.get(id as usize).is_some_and(|filter| filter.is_static);
+                if !looks(a) {
                     return;
                 }
-                // A common positive group overrides masks.
-                let mask = filter.filter(|filter| filter.group <= 0).map_or(MASK, |filter| filter.mask);
-                let looks = |id: u32| !filters.get(id as usize).is_some_and(|filter| filter.is_static);
+                let (_, mask) = bits_of(filters, a);
                 tree.query(aabb_of(boxes[a as usize]), mask, |b| {
                     if a < b || a > b && !looks(b) {
                         found(b)
@@ -172,7 +175,7 @@ macro_rules! dynamic_tree {
                 ) -> ControlFlow<()> {
                     self.tree = Tree::with_capacity(boxes.len());
                     for (id, &bounds) in (0..).zip(boxes) {
-                        let category = filters.get(id as usize).map_or(CATEGORY, |filter| filter.category);
+                        let (category, _) = bits_of(filters, id);
                         self.tree.create_proxy(id, bounds, category);
                     }
                     let tree = &self.tree;
@@ -242,7 +245,7 @@ macro_rules! dynamic_tree {
                     let enlarged = self.enlarged(bounds);
                     let known = &mut self.proxies[id as usize];
                     match known.proxy {
-                        None => known.proxy = Some(self.tree.create_proxy(id, enlarged, CATEGORY)),
+                        None => known.proxy = Some(self.tree.create_proxy(id, enlarged, ALL)),
                         Some(_) if known.enlarged.contains(bounds) => return,
                         Some(proxy) if known.enlarged.overlaps(bounds) => self.tree.enlarge_proxy(proxy, enlarged),
                         Some(proxy) => self.tree.move_proxy(proxy, enlarged), // as b2Body_SetTransform
@@ -268,7 +271,7 @@ macro_rules! dynamic_tree {
                     let first = self.pairs.len();
                     let (tree, proxies) = (&self.tree, &self.proxies);
                     let query = |a: u32, pairs: &mut Vec<_>| {
-                        tree.query(aabb_of(proxies[a as usize].enlarged), MASK, |b| {
+                        tree.query(aabb_of(proxies[a as usize].enlarged), ALL, |b| {
                             if a < b || a > b && !proxies[b as usize].moved {
                                 pairs.push((a, b));
                             }
