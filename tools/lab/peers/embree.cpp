@@ -14,6 +14,7 @@
 
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "lab/peers/callback_sink.hpp"
@@ -119,8 +120,10 @@ template <int D>
 class EmbreeJoin {
  public:
   explicit EmbreeJoin(const Settings& settings)
-      : threads_(settings.integer("threads")),
-        arena_(threads_ == 0 ? tbb::task_arena::automatic : static_cast<int>(threads_)),
+      : threads_(static_cast<int>(settings.integer("threads"))),
+        // oneTBB warns of more threads than the machine has.
+        arena_(threads_ == 0 ? tbb::task_arena::automatic
+                             : std::min(threads_, tbb::info::default_concurrency())),
         device_(rtcNewDevice("set_affinity=0")) {
     check();
   }
@@ -174,7 +177,7 @@ class EmbreeJoin {
       throw std::runtime_error("Embree reports error " + std::to_string(error) + "; expected none");
   }
 
-  std::int64_t threads_;
+  int threads_;
   tbb::task_arena arena_;
   EmbreeOwned<RTCDevice> device_;
   std::span<const Box<D>> boxes_;  // of the current call, as below
