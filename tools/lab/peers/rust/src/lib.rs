@@ -139,6 +139,7 @@ fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) ->
     }
 }
 
+#[cfg_attr(not(feature = "engines"), allow(unused_variables))]
 fn follower_named(name: &str, dimension: c_int, threads: usize) -> AnyFollower {
     match (name, dimension) {
         #[cfg(feature = "engines")]
