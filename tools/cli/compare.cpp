@@ -237,7 +237,7 @@ Verb add_compare(CLI::App& program, const lab::Catalogue& catalogue, std::span<c
   add_motion_options(*verb, arguments->motion);
   add_threads(*verb, arguments->entries,
               "Number of threads to search with (0: as many as the machine has), or several, such as "
-              "1,2. Our algorithms use them; others take part once, with one thread");
+              "1,2. An algorithm that cannot use several takes part once, with one thread");
   verb->add_option("--seed", arguments->seed,
                    "Seed of a scene's first input; the others count up from it (default: 1)")
       ->check(is_seed);

@@ -15,10 +15,13 @@
 #include "broadside/broadside.hpp"
 
 #include "lab/catalogue.hpp"
+#include "lab/measure/compare.hpp"
+#include "lab/peers/filtering.hpp"
 #include "lab/peers/queries.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "lab/scenes/scene.hpp"
 #include "tests/support/message.hpp"
+#include "tests/support/rng.hpp"
 #include "tests/support/searchers.hpp"
 #include "tests/support/text_of.hpp"
 
@@ -119,6 +122,76 @@ TEST(Peers, ThatJoinTwoSetsFindNoPairsWithinASet) {
     if (peer.has_dimension(3)) expect_a_join_of_two_sets<3>(peer);
   }
   EXPECT_EQ(count == 0, peers::peers().empty());
+}
+
+template <int D>
+void expect_the_pairs_that_filters_accept(const Algorithm& peer) {
+  std::unique_ptr<Searcher<D>> searcher = searcher_of<D>(peer);
+  auto* const filtering = dynamic_cast<peers::Filtering*>(searcher.get());
+  if (filtering == nullptr) return;
+  const Scene scene = find_scene("uniform").scene;
+  Rng rng(5);
+  for (const std::size_t count : {300, 200}) {
+    const std::vector<Box<D>> boxes =
+        make_history<D>(scene, {scene.name, {}}, {.boxes = count, .seed = count}).boxes;
+    std::vector<Filter> filters(count);
+    for (Filter& filter : filters) {
+      filter = {.category = rng.below(8),
+                .mask = rng.below(8),
+                .group = static_cast<std::int32_t>(rng.below(5)) - 2,
+                .is_static = rng.below(3) == 0};
+    }
+    const auto rejected = [&filters](Pair pair) {
+      return !accepts(filters[index(pair.first)], filters[index(pair.second)]);
+    };
+    std::vector<Pair> expected = find_pairs(boxes, {.algorithm = "brute_force"});
+    std::erase_if(expected, rejected);
+    std::ranges::sort(expected);
+    filtering->set_filters(filters);
+    std::vector<Pair> found;
+    PairCollector collector(found);
+    searcher->search({.boxes = boxes}, collector);
+    collector.flush();
+    std::erase_if(found, rejected);
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << peer.name;
+  }
+}
+
+TEST(Peers, ThatFilterLeaveOutNoPairThatFiltersAccept) {
+  for (const Algorithm& peer : peers::peers()) {
+    if (peer.has_dimension(2)) expect_the_pairs_that_filters_accept<2>(peer);
+    if (peer.has_dimension(3)) expect_the_pairs_that_filters_accept<3>(peer);
+  }
+}
+
+TEST(Peers, FindTheSamePairsBySeveralThreads) {
+  CompareOptions options;
+  options.algorithms.clear();
+  for (const Algorithm& peer : peers::peers()) {
+    if (has_threads(peer)) options.algorithms += (options.algorithms.empty() ? "" : ",") + peer.name;
+  }
+  if (options.algorithms.empty()) GTEST_SKIP() << "no peer that can use several threads is in this build";
+  options.threads = {3};
+  // packed_spatial_index uses threads from 32,000 boxes on.
+  options.plan = {{.scene = "uniform", .dimension = 2, .boxes = 33'000},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000, .left = 0.3},
+                  {.scene = "uniform", .dimension = 2, .boxes = 5'000, .moving = 0.5, .frames = 3},
+                  {.scene = "uniform", .dimension = 3, .boxes = 5'000, .moving = 0.5, .frames = 3}};
+  options.effort = {.budget_seconds = 60, .history_seconds = 60, .share_seconds = 0, .min_rounds = 1};
+  const Catalogue catalogue;
+  const Comparison comparison = compare(catalogue, options);
+  EXPECT_EQ(comparison.cases.size(), options.plan.size());
+  std::size_t verified = 0;
+  for (const CaseResult& result : comparison.cases) {
+    for (const Measurement& measurement : result.measurements) {
+      EXPECT_THAT(measurement.algorithm, HasSubstr(":threads=3"));
+      EXPECT_NE(measurement.outcome, Outcome::failed) << measurement.algorithm << ": " << measurement.reason;
+      if (measurement.outcome == Outcome::verified) ++verified;
+    }
+  }
+  EXPECT_GT(verified, 0u);
 }
 
 template <int D>

@@ -39,7 +39,8 @@ bool joins_sets(const Algorithm& algorithm) {
   return algorithm.kind == AlgorithmKind::own || peers::joins_sets(algorithm.name);
 }
 
-/// Collects the pairs that filters accept: what the callback of a peer does, which gets all of them.
+/// Collects the pairs that filters accept: what the callback of a peer does, which gets all of them, or those
+/// that the peer's own filter leaves.
 class AcceptedPairs final : public PairSink {
  public:
   AcceptedPairs(std::span<const Filter> filters, PairSink& pairs) : filters_(filters), pairs_(pairs) {}
@@ -276,6 +277,7 @@ class FindCase {
     pairs_.clear();
     PairCollector collector(pairs_);
     AcceptedPairs accepted(filters, collector);
+    if (seen.filtering() != nullptr) seen.filtering()->set_filters(filters);
     caches_.settle(std::as_bytes(boxes));
     const Stopwatch watch;
     if (case_.left > 0) {

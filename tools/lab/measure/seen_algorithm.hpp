@@ -7,6 +7,7 @@
 
 #include "broadside/algorithm.hpp"
 
+#include "lab/peers/filtering.hpp"
 #include "lab/peers/tear_down.hpp"
 #include "paper/listings/phases.hpp"
 
@@ -31,6 +32,9 @@ class SeenAlgorithm {
   /// The structure left by a peer's last search; null if there is none.
   peers::TearDown* structure() const noexcept { return structure_; }
 
+  /// The searcher of a library with its own means to filter; null for others.
+  peers::Filtering* filtering() const noexcept { return filtering_; }
+
   /// The phases of a listing's last search or frame; null if they are not recorded.
   const paper::Phases* phases() const noexcept {
     return phased_ != nullptr && records_phases_ ? &phased_->phases() : nullptr;
@@ -52,6 +56,7 @@ class SeenAlgorithm {
     make = [this, original = std::move(make)](const Settings& settings) {
       auto strategy = original(settings);
       structure_ = dynamic_cast<peers::TearDown*>(strategy.get());
+      filtering_ = dynamic_cast<peers::Filtering*>(strategy.get());
       phased_ = dynamic_cast<paper::Phased*>(strategy.get());
       if (phased_ != nullptr && records_phases_) phased_->record_phases();
       return strategy;
@@ -61,6 +66,7 @@ class SeenAlgorithm {
   Algorithm algorithm_;
   bool records_phases_;
   peers::TearDown* structure_ = nullptr;
+  peers::Filtering* filtering_ = nullptr;
   paper::Phased* phased_ = nullptr;
 };
 

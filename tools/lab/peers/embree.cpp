@@ -10,8 +10,11 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <embree3/rtcore.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include "lab/peers/callback_sink.hpp"
@@ -116,7 +119,14 @@ class EmbreeSet {
 template <int D>
 class EmbreeJoin {
  public:
-  EmbreeJoin() : device_(rtcNewDevice("set_affinity=0")) { check(); }
+  explicit EmbreeJoin(const Settings& settings)
+      : threads_(static_cast<int>(settings.integer("threads"))),
+        // oneTBB warns of more threads than the machine has.
+        arena_(threads_ == 0 ? tbb::task_arena::automatic
+                             : std::min(threads_, tbb::info::default_concurrency())),
+        device_(rtcNewDevice("set_affinity=0")) {
+    check();
+  }
 
   RTCDevice device() const { return device_.get(); }
 
@@ -130,27 +140,34 @@ class EmbreeJoin {
     flags_ = flags;
     CallbackSink sink(pairs);
     sink_ = &sink;
-    // A device with one thread would restrict the whole process to one; an arena with one thread restricts
-    // only the code that runs in it.
+    for (std::vector<Pair>& found : found_) found.clear();
+    // A device's number of threads would restrict the whole process; an arena's only restricts the code that
+    // runs in it.
     arena_.execute([&] {
       const auto [left, right] = prepare();
       rtcCollide(left, right, report, this);
     });
     sink.finish();
+    for (const std::vector<Pair>& found : found_) pairs.put(found);
     check();
   }
 
  private:
-  /// Receives pairs of leaves, in both orders if there is one set. Embree does not guarantee that their boxes
-  /// overlap.
-  static void report(void* user, RTCCollision* collisions, unsigned count) {
-    const auto& self = *static_cast<const EmbreeJoin*>(user);
+  /// Receives pairs of leaves, in both orders if there is one set, in any thread of the arena. Embree does
+  /// not guarantee that their boxes overlap.
+  static void report(void* user, RTCCollision* collisions, unsigned count) noexcept {
+    auto& self = *static_cast<EmbreeJoin*>(user);
+    std::vector<Pair>* const found = self.threads_ == 1 ? nullptr : &self.found_.local();
     for (const RTCCollision& collision : std::span(collisions, count)) {
       const std::size_t a = collision.primID0;
       const std::size_t b = collision.primID1 + self.left_count_;
       if (a < b && (self.flags_.empty() || (self.flags_[a] | self.flags_[b]) != 0) &&
-          overlap(self.boxes_[a], self.boxes_[b]))
-        self.sink_->add(BoxId(a), BoxId(b));
+          overlap(self.boxes_[a], self.boxes_[b])) {
+        if (found != nullptr)
+          found->push_back({BoxId(a), BoxId(b)});
+        else
+          self.sink_->add(BoxId(a), BoxId(b));
+      }
     }
   }
 
@@ -160,17 +177,21 @@ class EmbreeJoin {
       throw std::runtime_error("Embree reports error " + std::to_string(error) + "; expected none");
   }
 
-  tbb::task_arena arena_{1};
+  int threads_;
+  tbb::task_arena arena_;
   EmbreeOwned<RTCDevice> device_;
   std::span<const Box<D>> boxes_;  // of the current call, as below
   std::size_t left_count_ = 0;
   std::span<const std::uint8_t> flags_;
-  CallbackSink* sink_ = nullptr;
+  CallbackSink* sink_ = nullptr;                              // of one thread
+  tbb::enumerable_thread_specific<std::vector<Pair>> found_;  // by several threads
 };
 
 template <int D>
 class EmbreeCollide final : public Searcher<D> {
  public:
+  explicit EmbreeCollide(const Settings& settings) : join_(settings) {}
+
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     if (input.boxes.size() < 2) return std::nullopt;
     join_.collide(input.boxes, input.left_count, {}, pairs, [&] {
@@ -191,6 +212,10 @@ class EmbreeCollide final : public Searcher<D> {
 /// Refits the hierarchy if few boxes moved, each only a little; rebuilds it otherwise.
 template <int D>
 class EmbreeFollower final : public PeerFollower<D> {
+ public:
+  explicit EmbreeFollower(const Settings& settings) : join_(settings) {}
+
+ private:
   void build(std::span<const Box<D>>, std::span<const Box<D>>) override { is_built_ = is_steady_ = false; }
 
   void move(const Change<D>& change) override {
@@ -344,9 +369,10 @@ class EmbreeQueries final : public QueryPeer<3> {
 Algorithm embree_collide() {
   return {
       .name = "embree_collide",
-      .summary = "Embree's hierarchy of boxes collided with itself, in one thread",
+      .summary = "Embree's hierarchy of boxes collided with itself",
       .source = "Embree, rtcCollide",
       .version = "Embree " RTC_VERSION_STRING,
+      .tunables = {threads_tunable()},
       .in_2d = {.searcher = make_strategy<EmbreeCollide<2>>,
                 .followers = {{"rtcCollide", make_strategy<EmbreeFollower<2>>}}},
       .in_3d = {.searcher = make_strategy<EmbreeCollide<3>>,

@@ -143,6 +143,15 @@ bool joins_sets(std::string_view peer) {
   return std::ranges::find(names, peer) != names.end();
 }
 
+Tunable threads_tunable() {
+  return {.name = "threads",
+          .summary = "maximum number of threads; 0: as many as the machine has",
+          .default_value = "1",
+          .type = Tunable::Type::integer,
+          .min = 0,
+          .max = 1024};
+}
+
 template <int D>
 std::vector<std::unique_ptr<QueryPeer<D>>> query_peers(std::span<const Box<D>> boxes) {
   std::vector<std::unique_ptr<QueryPeer<D>>> peers;

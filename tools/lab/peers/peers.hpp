@@ -30,6 +30,9 @@ bool joins_sets(std::string_view peer);
 /// known.
 std::string_view build_note(std::string_view peer);
 
+/// The tunable `threads` of a peer whose library can use several.
+Tunable threads_tunable();
+
 // One for each algorithm. Peers that are not in the build are declared but not defined.
 
 Algorithm boost_rtree();

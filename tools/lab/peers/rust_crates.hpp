@@ -15,6 +15,7 @@
 #include "broadside/searcher.hpp"
 
 #include "lab/peers/callback_sink.hpp"
+#include "lab/peers/filtering.hpp"
 #include "lab/peers/rust/include/rust_peers.h"
 #include "lab/peers/tear_down.hpp"
 #include "lab/peers/typical_extent.hpp"
@@ -55,22 +56,29 @@ const float* coordinates(std::span<const Box<D>> boxes) {
 }
 
 template <int D>
-class RustCrateSearcher final : public Searcher<D>, public TearDown {
+class RustCrateSearcher final : public Searcher<D>, public TearDown, public Filtering {
  public:
   /// `needs_length` if the library is told the length of a typical box.
-  explicit RustCrateSearcher(const std::string& name, bool needs_length = false)
-      : name_(name), needs_length_(needs_length), searcher_(rust_searcher_new(name.c_str(), D)) {
+  explicit RustCrateSearcher(const std::string& name, bool needs_length = false, std::size_t threads = 1)
+      : name_(name), needs_length_(needs_length), searcher_(rust_searcher_new(name.c_str(), D, threads)) {
     if (!searcher_) throw RustError(name_);
   }
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     RustPairs found(pairs);
     const auto length = needs_length_ ? static_cast<float>(typical_extent(input.boxes)) : 0.0f;
+    static_assert(sizeof(Filter) == sizeof(RustFilter) &&
+                  offsetof(Filter, is_static) == offsetof(RustFilter, is_static));
+    const auto* const filters = filters_.size() == input.boxes.size()
+                                    ? reinterpret_cast<const RustFilter*>(filters_.data())
+                                    : nullptr;
     found.finish(rust_searcher_search(searcher_.get(), coordinates(input.boxes), input.boxes.size(),
-                                      input.left_count, length, RustPairs::take, &found),
+                                      input.left_count, filters, length, RustPairs::take, &found),
                  name_);
     return std::nullopt;
   }
+
+  void set_filters(std::span<const Filter> filters) override { filters_ = filters; }
 
   void tear_down() override {
     if (!rust_searcher_tear_down(searcher_.get())) throw RustError(name_);
@@ -84,13 +92,14 @@ class RustCrateSearcher final : public Searcher<D>, public TearDown {
   std::string name_;
   bool needs_length_;
   std::unique_ptr<RustSearcher, Free> searcher_;
+  std::span<const Filter> filters_;
 };
 
 template <int D>
 class RustCrateFollower final : public Follower<D> {
  public:
-  explicit RustCrateFollower(const std::string& name)
-      : name_(name), follower_(rust_follower_new(name.c_str(), D)) {
+  explicit RustCrateFollower(const std::string& name, std::size_t threads = 1)
+      : name_(name), follower_(rust_follower_new(name.c_str(), D, threads)) {
     if (!follower_) throw RustError(name_);
   }
 
@@ -143,6 +152,15 @@ template <int D>
 MakeSearcher<D> rust_searcher(std::string name, bool needs_length = false) {
   return [name = std::move(name), needs_length](const Settings&) {
     return std::make_unique<RustCrateSearcher<D>>(name, needs_length);
+  };
+}
+
+/// Likewise for a library that can use several threads and has the tunable `threads`.
+template <int D>
+MakeSearcher<D> threaded_rust_searcher(std::string name) {
+  return [name = std::move(name)](const Settings& settings) {
+    return std::make_unique<RustCrateSearcher<D>>(name, false,
+                                                  static_cast<std::size_t>(settings.integer("threads")));
   };
 }
 

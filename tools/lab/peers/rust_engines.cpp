@@ -14,6 +14,15 @@ FollowerChoice<D> rust_follower(const std::string& name, const std::string& show
           .make = [name](const Settings&) { return std::make_unique<RustCrateFollower<D>>(name); }};
 }
 
+/// Likewise for a library that can use several threads and has the tunable `threads`.
+template <int D>
+FollowerChoice<D> threaded_rust_follower(const std::string& name, const std::string& shown) {
+  return {.name = shown, .make = [name](const Settings& settings) {
+            const auto threads = static_cast<std::size_t>(settings.integer("threads"));
+            return std::make_unique<RustCrateFollower<D>>(name, threads);
+          }};
+}
+
 /// The version of an engine that a crate has the sources of.
 void name_engine(Algorithm& algorithm, const std::string& engine) {
   algorithm.version = engine + " (" + algorithm.version + ")";
@@ -70,8 +79,9 @@ Algorithm box2d3_tree() {
                  "Box2D 3's dynamic tree of boxes with margins, whose enlarged parts are rebuilt",
                  "Box2D 3, b2DynamicTree");
   name_engine(algorithm, "Box2D 3.2.0");
-  algorithm.in_2d = {.searcher = rust_searcher<2>("box2d3"),
-                     .followers = {rust_follower<2>("box2d3", "b2DynamicTree")}};
+  algorithm.tunables = {threads_tunable()};
+  algorithm.in_2d = {.searcher = threaded_rust_searcher<2>("box2d3"),
+                     .followers = {threaded_rust_follower<2>("box2d3", "b2DynamicTree")}};
   algorithm.limits.max_coordinate = max_tree_coordinate;
   return algorithm;
 }
@@ -81,8 +91,9 @@ Algorithm box3d_tree() {
       "boxddd-sys", "box3d_tree",
       "Box3D's dynamic tree of boxes with margins, whose enlarged parts are rebuilt", "Box3D, b3DynamicTree");
   name_engine(algorithm, "Box3D 0.1.0");
-  algorithm.in_3d = {.searcher = rust_searcher<3>("box3d"),
-                     .followers = {rust_follower<3>("box3d", "b3DynamicTree")}};
+  algorithm.tunables = {threads_tunable()};
+  algorithm.in_3d = {.searcher = threaded_rust_searcher<3>("box3d"),
+                     .followers = {threaded_rust_follower<3>("box3d", "b3DynamicTree")}};
   algorithm.limits.max_coordinate = max_tree_coordinate;
   return algorithm;
 }

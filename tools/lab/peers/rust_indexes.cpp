@@ -25,8 +25,9 @@ Algorithm packed_spatial_index() {
   Algorithm algorithm = rust_crate("packed_spatial_index", "packed_spatial_index",
                                    "An R-tree of doubles packed along a Hilbert curve, joined with itself",
                                    "packed_spatial_index, Index2D and Index3D");
-  algorithm.in_2d = {.searcher = rust_searcher<2>("packed_spatial_index")};
-  algorithm.in_3d = {.searcher = rust_searcher<3>("packed_spatial_index")};
+  algorithm.tunables = {threads_tunable()};
+  algorithm.in_2d = {.searcher = threaded_rust_searcher<2>("packed_spatial_index")};
+  algorithm.in_3d = {.searcher = threaded_rust_searcher<3>("packed_spatial_index")};
   return algorithm;
 }
 

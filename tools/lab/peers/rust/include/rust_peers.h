@@ -26,19 +26,29 @@ const char* rust_peer_error(void);
 /// The version of a crate in Cargo.lock; null if it is not there. Never freed.
 const char* rust_peer_version(const char* crate_name);
 
-/// Null on failure. `dimension` is 2 or 3.
-RustSearcher* rust_searcher_new(const char* name, int dimension);
-RustFollower* rust_follower_new(const char* name, int dimension);
+/// Null on failure. `dimension` is 2 or 3. `threads` is the number of threads for a library that can use
+/// several; 0: all of the machine's.
+RustSearcher* rust_searcher_new(const char* name, int dimension, size_t threads);
+RustFollower* rust_follower_new(const char* name, int dimension, size_t threads);
 void rust_searcher_free(RustSearcher* searcher);
 void rust_follower_free(RustFollower* follower);
 
 /// The functions below return false on failure. `boxes` has the minimum and then the maximum of each box.
 
+/// Broadside's Filter.
+typedef struct RustFilter {
+  uint64_t category;
+  uint64_t mask;
+  int32_t group;
+  bool is_static;
+} RustFilter;
+
 /// Gives each overlapping pair once. All boxes are present. If `left_count` is not 0, that many boxes at the
-/// front are the left set, and only pairs across the sets count; others may be given. `length` is that of a
+/// front are the left set, and only pairs across the sets count; others may be given. If `filters` is not
+/// null, it has a filter for each box, and pairs that these reject may be left out. `length` is that of a
 /// typical box, 0 if not needed.
 bool rust_searcher_search(RustSearcher* searcher, const float* boxes, size_t count, size_t left_count,
-                          float length, RustPeerTakes takes, void* context);
+                          const RustFilter* filters, float length, RustPeerTakes takes, void* context);
 
 /// Destroys the structure that the last search left.
 bool rust_searcher_tear_down(RustSearcher* searcher);

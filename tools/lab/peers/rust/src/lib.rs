@@ -33,7 +33,7 @@ use std::sync::Once;
 #[cfg(feature = "engines")]
 use physx_sys::PxBroadPhaseType;
 
-use peer::{Bounds, Follower, Frame, Pairs, Searcher, Takes};
+use peer::{Bounds, Filter, Follower, Frame, Pairs, Searcher, Takes};
 use queries::{AnyIndex, Geo, Packed2, Packed3, Rstar};
 
 thread_local! {
@@ -91,11 +91,11 @@ pub enum AnyFollower {
     Solid(Box<dyn Follower<3>>),
 }
 
-fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
+fn searcher_named(name: &str, dimension: c_int, threads: usize) -> AnySearcher {
     use AnySearcher::{Flat, Solid};
     match (name, dimension) {
-        ("packed_spatial_index", 2) => Flat(Box::<packed_index::Searcher2>::default()),
-        ("packed_spatial_index", 3) => Solid(Box::<packed_index::Searcher3>::default()),
+        ("packed_spatial_index", 2) => Flat(Box::new(packed_index::Searcher2::new(threads))),
+        ("packed_spatial_index", 3) => Solid(Box::new(packed_index::Searcher3::new(threads))),
         #[cfg(feature = "engines")]
         ("parry", 2) => Flat(Box::<parry_bvh::flat::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
@@ -109,9 +109,9 @@ fn searcher_named(name: &str, dimension: c_int) -> AnySearcher {
         #[cfg(feature = "engines")]
         ("obvhs", 3) => Solid(Box::<obvhs_bvh::BvhSearcher>::default()),
         #[cfg(feature = "engines")]
-        ("box2d3", 2) => Flat(Box::<dynamic_tree::box2d::TreeSearcher>::default()),
+        ("box2d3", 2) => Flat(Box::new(dynamic_tree::box2d::TreeSearcher::new(threads))),
         #[cfg(feature = "engines")]
-        ("box3d", 3) => Solid(Box::<dynamic_tree::box3d::TreeSearcher>::default()),
+        ("box3d", 3) => Solid(Box::new(dynamic_tree::box3d::TreeSearcher::new(threads))),
         #[cfg(feature = "engines")]
         ("physx_abp", 3) => Solid(Box::new(physx_broad_phase::PhaseSearcher::new(PxBroadPhaseType::Abp))),
         #[cfg(feature = "engines")]
@@ -139,7 +139,8 @@ fn index_named(name: &str, dimension: c_int, boxes: *const f32, count: usize) ->
     }
 }
 
-fn follower_named(name: &str, dimension: c_int) -> AnyFollower {
+#[cfg_attr(not(feature = "engines"), allow(unused_variables))]
+fn follower_named(name: &str, dimension: c_int, threads: usize) -> AnyFollower {
     match (name, dimension) {
         #[cfg(feature = "engines")]
         ("parry", 2) => AnyFollower::Flat(Box::<parry_bvh::flat::BvhFollower>::default()),
@@ -150,9 +151,9 @@ fn follower_named(name: &str, dimension: c_int) -> AnyFollower {
         #[cfg(feature = "engines")]
         ("rapier", 3) => AnyFollower::Solid(Box::<rapier_broad_phase::solid::BroadPhaseFollower>::default()),
         #[cfg(feature = "engines")]
-        ("box2d3", 2) => AnyFollower::Flat(Box::<dynamic_tree::box2d::TreeFollower>::default()),
+        ("box2d3", 2) => AnyFollower::Flat(Box::new(dynamic_tree::box2d::TreeFollower::new(threads))),
         #[cfg(feature = "engines")]
-        ("box3d", 3) => AnyFollower::Solid(Box::<dynamic_tree::box3d::TreeFollower>::default()),
+        ("box3d", 3) => AnyFollower::Solid(Box::new(dynamic_tree::box3d::TreeFollower::new(threads))),
         #[cfg(feature = "engines")]
         ("physx_abp", 3) => AnyFollower::Solid(Box::new(physx_broad_phase::PhaseFollower::new(PxBroadPhaseType::Abp))),
         #[cfg(feature = "engines")]
@@ -194,13 +195,13 @@ pub unsafe extern "C" fn rust_peer_version(crate_name: *const c_char) -> *const 
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn rust_searcher_new(name: *const c_char, dimension: c_int) -> *mut AnySearcher {
-    guarded(|| Box::into_raw(Box::new(searcher_named(text(name), dimension)))).unwrap_or(std::ptr::null_mut())
+pub unsafe extern "C" fn rust_searcher_new(name: *const c_char, dimension: c_int, threads: usize) -> *mut AnySearcher {
+    guarded(|| Box::into_raw(Box::new(searcher_named(text(name), dimension, threads)))).unwrap_or(std::ptr::null_mut())
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn rust_follower_new(name: *const c_char, dimension: c_int) -> *mut AnyFollower {
-    guarded(|| Box::into_raw(Box::new(follower_named(text(name), dimension)))).unwrap_or(std::ptr::null_mut())
+pub unsafe extern "C" fn rust_follower_new(name: *const c_char, dimension: c_int, threads: usize) -> *mut AnyFollower {
+    guarded(|| Box::into_raw(Box::new(follower_named(text(name), dimension, threads)))).unwrap_or(std::ptr::null_mut())
 }
 
 #[no_mangle]
@@ -217,11 +218,13 @@ fn run<const D: usize>(
     searcher: &mut dyn Searcher<D>,
     boxes: &[Bounds<D>],
     left_count: usize,
+    filters: &[Filter],
     length: f32,
     pairs: &mut Pairs,
 ) -> ControlFlow<()> {
     match left_count {
-        0 => searcher.search(boxes, length, pairs),
+        0 if filters.is_empty() => searcher.search(boxes, length, pairs),
+        0 => searcher.search_filtered(boxes, filters, length, pairs),
         _ => searcher.join(boxes, left_count, length, pairs),
     }
 }
@@ -232,6 +235,7 @@ pub unsafe extern "C" fn rust_searcher_search(
     boxes: *const f32,
     count: usize,
     left_count: usize,
+    filters: *const Filter,
     length: f32,
     takes: Takes,
     context: *mut c_void,
@@ -241,9 +245,14 @@ pub unsafe extern "C" fn rust_searcher_search(
             return;
         }
         let mut pairs = Pairs::new(takes, context);
+        let filters = slice(filters, if filters.is_null() { 0 } else { count });
         let found = match &mut *searcher {
-            AnySearcher::Flat(flat) => run(&mut **flat, slice(boxes.cast(), count), left_count, length, &mut pairs),
-            AnySearcher::Solid(solid) => run(&mut **solid, slice(boxes.cast(), count), left_count, length, &mut pairs),
+            AnySearcher::Flat(flat) => {
+                run(&mut **flat, slice(boxes.cast(), count), left_count, filters, length, &mut pairs)
+            }
+            AnySearcher::Solid(solid) => {
+                run(&mut **solid, slice(boxes.cast(), count), left_count, filters, length, &mut pairs)
+            }
         };
         if found.is_continue() {
             let _ = pairs.flush();

@@ -4,35 +4,57 @@ use std::ops::ControlFlow;
 
 use packed_spatial_index::{Box2D, Box3D, Index2D, Index2DBuilder, Index3D, Index3DBuilder};
 
-use crate::peer::{Bounds, Pairs, Searcher};
+use rayon::ThreadPool;
 
-fn index_2d(boxes: &[Bounds<2>]) -> Index2D {
-    let mut builder = Index2DBuilder::new(boxes.len());
+use crate::peer::{pool_of, Bounds, Pairs, Searcher};
+
+fn index_2d(boxes: &[Bounds<2>], pool: Option<&ThreadPool>) -> Index2D {
+    let mut builder = Index2DBuilder::new(boxes.len()).parallel(pool.is_some());
     for Bounds { min, max } in boxes {
         builder.add(Box2D::new(min[0].into(), min[1].into(), max[0].into(), max[1].into()));
     }
-    builder.finish().expect("an index of valid boxes")
+    let index = match pool {
+        None => builder.finish(),
+        Some(pool) => pool.install(|| builder.finish()),
+    };
+    index.expect("an index of valid boxes")
 }
 
-fn index_3d(boxes: &[Bounds<3>]) -> Index3D {
-    let mut builder = Index3DBuilder::new(boxes.len());
+fn index_3d(boxes: &[Bounds<3>], pool: Option<&ThreadPool>) -> Index3D {
+    let mut builder = Index3DBuilder::new(boxes.len()).parallel(pool.is_some());
     for Bounds { min, max } in boxes {
         let [min_x, min_y, min_z] = min.map(f64::from);
         let [max_x, max_y, max_z] = max.map(f64::from);
         builder.add(Box3D::new(min_x, min_y, min_z, max_x, max_y, max_z));
     }
-    builder.finish().expect("an index of valid boxes")
+    let index = match pool {
+        None => builder.finish(),
+        Some(pool) => pool.install(|| builder.finish()),
+    };
+    index.expect("an index of valid boxes")
 }
 
 macro_rules! packed_index {
     ($searcher:ident, $index:ident, $build:ident, $dimension:literal) => {
-        #[derive(Default)]
-        pub struct $searcher(Vec<$index>); // of the last search
+        pub struct $searcher {
+            pool: Option<ThreadPool>,
+            indexes: Vec<$index>, // of the last search
+        }
+
+        impl $searcher {
+            pub fn new(threads: usize) -> Self {
+                Self { pool: pool_of(threads), indexes: Vec::new() }
+            }
+
+            fn index(&self, boxes: &[Bounds<$dimension>]) -> $index {
+                $build(boxes, self.pool.as_ref())
+            }
+        }
 
         impl Searcher<$dimension> for $searcher {
             fn search(&mut self, boxes: &[Bounds<$dimension>], _: f32, pairs: &mut Pairs) -> ControlFlow<()> {
-                self.0 = vec![$build(boxes)];
-                self.0[0].pairs_each(|a, b| pairs.add(a as u32, b as u32))
+                self.indexes = vec![self.index(boxes)];
+                self.indexes[0].pairs_each(|a, b| pairs.add(a as u32, b as u32))
             }
 
             fn join(
@@ -43,12 +65,12 @@ macro_rules! packed_index {
                 pairs: &mut Pairs,
             ) -> ControlFlow<()> {
                 let (left, right) = boxes.split_at(left_count);
-                self.0 = vec![$build(left), $build(right)];
-                self.0[0].join_each(&self.0[1], |a, b| pairs.add(a as u32, (left_count + b) as u32))
+                self.indexes = vec![self.index(left), self.index(right)];
+                self.indexes[0].join_each(&self.indexes[1], |a, b| pairs.add(a as u32, (left_count + b) as u32))
             }
 
             fn tear_down(&mut self) {
-                self.0.clear();
+                self.indexes.clear();
             }
         }
     };

@@ -1,7 +1,11 @@
 //! What a crate implements to take part: `Searcher` and `Follower`.
 
 use std::ffi::c_void;
+use std::num::NonZero;
 use std::ops::ControlFlow;
+use std::thread::available_parallelism;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// A box: Broadside's `Box<D>` in memory.
 #[derive(Clone, Copy)]
@@ -24,6 +28,16 @@ impl<const D: usize> Bounds<D> {
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis])
     }
+}
+
+/// Broadside's `Filter` in memory.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Filter {
+    pub category: u64,
+    pub mask: u64,
+    pub group: i32,
+    pub is_static: bool,
 }
 
 pub type Takes = unsafe extern "C" fn(*mut c_void, *const u32, usize) -> bool;
@@ -74,6 +88,14 @@ impl Pairs {
     }
 }
 
+/// The threads for a library that can use several, at most as many as the machine has: `None` for one thread, which is
+/// the calling one; 0 for all.
+pub fn pool_of(threads: usize) -> Option<ThreadPool> {
+    let all = available_parallelism().map_or(1, NonZero::get);
+    let count = if threads == 0 { all } else { threads.min(all) };
+    (threads != 1).then(|| ThreadPoolBuilder::new().num_threads(count).build().expect("threads"))
+}
+
 /// Finds pairs from scratch.
 pub trait Searcher<const D: usize> {
     /// Adds each overlapping pair once. All boxes are present, and there are at least two. `length` is that of a
@@ -83,6 +105,18 @@ pub trait Searcher<const D: usize> {
     /// Adds each overlapping pair of the first `left_count` boxes and the others once, and may add pairs within these
     /// sets. Neither is empty. By default, a library without a join of two sets finds all pairs.
     fn join(&mut self, boxes: &[Bounds<D>], _left_count: usize, length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+        self.search(boxes, length, pairs)
+    }
+
+    /// Like `search`. A library that filters may leave out pairs that the boxes' filters reject; the caller drops them
+    /// in any case.
+    fn search_filtered(
+        &mut self,
+        boxes: &[Bounds<D>],
+        _filters: &[Filter],
+        length: f32,
+        pairs: &mut Pairs,
+    ) -> ControlFlow<()> {
         self.search(boxes, length, pairs)
     }
 

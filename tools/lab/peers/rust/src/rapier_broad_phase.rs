@@ -9,11 +9,11 @@ macro_rules! rapier_broad_phase {
             use $rapier::dynamics::{IntegrationParameters, RigidBodySet};
             use $rapier::geometry::{
                 Aabb, ActiveCollisionTypes, BroadPhaseBvh, BroadPhasePairEvent, ColliderBuilder, ColliderHandle,
-                ColliderPair, ColliderSet,
+                ColliderPair, ColliderSet, Group, InteractionGroups, InteractionTestMode,
             };
 
             use crate::kept_pairs::KeptPairs;
-            use crate::peer::{Bounds, Follower, Frame, Pairs, Searcher};
+            use crate::peer::{Bounds, Filter, Follower, Frame, Pairs, Searcher};
 
             /// The broad phase, and a collider for each id, without a body.
             #[derive(Default)]
@@ -32,6 +32,17 @@ macro_rules! rapier_broad_phase {
                 (a.min(b), a.max(b))
             }
 
+            /// The groups of a collider, which accept at least the pairs that its filter accepts.
+            fn groups_of(filter: &Filter) -> InteractionGroups {
+                if filter.group > 0 {
+                    return InteractionGroups::all(); // a common positive group overrides masks
+                }
+                // A group is one of 32 bits.
+                let group_of = |bits: u64| u32::try_from(bits).map_or(Group::ALL, Group::from_bits_retain);
+                let mode = InteractionTestMode::And;
+                InteractionGroups::new(group_of(filter.category), group_of(filter.mask), mode)
+            }
+
             impl Colliders {
                 fn clear(&mut self, length: f32) {
                     self.broad_phase = BroadPhaseBvh::new();
@@ -44,6 +55,16 @@ macro_rules! rapier_broad_phase {
                         let all = ActiveCollisionTypes::all();
                         let collider = ColliderBuilder::ball(0.5).active_collision_types(all);
                         self.handles.push(self.colliders.insert(collider));
+                    }
+                }
+
+                /// Sets the filters, of all boxes or of none.
+                fn set_filters(&mut self, filters: &[Filter]) {
+                    for (id, &handle) in self.handles.iter().enumerate() {
+                        let groups = filters.get(id).map_or(InteractionGroups::all(), groups_of);
+                        if self.colliders[handle].collision_groups() != groups {
+                            self.colliders[handle].set_collision_groups(groups);
+                        }
                     }
                 }
 
@@ -79,7 +100,19 @@ macro_rules! rapier_broad_phase {
 
             impl Searcher<$dimension> for BroadPhaseSearcher {
                 fn search(&mut self, boxes: &[Bounds<$dimension>], length: f32, pairs: &mut Pairs) -> ControlFlow<()> {
+                    self.search_filtered(boxes, &[], length, pairs)
+                }
+
+                fn search_filtered(
+                    &mut self,
+                    boxes: &[Bounds<$dimension>],
+                    filters: &[Filter],
+                    length: f32,
+                    pairs: &mut Pairs,
+                ) -> ControlFlow<()> {
                     self.0.clear(length);
+                    self.0.grow(boxes.len());
+                    self.0.set_filters(filters);
                     self.0.set_all(boxes);
                     for event in &self.0.events {
                         if let BroadPhasePairEvent::AddPair(pair) = event {
