@@ -1,11 +1,10 @@
-// Measures the speedup of two threads: the same work by one thread and by two, in turns. Two single-threaded
-// copies at once show how much the machine can give. All runs must find the same pairs.
+// Measures the speedup of several threads: the same work by one thread and by several, in turns. As many
+// single-threaded copies at once show how much the machine can give. All runs must find the same pairs.
 //
-// The speedup with more cores is computed, not measured: one thread does all the work, and the time in
-// parallel tasks is divided by the number of cores.
+// The speedup with 8 and 16 cores is also computed: one thread does all the work, and the time in parallel
+// tasks is divided by the number of cores.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -74,14 +73,18 @@ inline double milliseconds_of(const std::function<void()>& run) {
 
 /// Adds a row. `make(workers)` creates the same work for these workers.
 inline void add_gain(const std::string& name,
-                     const std::function<std::unique_ptr<Work>(const Workers&)>& make, std::size_t rounds,
-                     lab::AlignedColumns& columns) {
+                     const std::function<std::unique_ptr<Work>(const Workers&)>& make, std::size_t threads,
+                     std::size_t rounds, lab::AlignedColumns& columns) {
   Accountant accountant;
   const auto one = make({});
-  const auto two = make({.threads = 2});
+  const auto several = make({.threads = threads});
   const auto accounted = make({.threads = 16, .executor = &accountant});
-  const std::array<std::unique_ptr<Work>, 2> copies = {make({}), make({})};
-  const std::array<Work*, 5> all = {one.get(), two.get(), accounted.get(), copies[0].get(), copies[1].get()};
+  std::vector<std::unique_ptr<Work>> copies;
+  std::vector<Work*> all = {one.get(), several.get(), accounted.get()};
+  for (std::size_t copy = 0; copy < threads; ++copy) {
+    copies.push_back(make({}));
+    all.push_back(copies.back().get());
+  }
   accountant.take_shared_ms();  // a tracker's first frame
   std::vector<double> ones;
   std::vector<double> gains;
@@ -90,11 +93,13 @@ inline void add_gain(const std::string& name,
   for (std::size_t round = 0; round < rounds; ++round) {
     for (Work* const work : all) work->prepare(round);
     const double one_ms = milliseconds_of([&] { one->run(); });
-    const double two_ms = milliseconds_of([&] { two->run(); });
+    const double several_ms = milliseconds_of([&] { several->run(); });
     const double copies_ms = milliseconds_of([&] {
-      std::future<void> other = std::async(std::launch::async, [&] { copies[1]->run(); });
+      std::vector<std::future<void>> others;
+      for (std::size_t copy = 1; copy < threads; ++copy)
+        others.push_back(std::async(std::launch::async, [&work = *copies[copy]] { work.run(); }));
       copies[0]->run();
-      other.get();
+      for (std::future<void>& other : others) other.get();
     });
     const double accounted_ms = milliseconds_of([&] { accounted->run(); });
     for (const Work* const work : all) {
@@ -104,22 +109,23 @@ inline void add_gain(const std::string& name,
     }
     if (round == 0) continue;  // the first round allocates memory
     ones.push_back(one_ms);
-    gains.push_back(one_ms / two_ms);
-    copies_gain.push_back(2 * one_ms / copies_ms);
+    gains.push_back(one_ms / several_ms);
+    copies_gain.push_back(static_cast<double>(threads) * one_ms / copies_ms);
     shared.push_back(accountant.take_shared_ms() / accounted_ms);
   }
   const double gain = lab::median(gains);
   const double max_gain = lab::median(copies_gain);
   const double part = lab::median(shared);
-  const auto with = [part](double threads) { return fmt::format("{:.1f}", 1 / (1 - part + part / threads)); };
+  const auto with = [part](double cores) { return fmt::format("{:.1f}", 1 / (1 - part + part / cores)); };
   columns.add({name, lab::rounded(lab::median(ones)), fmt::format("{:.2f}", gain),
                fmt::format("{:.2f}", max_gain), fmt::format("{:.2f}", gain / max_gain),
                fmt::format("{:.0f} %", part * 100), with(8), with(16)});
 }
 
-inline lab::AlignedColumns gain_columns() {
+inline lab::AlignedColumns gain_columns(std::size_t threads) {
   lab::AlignedColumns columns("<>>>>>>>");
-  columns.add({"", "one thread, ms", "two threads", "two copies", "of these", "shared", "8", "16"});
+  columns.add({"", "one thread, ms", fmt::format("{} threads", threads), fmt::format("{} copies", threads),
+               "of these", "shared", "8", "16"});
   return columns;
 }
 

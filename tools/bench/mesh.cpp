@@ -133,7 +133,7 @@ void run(const std::string& before, const std::string& after, std::size_t rounds
              lab::grouped(mesh.vertices.size()), lab::grouped(mesh.edges.size()),
              lab::grouped(mesh.faces.size()), rounds - 1, machine.cpu, machine.cores, build.compiler,
              build.revision);
-  lab::AlignedColumns gains = gain_columns();
+  lab::AlignedColumns gains = gain_columns(2);
   lab::AlignedColumns doubles("<>>>>");
   doubles.add({"", "pairs", "floats, ms", "doubles, ms", "ratio"});
   const auto join = [&](const std::string& name, const lab::MeshElements& left,
@@ -143,8 +143,8 @@ void run(const std::string& before, const std::string& after, std::size_t rounds
         return std::make_unique<Joining<Real>>(mesh, left, right, algorithm, workers);
       };
     };
-    add_gain(name + ", floats", maker(float()), rounds, gains);
-    add_gain(name + ", doubles", maker(double()), rounds, gains);
+    add_gain(name + ", floats", maker(float()), 2, rounds, gains);
+    add_gain(name + ", doubles", maker(double()), 2, rounds, gains);
     const auto floats = maker(float())({});
     const auto exact = maker(double())({});
     std::vector<double> float_ms;

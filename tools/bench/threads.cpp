@@ -1,5 +1,5 @@
 // Speedup of several threads over one, in searches and in updates: threads [ROUNDS [SCENE [BOXES_FOLLOWED
-// [BOXES_SEARCHED]]]]. See bench/gain.hpp.
+// [BOXES_SEARCHED [THREADS]]]]]. See bench/gain.hpp.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -32,6 +32,7 @@ struct ThreadBenchmarkOptions {
   std::string scene;
   std::size_t followed_boxes;
   std::size_t searched_boxes;
+  std::size_t threads;
 };
 
 template <int D>
@@ -101,7 +102,7 @@ void compare_all(const ThreadBenchmarkOptions& options, lab::AlignedColumns& col
           fmt::format("{}D, {}, {:.3g} % of {} move", D, entry.spec.text(), moving * 100,
                       lab::grouped(input.boxes.size())),
           [&](const Workers& workers) { return std::make_unique<FollowingWork<D>>(entry, input, workers); },
-          options.rounds, columns);
+          options.threads, options.rounds, columns);
     }
   }
   const lab::History<D> input = history(options.searched_boxes, 0, 0);
@@ -109,7 +110,7 @@ void compare_all(const ThreadBenchmarkOptions& options, lab::AlignedColumns& col
     add_gain(
         fmt::format("{}D, {} finds pairs of {}", D, entry.spec.text(), lab::grouped(input.boxes.size())),
         [&](const Workers& workers) { return std::make_unique<Searching<D>>(entry, input, workers); },
-        options.rounds, columns);
+        options.threads, options.rounds, columns);
   }
 }
 
@@ -117,11 +118,14 @@ void run(const ThreadBenchmarkOptions& options) {
   if (options.rounds < 2)
     throw std::invalid_argument(fmt::format(
         "the number of rounds is {}; expected 2 or more, the first of which does not count", options.rounds));
+  if (options.threads < 2)
+    throw std::invalid_argument(
+        fmt::format("the number of threads is {}; expected 2 or more", options.threads));
   const lab::Machine machine = lab::this_machine();
   const lab::Build build = lab::this_build();
   fmt::print("{}, medians of {} rounds; {}, {} cores; {}, {}\n", options.scene, options.rounds - 1,
              machine.cpu, machine.cores, build.compiler, build.revision);
-  lab::AlignedColumns columns = gain_columns();
+  lab::AlignedColumns columns = gain_columns(options.threads);
   compare_all<2>(options, columns);
   compare_all<3>(options, columns);
   fmt::print("{}", text_of_gains(columns));
@@ -136,7 +140,8 @@ int main(int count, char** arguments) {
     run({.rounds = number_at(count, arguments, 1, 11),
          .scene = text_at(count, arguments, 2, "uniform"),
          .followed_boxes = number_at(count, arguments, 3, 200'000),
-         .searched_boxes = number_at(count, arguments, 4, 1'000'000)});
+         .searched_boxes = number_at(count, arguments, 4, 1'000'000),
+         .threads = number_at(count, arguments, 5, 2)});
     return 0;
   });
 }
