@@ -183,7 +183,7 @@ TEST_P(WithinLaw, FindsEachPairOfAnyNumbers) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, WithinLaw, testing::ValuesIn(law_cases_without_peers()), case_name);
+INSTANTIATE_TEST_SUITE_P(Catalogue, WithinLaw, testing::ValuesIn(cases_of(algorithms())), case_name);
 
 /// Points in the unit cube.
 std::vector<Box3> drawn_points(std::size_t count) {

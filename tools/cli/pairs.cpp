@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +19,7 @@
 #include "broadside/filter.hpp"
 #include "broadside/keys.hpp"
 #include "broadside/sinks.hpp"
+#include "broadside/within.hpp"
 
 #include "cli/applicability.hpp"
 #include "cli/help.hpp"
@@ -206,19 +209,37 @@ class PairsCommand {
 
   void search(PairSink& pairs) {
     const PairFilters filters{filters_, right_filters_};
+    if (arguments_.is_euclidean || !arguments_.period.empty()) return search_around(pairs, filters);
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
-      const lab::Metric metric = arguments_.is_euclidean ? lab::Metric::euclidean : lab::Metric::per_axis;
       if (is_between())
-        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs, filters, metric);
+        lab::join_within(sets_[0].boxes, sets_[1].boxes, distance, entry_, pairs, filters);
       else
-        lab::join_within(sets_[0].boxes, distance, entry_, pairs, filters, metric);
+        lab::join_within(sets_[0].boxes, distance, entry_, pairs, filters);
       return;
     }
     if (is_between())
       lab::join(sets_[0].boxes, sets_[1].boxes, entry_, pairs, filters);
     else
       lab::join(sets_[0].boxes, entry_, pairs, filters);
+  }
+
+  /// The pairs within a Euclidean distance, which may be 0, in space that may repeat.
+  void search_around(PairSink& pairs, const PairFilters& filters) {
+    const std::vector<double> periods = read_periods(arguments_.period);
+    const Reach reach =
+        Reach(arguments_.within.empty() ? 0 : read_distance(arguments_.within)).periodic(periods);
+    const FindOptions options{
+        .algorithm = entry_.spec, .filters = filters.filters, .right_filters = filters.right_filters};
+    std::visit(
+        [&](const auto& boxes) {
+          if (is_between())
+            find_pairs_within(boxes, std::get<std::decay_t<decltype(boxes)>>(sets_[1].boxes), reach, pairs,
+                              options);
+          else
+            find_pairs_within(boxes, reach, pairs, options);
+        },
+        sets_[0].boxes);
   }
 
   const PairsArguments& arguments_;
@@ -340,6 +361,12 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
   verb->add_flag("--euclidean", arguments->is_euclidean,
                  "With --within: measure the distance in a straight line, also past corners, instead of "
                  "on each axis");
+  verb->add_option(
+          "--period", arguments->period,
+          "Space repeats after these lengths, one for each axis, - for an axis on which it does not: "
+          "360,- for longitude and latitude. Boxes also pair around the edge; --within is then "
+          "measured in a straight line and needs --euclidean")
+      ->type_name("LENGTHS");
   verb->add_flag(
       "--no-touching", arguments->leaves_out_touching,
       "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "

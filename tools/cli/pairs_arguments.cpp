@@ -5,7 +5,10 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <ranges>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -100,6 +103,20 @@ double read_distance(const std::string& text) {
   return distance;
 }
 
+std::vector<double> read_periods(const std::string& text) {
+  std::vector<double> periods;
+  if (text.empty()) return periods;
+  for (const auto part : std::views::split(text, ',')) {
+    const std::string_view one(std::ranges::data(part), std::ranges::size(part));
+    double period = std::numeric_limits<double>::infinity();
+    if (one != "-" && (!lab::readers::parse_number(one, period) || !(period > 0)))
+      throw Unusable(
+          fmt::format("--period is '{}'; expected a number above 0 for each axis, or -, as in 360,-", text));
+    periods.push_back(period);
+  }
+  return periods;
+}
+
 std::uint64_t read_memory(const std::string& text) {
   const auto refuse = [&text](std::string_view found) {
     throw Unusable(
@@ -141,7 +158,8 @@ void check_memory(const PairsArguments& arguments) {
         "when the program was built");
   for (const auto& [is_given, option] :
        {std::pair(arguments.is_swept, "--swept"), std::pair(!arguments.within.empty(), "--within"),
-        std::pair(!arguments.ids.empty(), "--ids"), std::pair(!arguments.frame.empty(), "--frame")})
+        std::pair(!arguments.period.empty(), "--period"), std::pair(!arguments.ids.empty(), "--ids"),
+        std::pair(!arguments.frame.empty(), "--frame")})
     if (is_given) throw Unusable(fmt::format("{} with --memory; expected one or the other", option));
 }
 
@@ -186,6 +204,11 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   check_swept(arguments);
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
+  read_periods(arguments.period);
+  if (!arguments.period.empty() && !arguments.within.empty() && !arguments.is_euclidean)
+    throw Unusable("--period and --within without --euclidean; expected it");
+  if (!arguments.period.empty() && arguments.leaves_out_touching)
+    throw Unusable("--no-touching with --period; expected one or the other");
   if (arguments.is_euclidean && arguments.within.empty())
     throw Unusable("--euclidean without --within; expected a distance");
   if (!arguments.within.empty() && arguments.leaves_out_touching)

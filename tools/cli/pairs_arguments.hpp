@@ -20,6 +20,7 @@ struct PairsArguments {
   InputOptions input;
   std::vector<std::string> ids;  // one for both files, or one for each
   std::string within;
+  std::string period;
   bool is_euclidean = false;  // how the distance of --within is measured
   bool leaves_out_touching = false;
   std::string algorithm{default_algorithm};
@@ -45,6 +46,9 @@ lab::MeshPart read_part(const std::string& option, const std::string& text);
 
 /// The distance of --within. Throws Unusable if it is invalid.
 double read_distance(const std::string& text);
+
+/// The periods of --period; none if it is not given. Throws Unusable if one is invalid.
+std::vector<double> read_periods(const std::string& text);
 
 /// The bytes of --memory. Throws Unusable if the value is invalid or too small.
 std::uint64_t read_memory(const std::string& text);

@@ -58,21 +58,15 @@ void join(const AnyBoxes& boxes, const Entry& entry, PairSink& pairs, const Pair
 void join(const AnyBoxes& left, const AnyBoxes& right, const Entry& entry, PairSink& pairs,
           const PairFilters& filters = {});
 
-/// What join_within() compares with the distance.
-enum class Metric {
-  per_axis,  ///< the gap on each axis: finds all pairs within the Euclidean distance, and a few past corners
-  euclidean  ///< the Euclidean distance, as is_within() does
-};
-
 /// Writes each pair of boxes whose gap on each axis (0 if they overlap on it) is at most `distance`, which is
-/// finite and at least 0, or whose Euclidean distance is. The gap between two coordinates is compared with
+/// finite and at least 0. The gap between two coordinates is compared with
 /// the distance as real numbers, without rounding. Otherwise as join().
 void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs,
-                 const PairFilters& filters = {}, Metric metric = Metric::per_axis);
+                 const PairFilters& filters = {});
 
 /// Likewise, each such pair of a box of `left` and a box of `right`. match() must have been called for the
 /// two.
 void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
-                 PairSink& pairs, const PairFilters& filters = {}, Metric metric = Metric::per_axis);
+                 PairSink& pairs, const PairFilters& filters = {});
 
 }  // namespace broadside::lab

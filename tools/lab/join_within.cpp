@@ -7,8 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "broadside/within.hpp"
-
 #include "lab/join.hpp"
 #include "lab/pair_filter.hpp"
 
@@ -38,12 +36,11 @@ bool gaps_are_within(const Box<D, Real>& a, const Box<D, Real>& b, double distan
   return within;
 }
 
-/// The boxes, each enlarged by at least half the distance on every side. A Euclidean distance is computed
-/// from rounded gaps, so the gaps may be greater by a rounding.
+/// The boxes, each enlarged by at least half the distance on every side.
 template <int D, typename Real>
-std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, double distance, Metric metric) {
+std::vector<Box<D, Real>> enlarged(const std::vector<Box<D, Real>>& boxes, double distance) {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
-  const double half = (metric == Metric::euclidean ? distance * (1 + 0x1p-50) : distance) / 2;
+  const double half = distance / 2;
   std::vector<Box<D, Real>> result = boxes;
   for (Box<D, Real>& box : result) {
     if (is_absent(box)) continue;
@@ -62,45 +59,44 @@ template <int D, typename Real>
 class PairsWithin final : public PairSink {
  public:
   PairsWithin(const std::vector<Box<D, Real>>& left, const std::vector<Box<D, Real>>& right, double distance,
-              Metric metric, PairSink& pairs)
-      : left_(left), right_(right), distance_(distance), metric_(metric), pairs_(pairs) {}
+              PairSink& pairs)
+      : left_(left), right_(right), distance_(distance), pairs_(pairs) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
     write_if(pairs, pairs_, [this](Pair pair) {
       const Box<D, Real>& a = left_[index(pair.first)];
       const Box<D, Real>& b = right_[index(pair.second)];
-      return metric_ == Metric::euclidean ? is_within(a, b, distance_) : gaps_are_within(a, b, distance_);
+      return gaps_are_within(a, b, distance_);
     });
   }
 
   const std::vector<Box<D, Real>>& left_;
   const std::vector<Box<D, Real>>& right_;
   double distance_;
-  Metric metric_;
   PairSink& pairs_;
 };
 
 }  // namespace
 
 void join_within(const AnyBoxes& boxes, double distance, const Entry& entry, PairSink& pairs,
-                 const PairFilters& filters, Metric metric) {
+                 const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
-        PairsWithin<D, Real> within(list, list, distance, metric, pairs);
-        join(enlarged(list, distance, metric), entry, within, filters);
+        PairsWithin<D, Real> within(list, list, distance, pairs);
+        join(enlarged(list, distance), entry, within, filters);
       },
       boxes);
   pairs.flush();
 }
 
 void join_within(const AnyBoxes& left, const AnyBoxes& right, double distance, const Entry& entry,
-                 PairSink& pairs, const PairFilters& filters, Metric metric) {
+                 PairSink& pairs, const PairFilters& filters) {
   std::visit(
       [&]<int D, typename Real>(const std::vector<Box<D, Real>>& list) {
         const auto& other = std::get<std::vector<Box<D, Real>>>(right);
-        PairsWithin<D, Real> within(list, other, distance, metric, pairs);
-        join(enlarged(list, distance, metric), enlarged(other, distance, metric), entry, within, filters);
+        PairsWithin<D, Real> within(list, other, distance, pairs);
+        join(enlarged(list, distance), enlarged(other, distance), entry, within, filters);
       },
       left);
   pairs.flush();

@@ -339,6 +339,23 @@ TEST(PairsVerb, MeasuresADistanceInAStraightLineIfAsked) {
   expect_refused("pairs", {{{file, "--euclidean"}, {"--euclidean without --within"}}});
 }
 
+TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.put("boxes.csv", "xmin,ymin,xmax,ymax\n170,0,190,1\n-180,0,-175,1\n0,0,1,1\n-10,358,-5,359\n");
+  EXPECT_EQ(run({"pairs", file, "--period", "360,-"}).output, "first,second\n0,1\n");
+  EXPECT_EQ(run({"pairs", file, "--period", "360,360", "--within", "6", "--euclidean"}).output,
+            "first,second\n0,1\n2,3\n");
+  EXPECT_EQ(run({"pairs", file, file, "--period", "360,-", "--count"}).output, "6\n");
+  expect_refused("pairs", {
+                              {{file, "--period", "0,1"}, {"--period is '0,1'", "a number above 0"}},
+                              {{file, "--period", "1,"}, {"--period is '1,'"}},
+                              {{file, "--period", "360"}, {"1 periods for boxes of 2 dimensions"}},
+                              {{file, "--period", "1,1", "--within", "1"}, {"without --euclidean"}},
+                              {{file, "--period", "1,1", "--no-touching"}, {"--no-touching with --period"}},
+                          });
+}
+
 TEST(PairsVerb, LeavesOutWhatOnlyTouches) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", four_boxes);

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "broadside/sinks.hpp"
-#include "broadside/within.hpp"
 
 #include "lab/join.hpp"
 #include "tests/support/boxes.hpp"
@@ -91,22 +90,6 @@ TEST(JoinWithin, TakesInfiniteBoxesAsTheyAre) {
   join_within(boxes, 1.7e308, only("brute_force"), collector);
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, (std::vector<Pair>{{BoxId(0), BoxId(2)}, {BoxId(0), BoxId(3)}, {BoxId(2), BoxId(3)}}));
-}
-
-TEST(JoinWithin, MeasuresInAStraightLineAsTheLibraryDoes) {
-  std::vector<DoubleBox2> boxes = tenths<double>(80, 3);
-  // A gap that is rounded to 1.
-  boxes.push_back({{-0.5, 100}, {-0.5, 100}});
-  boxes.push_back({{std::nextafter(0.5, 1.0), 100}, {0.75, 100}});
-  for (const double distance : {0.0, 0.3, 0.5, 1.0}) {
-    std::vector<Pair> found;
-    PairCollector collector(found);
-    join_within(boxes, distance, only("grid"), collector, {}, Metric::euclidean);
-    std::sort(found.begin(), found.end());
-    std::vector<Pair> expected = find_pairs_within(boxes, distance);
-    std::sort(expected.begin(), expected.end());
-    EXPECT_EQ(found, expected) << distance;
-  }
 }
 
 }  // namespace
