@@ -42,6 +42,25 @@ static void try_floats(void) {
   }
 
   {
+    /* Around the edge of a cell of 10 by 10. */
+    const float around[2][4] = {{9, 0, 11, 1}, {0.5f, 0, 2, 1}};
+    broadside_boxes two = {BROADSIDE_FLOAT_2D, NULL, 2, 0};
+    double periods[2] = {10, 10};
+    broadside_find_options options;
+    two.first = around;
+    broadside_find_options_init(&options);
+    status = broadside_find_pairs(&two, NULL, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_OK && count == 0, "without periods", &error);
+    options.periods = periods;
+    status = broadside_find_pairs(&two, NULL, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_OK && count == 1, "with periods", &error);
+    periods[1] = 0;
+    status = broadside_find_pairs(&two, NULL, &options, pairs, 4, &count, &error);
+    expect(status == BROADSIDE_INVALID_QUERY && strstr(error.message, "the period of axis 1 is 0") != NULL,
+           "a period of 0", &error);
+  }
+
+  {
     /* Within a distance: the last two are 3 apart on both axes, which is 4.24. */
     const double radii[3] = {0, 2, 2.25};
     const double wrong[3] = {0, 2, -1};
