@@ -171,8 +171,7 @@ broadside_status finder_find(WasmFinder* finder, const float* boxes, std::size_t
                              std::size_t right_count, const Filter* filters, const Filter* right_filters,
                              std::uint32_t mode, const double* within, const double* right_within) {
   return guarded([&] {
-    finder->find(
-        {boxes, count, right, right_count, filters, right_filters, mode, within, right_within});
+    finder->find({boxes, count, right, right_count, filters, right_filters, mode, within, right_within});
   });
 }
 
