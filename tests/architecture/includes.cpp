@@ -20,8 +20,9 @@ const std::vector<Rule>& rules() {
   const std::string library = standard + R"(|"broadside/[a-z_/]+\.hpp")";
   const std::string core = library + R"(|"core/[a-z_]+\.hpp")";
   const std::string algorithm = core + R"(|"kernels/[a-z_]+\.hpp"|"algorithms/[a-z_]+\.hpp")";
-  const std::string find = core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
-                           R"(|"kernels/(overlap_flags|observed_tests|last_test|round_boxes|squared_distances)\.hpp")";
+  const std::string find =
+      core + R"(|"find/[a-z_]+\.hpp"|"algorithms/registry\.hpp")" +
+      R"(|"kernels/(overlap_flags|observed_tests|last_test|round_boxes|squared_distances)\.hpp")";
   const std::string track = find + R"(|"track/[a-z_]+\.hpp"|"kernels/(all_present|boxes_outside)\.hpp")";
   const std::string bindings = library + R"(|"bindings/c/broadside\.h")";
   // Two of the library's inline functions, which need nothing else of it.

@@ -30,8 +30,8 @@ const example = "import { load } from \"broadside\";\n" +
  * they grow.
  */
 const limits: readonly (readonly [string, string, number])[] = [
-  ["index.js", "broadside-2d.js", 174_500], ["index.js", "broadside-3d.js", 179_000],
-  ["pairs.js", "broadside-pairs-2d.js", 148_500], ["pairs.js", "broadside-pairs-3d.js", 152_000],
+  ["index.js", "broadside-2d.js", 179_000], ["index.js", "broadside-3d.js", 183_500],
+  ["pairs.js", "broadside-pairs-2d.js", 153_500], ["pairs.js", "broadside-pairs-3d.js", 157_000],
 ];
 
 for (const [entry, module, most] of limits) {

@@ -2,7 +2,7 @@
 the same run, Markdown.
 
     build/python/tester/bin/python tools/bench/python/within.py [--points 10000,1000000] [--neighbours 6,30] [--rounds 3]
-        [--limit 60]
+        [--limit 60] [--libraries scipy,vesin]
 
 Points are uniform in a cube, in double. Each library gets the array of points and returns an array of pairs, with what it
 builds for that, in one thread; "search" is broadside alone for boxes that overlap on each axis, without the distance. A
@@ -131,6 +131,7 @@ def main() -> None:
     parser.add_argument("--neighbours", default="6,30")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--limit", type=float, default=60)
+    parser.add_argument("--libraries", default="", help="parts of names: only these besides broadside")
     options = parser.parse_args()
     calls: dict[str, Call] = {
         "search on each axis alone": search_alone,
@@ -138,6 +139,8 @@ def main() -> None:
         "broadside, full lists and distances": full_lists,
     }
     for name, make in OTHERS.items():
+        if not any(part in name for part in options.libraries.split(",")):
+            continue
         try:
             calls[name] = make()
         except ImportError as error:
