@@ -108,6 +108,12 @@ typedef struct broadside_boxes {
   size_t stride;
 } broadside_boxes;
 
+/** Writes `count` closed intervals as boxes of BROADSIDE_DOUBLE_2D, whose y is 0, and returns these boxes for all
+ * functions. Interval i is from minima[i] to maxima[i], and `rows` has room for 4 * count doubles. One from
+ * +infinity to -infinity is absent. Half-open intervals need `leaves_out_touching`. */
+BROADSIDE_EXPERIMENTAL broadside_boxes broadside_intervals(const double* minima, const double* maxima,
+                                                           size_t count, double* rows);
+
 /** Two boxes by their places in the array, first < second; between two sets, a place in the left one and a
  * place in the right one. */
 typedef struct broadside_pair {

@@ -1,4 +1,6 @@
 // The C API's pairs, finders and trackers.
+#include <limits>
+
 #include "bindings/c/c_api_common.hpp"
 
 using namespace broadside;
@@ -147,6 +149,17 @@ broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const 
     copy_as(std::span(found.pairs).first(std::min(found.pairs.size(), room)), pairs);
     if (found.pairs.size() > room) throw too_small(room, "pairs", found.pairs.size());
   });
+}
+
+broadside_boxes broadside_intervals(const double* minima, const double* maxima, std::size_t count,
+                                    double* rows) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_absent = minima[i] == infinity && maxima[i] == -infinity;
+    const DoubleBox2 box = is_absent ? absent_box<2, double>() : interval(minima[i], maxima[i]);
+    std::memcpy(rows + 4 * i, &box, sizeof(box));
+  }
+  return {BROADSIDE_DOUBLE_2D, rows, count, 0};
 }
 
 broadside_status broadside_components(const broadside_boxes* boxes, const broadside_find_options* options,

@@ -24,6 +24,7 @@ from broadside._pairs import (
     count,
     filters,
     find_pairs_batch,
+    intervals,
     invalid_rows,
     pairs,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "draw",
     "filters",
     "find_pairs_batch",
+    "intervals",
     "invalid_rows",
     "pairs",
     "read",

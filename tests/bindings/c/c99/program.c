@@ -41,6 +41,21 @@ static void try_floats(void) {
            "components without labels", &error);
   }
 
+  {
+    /* Intervals that touch: closed, and then half-open. */
+    const double starts[3] = {3000000000.0, 3000000001.0, INFINITY};
+    const double ends[3] = {3000000001.0, 3000000002.0, -INFINITY};
+    double rows[12];
+    const broadside_boxes intervals = broadside_intervals(starts, ends, 3, rows);
+    broadside_find_options options;
+    broadside_find_options_init(&options);
+    status = broadside_count_pairs(&intervals, NULL, NULL, &count, &error);
+    expect(status == BROADSIDE_OK && count == 1, "intervals", &error);
+    options.leaves_out_touching = 1;
+    status = broadside_count_pairs(&intervals, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_OK && count == 0, "half-open intervals", &error);
+  }
+
   bodies[2].box[0] = NAN;
   status = broadside_count_pairs(&boxes, NULL, NULL, &count, &error);
   expect(status == BROADSIDE_INVALID_INPUT && error.index == 2 && strstr(error.message, "box 2") != NULL,
