@@ -17,6 +17,7 @@ from broadside._errors import (
 )
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
 from broadside._motion import Events, Tracker, World
+from broadside._owners import OwnerPairs
 from broadside._pairs import (
     BatchPairs,
     PairTable,
@@ -49,6 +50,7 @@ __all__ = [
     "InvalidQueryError",
     "InvalidSnapshotError",
     "Neighbours",
+    "OwnerPairs",
     "PairTable",
     "Partition",
     "Tracker",
