@@ -253,6 +253,39 @@ BROADSIDE_API broadside_status broadside_tracker_update(broadside_tracker* track
                                                         const broadside_filter* filters,
                                                         broadside_pair_events* events, broadside_error* error);
 
+/* ---- Owners ---- */
+
+/** Tells which pairs of owners touch, such as bodies made of several boxes, from the pairs of boxes that begin
+ * and end: two owners touch while at least one box of each touches a box of the other. */
+typedef struct broadside_owner_pairs broadside_owner_pairs;
+
+/** Two owners, numbers of yours; in events, first < second. */
+typedef struct broadside_owner_pair {
+  uint64_t first;
+  uint64_t second;
+} broadside_owner_pair;
+
+/** The pairs of owners that began and ended, each once and sorted. They stay valid until the next update. */
+typedef struct broadside_owner_events {
+  const broadside_owner_pair* begun;
+  size_t begun_count;
+  const broadside_owner_pair* ended;
+  size_t ended_count;
+} broadside_owner_events;
+
+BROADSIDE_EXPERIMENTAL broadside_status broadside_owner_pairs_create(int api_version,
+                                                                     broadside_owner_pairs** owner_pairs,
+                                                                     broadside_error* error);
+BROADSIDE_EXPERIMENTAL void broadside_owner_pairs_destroy(broadside_owner_pairs* owner_pairs);
+
+/** Takes the owners of the boxes of the pairs that began and ended since the last update, in any order. Two
+ * boxes of one owner are no pair. If a pair of owners would end more often than it began, the status is
+ * BROADSIDE_INVALID_FRAME. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_owner_pairs_update(
+    broadside_owner_pairs* owner_pairs, const broadside_owner_pair* begun, size_t begun_count,
+    const broadside_owner_pair* ended, size_t ended_count, broadside_owner_events* events,
+    broadside_error* error);
+
 /* ---- Worlds ---- */
 
 /** Boxes that come, move and go under handles, and the pairs that begin and end. */

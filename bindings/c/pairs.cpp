@@ -262,3 +262,36 @@ broadside_status broadside_tracker_update(broadside_tracker* tracker, const broa
     *events = {tracker->begun.data(), tracker->begun.size(), tracker->ended.data(), tracker->ended.size()};
   });
 }
+
+// ---- Owners ----
+
+struct broadside_owner_pairs {
+  OwnerPairs pairs;
+  std::vector<broadside_owner_pair> begun;
+  std::vector<broadside_owner_pair> ended;
+};
+
+broadside_status broadside_owner_pairs_create(int api_version, broadside_owner_pairs** owner_pairs,
+                                              broadside_error* error) {
+  return guarded(error, [&] {
+    check_api_version(api_version);
+    required(owner_pairs, "owner_pairs") = new broadside_owner_pairs;
+  });
+}
+
+void broadside_owner_pairs_destroy(broadside_owner_pairs* owner_pairs) { delete owner_pairs; }
+
+broadside_status broadside_owner_pairs_update(broadside_owner_pairs* owner_pairs,
+                                              const broadside_owner_pair* begun, size_t begun_count,
+                                              const broadside_owner_pair* ended, size_t ended_count,
+                                              broadside_owner_events* events, broadside_error* error) {
+  return guarded(error, [&] {
+    broadside_owner_pairs& self = required(owner_pairs, "owner_pairs");
+    required(events, "events");
+    const OwnerEvents found =
+        self.pairs.update(array_of(begun, begun_count, "begun"), array_of(ended, ended_count, "ended"));
+    copy_as(found.begun, self.begun);
+    copy_as(found.ended, self.ended);
+    *events = {self.begun.data(), self.begun.size(), self.ended.data(), self.ended.size()};
+  });
+}

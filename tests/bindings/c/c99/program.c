@@ -62,6 +62,28 @@ static void try_floats(void) {
          "an invalid box", &error);
 }
 
+static void try_owners(void) {
+  /* Two boxes of car 7 touch the wall 9; then one, then none. */
+  const broadside_owner_pair pairs[2] = {{7, 9}, {9, 7}};
+  broadside_error error = {BROADSIDE_OK, 0, ""};
+  broadside_owner_events events;
+  broadside_owner_pairs* cars = NULL;
+  broadside_status status = broadside_owner_pairs_create(BROADSIDE_C_API_VERSION, &cars, &error);
+  expect(status == BROADSIDE_OK, "owners", &error);
+  status = broadside_owner_pairs_update(cars, pairs, 2, NULL, 0, &events, &error);
+  expect(status == BROADSIDE_OK && events.begun_count == 1 && events.begun[0].first == 7, "owners begin",
+         &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 1, &events, &error);
+  expect(status == BROADSIDE_OK && events.ended_count == 0, "one pair of boxes is left", &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 2, &events, &error);
+  expect(status == BROADSIDE_INVALID_FRAME && strstr(error.message, "owners 7 and 9 have 1 pairs") != NULL,
+         "more end than begin", &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 1, &events, &error);
+  expect(status == BROADSIDE_OK && events.ended_count == 1 && events.ended[0].second == 9, "owners end",
+         &error);
+  broadside_owner_pairs_destroy(cars);
+}
+
 static void try_world(void) {
   const double boxes[2][6] = {{0, 0, 0, 1, 1, 1}, {3, 0, 0, 4, 1, 1}};
   const double moved[6] = {0.5, 0, 0, 1.5, 1, 1};
@@ -92,6 +114,7 @@ static void try_world(void) {
 
 int main(void) {
   try_floats();
+  try_owners();
   try_world();
   return failures == 0 ? 0 : 1;
 }
