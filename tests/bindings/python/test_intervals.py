@@ -36,7 +36,7 @@ def test_tables_may_have_the_columns_of_intervals():
     for names in (["start", "end"], ["Start", "End"], ["chromStart", "chromEnd"]):
         table = pandas.DataFrame({"chrom": "chr1", names[0]: STARTS, names[1]: ENDS})
         assert as_set(broadside.pairs(table)) == expected
-        assert as_set(broadside.pairs(table, same="chrom", touching=False)) == by_definition(touching=False)
+        assert as_set(broadside.pairs(table, same=table["chrom"], touching=False)) == by_definition(touching=False)
     table = pandas.DataFrame({"to": ENDS, "from": STARTS})
     assert as_set(broadside.pairs(table, columns=["from", "to"])) == expected
     assert as_set(broadside.pairs(np.column_stack([STARTS, ENDS]), columns="start,end")) == expected
@@ -45,7 +45,7 @@ def test_tables_may_have_the_columns_of_intervals():
 
 
 def test_intervals_move_and_are_found():
-    world = broadside.World(dtype=np.float64)
+    world = broadside.World(2)
     handles = world.add(ROWS)
     assert len(world.update().begun) == len(by_definition())
     world.remove(handles[1:])
@@ -82,7 +82,7 @@ def test_names_intervals_where_rows_have_two_numbers():
 
 def test_owners_touch_while_boxes_of_theirs_do():
     owners = RNG.integers(0, 12, 100)
-    tracker, bodies, held = broadside.Tracker(), broadside.OwnerPairs(), set()
+    tracker, bodies, held = broadside.Tracker(2), broadside.OwnerPairs(), set()
     for _ in range(15):
         corner = RNG.integers(0, 40, (100, 2)).astype(float)
         boxes = np.concatenate([corner, corner + 2], axis=1)
