@@ -113,7 +113,7 @@ def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
 def of_places(count: int, name: str, columns: str | list[str] | None) -> Choice:
     """The columns of an array, which have only the names that a caller gives them."""
     if columns is None:
-        columns = {2: ["start", "end"], 6: "xyzxyz"}.get(count, "xyxy")
+        columns = ["start", "end"] if count == 2 else "xyzxyz" if count == 6 else "xyxy"
     names = list(_CONVENTIONS[columns]) if isinstance(columns, str) else columns
     if len(names) > count or isinstance(columns, str) and len(names) != count:
         raise ValueError(f"{name} has {count} columns, and columns is {columns!r}; expected {len(names)} columns")

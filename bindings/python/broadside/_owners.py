@@ -71,5 +71,6 @@ class OwnerPairs:
 
 
 def _rows(found: Any, name: str) -> NDArray[np.uint64]:
-    rows = np.sort(_convert.pairs_of_integers(found, name, _MOST), axis=1)
-    return rows[rows[:, 0] != rows[:, 1]]
+    rows: NDArray[np.uint64] = np.sort(_convert.pairs_of_integers(found, name, _MOST), axis=1)
+    different: NDArray[np.uint64] = rows[rows[:, 0] != rows[:, 1]]
+    return different
