@@ -108,6 +108,12 @@ typedef struct broadside_boxes {
   size_t stride;
 } broadside_boxes;
 
+/** Writes `count` closed intervals as boxes of BROADSIDE_DOUBLE_2D, whose y is 0, and returns these boxes for all
+ * functions. Interval i is from minima[i] to maxima[i], and `rows` has room for 4 * count doubles. One from
+ * +infinity to -infinity is absent. Half-open intervals need `leaves_out_touching`. */
+BROADSIDE_EXPERIMENTAL broadside_boxes broadside_intervals(const double* minima, const double* maxima,
+                                                           size_t count, double* rows);
+
 /** Two boxes by their places in the array, first < second; between two sets, a place in the left one and a
  * place in the right one. */
 typedef struct broadside_pair {
@@ -301,6 +307,39 @@ BROADSIDE_EXPERIMENTAL void broadside_batch_tracker_destroy(broadside_batch_trac
 BROADSIDE_EXPERIMENTAL broadside_status broadside_batch_tracker_update(
     broadside_batch_tracker* tracker, const broadside_boxes* boxes, const size_t* offsets, size_t worlds,
     const broadside_filter* filters, broadside_batch_events* events, broadside_error* error);
+
+/* ---- Owners ---- */
+
+/** Tells which pairs of owners touch, such as bodies made of several boxes, from the pairs of boxes that begin
+ * and end: two owners touch while at least one box of each touches a box of the other. */
+typedef struct broadside_owner_pairs broadside_owner_pairs;
+
+/** Two owners, numbers of yours; in events, first < second. */
+typedef struct broadside_owner_pair {
+  uint64_t first;
+  uint64_t second;
+} broadside_owner_pair;
+
+/** The pairs of owners that began and ended, each once and sorted. They stay valid until the next update. */
+typedef struct broadside_owner_events {
+  const broadside_owner_pair* begun;
+  size_t begun_count;
+  const broadside_owner_pair* ended;
+  size_t ended_count;
+} broadside_owner_events;
+
+BROADSIDE_EXPERIMENTAL broadside_status broadside_owner_pairs_create(int api_version,
+                                                                     broadside_owner_pairs** owner_pairs,
+                                                                     broadside_error* error);
+BROADSIDE_EXPERIMENTAL void broadside_owner_pairs_destroy(broadside_owner_pairs* owner_pairs);
+
+/** Takes the owners of the boxes of the pairs that began and ended since the last update, in any order. Two
+ * boxes of one owner are no pair. If a pair of owners would end more often than it began, the status is
+ * BROADSIDE_INVALID_FRAME. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_owner_pairs_update(
+    broadside_owner_pairs* owner_pairs, const broadside_owner_pair* begun, size_t begun_count,
+    const broadside_owner_pair* ended, size_t ended_count, broadside_owner_events* events,
+    broadside_error* error);
 
 /* ---- Worlds ---- */
 

@@ -1,4 +1,6 @@
 // The C API's pairs, finders and trackers.
+#include <limits>
+
 #include "bindings/c/c_api_common.hpp"
 
 using namespace broadside;
@@ -192,6 +194,17 @@ broadside_status broadside_find_pairs_batch(const broadside_boxes* boxes, const 
   });
 }
 
+broadside_boxes broadside_intervals(const double* minima, const double* maxima, std::size_t count,
+                                    double* rows) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_absent = minima[i] == infinity && maxima[i] == -infinity;
+    const DoubleBox2 box = is_absent ? absent_box<2, double>() : interval(minima[i], maxima[i]);
+    std::memcpy(rows + 4 * i, &box, sizeof(box));
+  }
+  return {BROADSIDE_DOUBLE_2D, rows, count, 0};
+}
+
 broadside_status broadside_components(const broadside_boxes* boxes, const broadside_find_options* options,
                                       uint32_t* labels, broadside_error* error) {
   return guarded(error, [&] {
@@ -376,5 +389,38 @@ broadside_status broadside_batch_tracker_update(broadside_batch_tracker* tracker
     copy_as(found.ended.pairs, tracker->ended.data());
     *events = {tracker->begun.data(), found.begun.offsets.data(), tracker->ended.data(),
                found.ended.offsets.data()};
+  });
+}
+
+// ---- Owners ----
+
+struct broadside_owner_pairs {
+  OwnerPairs pairs;
+  std::vector<broadside_owner_pair> begun;
+  std::vector<broadside_owner_pair> ended;
+};
+
+broadside_status broadside_owner_pairs_create(int api_version, broadside_owner_pairs** owner_pairs,
+                                              broadside_error* error) {
+  return guarded(error, [&] {
+    check_api_version(api_version);
+    required(owner_pairs, "owner_pairs") = new broadside_owner_pairs;
+  });
+}
+
+void broadside_owner_pairs_destroy(broadside_owner_pairs* owner_pairs) { delete owner_pairs; }
+
+broadside_status broadside_owner_pairs_update(broadside_owner_pairs* owner_pairs,
+                                              const broadside_owner_pair* begun, size_t begun_count,
+                                              const broadside_owner_pair* ended, size_t ended_count,
+                                              broadside_owner_events* events, broadside_error* error) {
+  return guarded(error, [&] {
+    broadside_owner_pairs& self = required(owner_pairs, "owner_pairs");
+    required(events, "events");
+    const OwnerEvents found =
+        self.pairs.update(array_of(begun, begun_count, "begun"), array_of(ended, ended_count, "ended"));
+    copy_as(found.begun, self.begun);
+    copy_as(found.ended, self.ended);
+    *events = {self.begun.data(), self.begun.size(), self.ended.data(), self.ended.size()};
   });
 }

@@ -132,6 +132,8 @@ std::string_view name_of(lab::readers::BoundsForm form) {
       return "centre_half_size";
     case BoundsForm::point:
       return "point";
+    case BoundsForm::flat:
+      return "flat";
     case BoundsForm::bottom_top:
       return "bottom_top";
   }

@@ -53,12 +53,14 @@ class DoubleSearch {
     });
     is_exact_ = all_exact;
     if (!all_present) return false;
-    if (is_exact_ || boxes.size() <= few_boxes || !core::makes_false_pairs<D>(fit, boxes, left_count, hash))
-      return true;
-    const std::array<core::QuantileRounding, D> quantiles = core::fit_quantiles<D>(boxes, hash);
-    parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i) floats_[i] = core::rounded(boxes[i], quantiles);
-    });
+    if (is_exact_ || boxes.size() <= few_boxes) return true;
+    if (core::makes_false_pairs<D>(fit, boxes, left_count, hash)) {
+      const std::array<core::QuantileRounding, D> quantiles = core::fit_quantiles<D>(boxes, hash);
+      parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+        for (std::size_t i = range.begin; i < range.end; ++i) floats_[i] = core::rounded(boxes[i], quantiles);
+      });
+    }
+    lengthen_flat_axes(boxes);
     return true;
   }
 
@@ -106,6 +108,29 @@ class DoubleSearch {
 
     std::span<const Box<D, double>> boxes_;
   };
+
+  /// On an axis where all boxes have the same one coordinate, as intervals have on y, all pairs touch. Gives
+  /// the floats a length there, so that they overlap by more than touching and need no test in double.
+  void lengthen_flat_axes(std::span<const Box<D, double>> boxes) {
+    for (int axis = 0; axis < D; ++axis) {
+      const double only = boxes.front().min[axis];
+      std::atomic<bool> is_flat = true;
+      parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+        const auto some = boxes.subspan(range.begin, range.end - range.begin);
+        if (!std::all_of(some.begin(), some.end(), [&](const Box<D, double>& box) {
+              return box.min[axis] == only && box.max[axis] == only;
+            }))
+          is_flat.store(false, std::memory_order_relaxed);
+      });
+      if (!is_flat) continue;
+      parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+          floats_[i].min[axis] = 0;
+          floats_[i].max[axis] = 1;
+        }
+      });
+    }
+  }
 
   bool tests_doubles_;
   core::Parallel parallel_;

@@ -17,6 +17,7 @@ from broadside._errors import (
 )
 from broadside._lab import Advice, Algorithm, Drawing, advise, algorithms, draw, read
 from broadside._motion import BatchEvents, BatchTracker, Events, Tracker, World
+from broadside._owners import OwnerPairs
 from broadside._pairs import (
     BatchPairs,
     PairTable,
@@ -24,6 +25,7 @@ from broadside._pairs import (
     count,
     filters,
     find_pairs_batch,
+    intervals,
     invalid_rows,
     pairs,
 )
@@ -52,6 +54,7 @@ __all__ = [
     "InvalidSnapshotError",
     "NeighbourLists",
     "Neighbours",
+    "OwnerPairs",
     "PairTable",
     "Partition",
     "Tracker",
@@ -65,6 +68,7 @@ __all__ = [
     "draw",
     "filters",
     "find_pairs_batch",
+    "intervals",
     "invalid_rows",
     "neighbour_lists",
     "pairs",

@@ -113,7 +113,7 @@ def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
 def of_places(count: int, name: str, columns: str | list[str] | None) -> Choice:
     """The columns of an array, which have only the names that a caller gives them."""
     if columns is None:
-        columns = "xyzxyz" if count == 6 else "xyxy"
+        columns = ["start", "end"] if count == 2 else "xyzxyz" if count == 6 else "xyxy"
     names = list(_CONVENTIONS[columns]) if isinstance(columns, str) else columns
     if len(names) > count or isinstance(columns, str) and len(names) != count:
         raise ValueError(f"{name} has {count} columns, and columns is {columns!r}; expected {len(names)} columns")
@@ -129,7 +129,7 @@ def _named(labels: Sequence[str], name: str, columns: list[str]) -> Choice:
             raise ValueError(f"{name} {found}; expected one column {column}")
         places += there
     # Names without a meaning stand for the bounds in order.
-    has_meaning = len(columns) not in (4, 6) or _resolved(columns, True)[0] is not None
+    has_meaning = len(columns) not in (2, 4, 6) or _resolved(columns, True)[0] is not None
     choice = _meant(columns, name) if has_meaning else of_places(len(columns), name, None)
     return Choice([places[place] for place in choice.places], choice.axes)
 
@@ -164,7 +164,7 @@ def _resolved(labels: list[str], are_chosen: bool) -> tuple[Choice | None, str]:
         return None, "points, without bounds"
     places = sorted({place for _, *both in axes for place in both if place >= 0})
     at = {place: i for i, place in enumerate(places)}
-    return Choice(places, [(form, at[first], at.get(second, -1)) for form, first, second in axes]), ""
+    return Choice(places, [(form, at.get(first, -1), at.get(second, -1)) for form, first, second in axes]), ""
 
 
 def rows_of(choice: Choice, columns: list[Column], name: str) -> Rows:
@@ -181,6 +181,8 @@ def rows_of(choice: Choice, columns: list[Column], name: str) -> Rows:
 
 def _bounds_on(axis: tuple[str, int, int], numbers: list[Rows]) -> tuple[Rows, Rows]:
     form, first, second = axis
+    if form == "flat":
+        return np.zeros(len(numbers[0])), np.zeros(len(numbers[0]))
     a, b = numbers[first], numbers[second]
     if form == "min_max":
         return a, b

@@ -29,8 +29,9 @@ def boxes(found: Any, name: str, columns: Columns | None = None) -> Rows:
         return np.empty((0, 4))
     array = _with_float_rows(found, name, _Boxes(name, chosen))
     if array.ndim != 2 or array.shape[1] not in (4, 6):
+        hint = "; for intervals see broadside.intervals()" if array.shape[1:] in ((), (2,)) else ""
         raise ValueError(
-            f"{name} has shape {array.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima"
+            f"{name} has shape {array.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima{hint}"
         )
     return array
 

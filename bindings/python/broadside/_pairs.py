@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from broadside import _arguments, _convert, _core, _within
+from broadside import _arguments, _columns, _convert, _core, _within
 from broadside._columns import Columns
 from broadside._core import PairTable as PairTable
 from broadside._errors import InvalidBoxError
@@ -359,6 +359,31 @@ def filters(
                     raise ValueError(f"{name} has {limit}; expected integers from {limits.min} to {limits.max}")
         made[name] = given
     return made
+
+
+def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
+    """Closed intervals as boxes for all functions and classes: rows of their starts, 0, their ends, 0.
+
+    Intervals are on the x axis; a point on it is ``x, 0``. Half-open intervals, such as those of BED files, need
+    ``touching=False``. A start of ``inf`` with an end of ``-inf`` is an absent interval. Tables need no call of this: they
+    may have columns ``start`` and ``end`` instead of bounds, or ``columns`` says which two they are.
+
+    Returns:
+        A float64 array of shape (n, 4).
+
+    Raises:
+        TypeError: An argument has no numbers.
+        ValueError: The arguments have another shape than (n,), or numbers that float64 does not hold.
+    """
+    bounds = [_columns.exact(np.asarray(given), name) for given, name in ((starts, "starts"), (ends, "ends"))]
+    for array, name in zip(bounds, ("starts", "ends"), strict=True):
+        if array.ndim != 1 or array.shape != bounds[0].shape:
+            raise ValueError(f"{name} has shape {array.shape}; expected (n,), an end for each start")
+    rows = np.zeros((len(bounds[0]), 4))
+    rows[:, 0], rows[:, 2] = bounds
+    absent = (rows[:, 0] == np.inf) & (rows[:, 2] == -np.inf)
+    rows[absent, 1], rows[absent, 3] = np.inf, -np.inf
+    return rows
 
 
 def invalid_rows(boxes: Any, *, columns: Columns | None = None) -> NDArray[np.int64]:

@@ -30,10 +30,22 @@ namespace broadside::algorithm {
 namespace {
 
 /// The reason for a choice. chosen_algorithm has the algorithm for each.
-enum class AutoReason { few, tile, uneven_tile, one_axis, one_place, dense, uneven_sets, clusters, cells };
+enum class AutoReason {
+  few,
+  tile,
+  uneven_tile,
+  one_axis,
+  intervals,
+  one_place,
+  dense,
+  uneven_sets,
+  clusters,
+  cells
+};
 
-constexpr std::array<std::string_view, 9> chosen_algorithm = {
-    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "bvh", "bvh", "bvh", "grid"};
+constexpr std::array<std::string_view, 10> chosen_algorithm = {
+    "brute_force", "grid", "bvh", "sweep_and_prune", "sweep_and_prune", "sweep_and_prune", "bvh",
+    "bvh",         "bvh",  "grid"};
 
 /// The algorithm of a choice. A build without it uses the grid, which does well with most boxes: a grid of
 /// one cell is a sweep.
@@ -164,6 +176,8 @@ class AutoSearcher final : public Searcher<D> {
                " are too uneven for cells: these would take far more tests than they find pairs";
       case AutoReason::one_axis:
         return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
+      case AutoReason::intervals:
+        return text + boxes + " differ on one axis alone: a sweep along it tests little but pairs";
       case AutoReason::tile:
         return text + boxes + " fit in a core's cache, where sorting them into cells costs least";
       case AutoReason::dense:
@@ -219,6 +233,7 @@ class AutoSearcher final : public Searcher<D> {
     if (tests_on_best_axis(boxes) <= Limits::tests_of_a_good_axis) return AutoReason::one_axis;
     overlaps_ = count / 2;
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
+    if (overlaps_ >= tests_) return AutoReason::intervals;  // all boxes overlap on the other axes
     if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;
     if (overlaps_ >= Limits::many_overlaps) return AutoReason::dense;
     if (smaller_set_ > 0 && static_cast<double>(smaller_set_) <= Limits::share_of_a_small_set * count)

@@ -105,7 +105,7 @@ def chosen(name: str, choices: Sequence[str]) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--boxes", default="1000,10000,100000")
-    parser.add_argument("--dimensions", default="2,3")
+    parser.add_argument("--dimensions", default="2,3", help="1: intervals")
     parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--libraries", help="parts of names: only these")
     parser.add_argument("--rounds", type=int, default=7)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rounds import KINDS, Driver, Library, self_pairs
+from rounds import KINDS, LATTICE, Driver, Library, self_pairs
 
 Boxes = np.ndarray
 
@@ -325,8 +325,76 @@ def make_newton(threads: int) -> Driver:
     return Driver(search, take, rows=lambda found: found[0].numpy()[: found[1]])
 
 
+def whole(a: Boxes, b: Boxes | None) -> list[tuple[Boxes, Boxes, Boxes]]:
+    """Closed intervals as the starts and ends of half-open ones of whole numbers, and their ids; twice for one set."""
+    sets = [(np.rint(rows * LATTICE).astype(np.int64) + [0, 1]).T for rows in ((a, a) if b is None else (a, b))]
+    return [(np.ascontiguousarray(start), np.ascontiguousarray(end), np.arange(len(start))) for start, end in sets]
+
+
+def make_ncls(threads: int) -> Driver:
+    ncls = importlib.import_module("ncls")
+
+    def search(given: Any) -> Any:
+        (left, right), is_self = given
+        rows = np.column_stack(ncls.NCLS(*right).all_overlaps_both(*left))
+        return self_pairs(rows) if is_self else rows
+
+    return Driver(search, lambda a, b: (whole(a, b), b is None))
+
+
+def make_superintervals(threads: int) -> Driver:
+    superintervals = importlib.import_module("superintervals")
+
+    def search(given: Any) -> Any:
+        (left, right), is_self = given
+        found = superintervals.IntervalMap.from_arrays(*right)  # it sorts what it is given
+        found.build()
+        return found.search_values_batch(left[0], left[1]), is_self
+
+    def rows(found: Any) -> Any:
+        lists, is_self = found
+        counts = [len(one) for one in lists]
+        pairs = np.column_stack([np.repeat(np.arange(len(lists)), counts), np.concatenate(lists).astype(np.int64)])
+        return self_pairs(pairs) if is_self else pairs
+
+    def take(a: Boxes, b: Boxes | None) -> Any:
+        closed = [(start.astype(np.int32), (end - 1).astype(np.int32), ids) for start, end, ids in whole(a, b)]
+        return closed, b is None
+
+    return Driver(search, take, rows=rows)
+
+
+def make_bioframe(threads: int) -> Driver:
+    bioframe = importlib.import_module("bioframe")
+    pandas = importlib.import_module("pandas")
+
+    def take(a: Boxes, b: Boxes | None) -> Any:
+        return [pandas.DataFrame({"chrom": "1", "start": start, "end": end}) for start, end, _ in whole(a, b)], b is None
+
+    def search(given: Any) -> Any:
+        (left, right), is_self = given
+        found = bioframe.overlap(left, right, how="inner", return_input=False, return_index=True)
+        rows = found.to_numpy(np.int64)
+        return self_pairs(rows) if is_self else rows
+
+    return Driver(search, take)
+
+
+def make_broadside_intervals(threads: int) -> Driver:
+    broadside = importlib.import_module("broadside")
+
+    def search(given: Any) -> Any:
+        return broadside.pairs(*(None if rows is None else broadside.intervals(*rows.T) for rows in given), threads=threads)
+
+    return Driver(search)
+
+
 LIBRARIES = (
     Library("broadside", ("broadside",), make_broadside, has_threads=True),
+    Library("broadside intervals", ("broadside",), make_broadside_intervals, (1,), has_threads=True),
+    Library("ncls", ("ncls",), make_ncls, (1,)),
+    Library("superintervals", ("superintervals",), make_superintervals, (1,)),
+    Library("bioframe", ("bioframe",), make_bioframe, (1,)),
     Library("broadside Index", ("broadside",), make_broadside_index, kinds=("queries",)),
     Library("shapely STRtree", ("shapely",), make_shapely, (2,), KINDS),
     Library("geopandas sjoin", ("geopandas", "shapely"), make_geopandas, (2,)),

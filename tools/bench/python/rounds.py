@@ -65,10 +65,13 @@ class Case:
 
 
 def scattered(n: int, dimension: int, seed: int) -> np.ndarray:
-    """Boxes that each overlap about two others, some of which only touch. Floats and doubles have all their bounds."""
+    """Boxes that each overlap about two others, some of which only touch, or intervals that overlap about ten others.
+
+    Floats and doubles have all their bounds.
+    """
     rng = np.random.default_rng(seed)
     minima = rng.random((n, dimension))
-    sides = rng.random((n, dimension)) * 2 / n ** (1 / dimension)
+    sides = rng.random((n, dimension)) * (10 if dimension == 1 else 2) / n ** (1 / dimension)
     minima, sides = np.floor(minima * LATTICE) / LATTICE, np.floor(sides * LATTICE) / LATTICE
     return np.hstack([minima, minima + sides])
 

@@ -67,6 +67,10 @@ bool is_interval(const Found& found) {
          std::count(found.begin(), found.end(), none) == std::ptrdiff_t{roles} - 2;
 }
 
+bool is_empty(const Found& found) {
+  return std::count(found.begin(), found.end(), none) == std::ptrdiff_t{roles};
+}
+
 std::optional<BoundsColumns> choose(const Found& found, int radius, bool are_chosen) {
   struct Way {
     BoundsForm form;
@@ -171,6 +175,7 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
     columns.places[static_cast<std::size_t>(column)] = where;
   };
   const int radius = radius_of(names);
+  const int geometry = first_of(names, geometry_names);
   std::string problem;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Found& of_axis = found[axis];
@@ -186,25 +191,21 @@ std::string resolve_bounds(std::span<const std::string_view> names, const std::a
       place(choice->first, BoxColumns::first + of_form);
       place(choice->second,
             choice->form == BoundsForm::centre_radius ? BoxColumns::radius : BoxColumns::second + of_form);
+    } else if (axis == 1 && is_interval(found[0]) && is_empty(of_axis) && is_empty(found[2]) &&
+               geometry == none) {
+      columns.forms[axis] = BoundsForm::flat;
     } else if (problem.empty()) {
       problem = problem_of(of_axis, axis, names, columns.is_computed());
     }
   }
   if (problem.empty()) return {};
   columns = before;
-  if (const int geometry = first_of(names, geometry_names); geometry != none) {
+  if (geometry != none) {
     columns.has_geometry = true;
     place(geometry, BoxColumns::geometry);
     return {};
   }
-  if (!resolve_points(found, columns))
-    return is_interval(found[0])
-               ? fmt::format(
-                     "columns {} and {} are intervals, on one axis: add min_y and max_y, both 0 or "
-                     "the number of the interval's group",
-                     shown(names[static_cast<std::size_t>(of(found[0], Role::begin))]),
-                     shown(names[static_cast<std::size_t>(of(found[0], Role::end))]))
-               : problem;
+  if (!resolve_points(found, columns)) return problem;
   // A z beside other columns need not belong to a point.
   return point_of(found[2]) == none ? problem_of(found[2], 2, names, true) : "";
 }

@@ -50,6 +50,7 @@ enum class BoundsForm : std::uint8_t {
   centre_half_size,
   centre_radius,  ///< the second one is BoxColumns::radius, the same for all axes
   point,          ///< only the first one
+  flat,           ///< none: 0, on the y axis of intervals
   bottom_top      ///< minimum and maximum, or the reverse: settle_top() decides by the data
 };
 
@@ -68,13 +69,16 @@ inline std::pair<double, double> bounds_of(BoundsForm form, double first, double
       return {first - second, first + second};
     case BoundsForm::point:
       return {first, first};
+    case BoundsForm::flat:
+      return {0, 0};
   }
   return {first, second};
 }
 
 /// Whether bounds in this form are computed rather than read.
 constexpr bool computes_bounds(BoundsForm form) noexcept {
-  return form != BoundsForm::min_max && form != BoundsForm::bottom_top && form != BoundsForm::point;
+  return form != BoundsForm::min_max && form != BoundsForm::bottom_top && form != BoundsForm::point &&
+         form != BoundsForm::flat;
 }
 
 /// The columns of a table.

@@ -58,9 +58,7 @@ constexpr auto unread_formats = std::to_array<UnreadFormat>({
      "for k in "
      "('xmin', 'ymin', 'xmax', 'ymax')), sep=',') for b in E.parse('IN').iter('bndbox')]\" > out.csv"},
     {"intervals of a genome (BED)", ".bed ", "",
-     "awk -v OFS=, 'NR == 1 {print \"id,min_x,min_y,max_x,max_y\"} !($1 in n) {n[$1] = NR} {print NR - 1, "
-     "$2, "
-     "n[$1], $3 - 1, n[$1]}' IN > out.csv"},
+     "awk -v OFS=, 'NR == 1 {print \"chrom,start,end\"} {print $1, $2, $3}' IN > out.csv"},
     {"a pickle of Python", ".pkl .pickle ", "",
      "python3 -c \"import pickle, numpy; numpy.save('out.npy', pickle.load(open('IN', 'rb')))\""},
     {"a spreadsheet", ".xls ", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", office},

@@ -98,10 +98,47 @@ static void try_floats(void) {
     expect(status == BROADSIDE_INVALID_ARGUMENT, "right radii of one set", &error);
   }
 
+  {
+    /* Intervals that touch: closed, and then half-open. */
+    const double starts[3] = {3000000000.0, 3000000001.0, INFINITY};
+    const double ends[3] = {3000000001.0, 3000000002.0, -INFINITY};
+    double rows[12];
+    const broadside_boxes intervals = broadside_intervals(starts, ends, 3, rows);
+    broadside_find_options options;
+    broadside_find_options_init(&options);
+    status = broadside_count_pairs(&intervals, NULL, NULL, &count, &error);
+    expect(status == BROADSIDE_OK && count == 1, "intervals", &error);
+    options.leaves_out_touching = 1;
+    status = broadside_count_pairs(&intervals, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_OK && count == 0, "half-open intervals", &error);
+  }
+
   bodies[2].box[0] = NAN;
   status = broadside_count_pairs(&boxes, NULL, NULL, &count, &error);
   expect(status == BROADSIDE_INVALID_INPUT && error.index == 2 && strstr(error.message, "box 2") != NULL,
          "an invalid box", &error);
+}
+
+static void try_owners(void) {
+  /* Two boxes of car 7 touch the wall 9; then one, then none. */
+  const broadside_owner_pair pairs[2] = {{7, 9}, {9, 7}};
+  broadside_error error = {BROADSIDE_OK, 0, ""};
+  broadside_owner_events events;
+  broadside_owner_pairs* cars = NULL;
+  broadside_status status = broadside_owner_pairs_create(BROADSIDE_C_API_VERSION, &cars, &error);
+  expect(status == BROADSIDE_OK, "owners", &error);
+  status = broadside_owner_pairs_update(cars, pairs, 2, NULL, 0, &events, &error);
+  expect(status == BROADSIDE_OK && events.begun_count == 1 && events.begun[0].first == 7, "owners begin",
+         &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 1, &events, &error);
+  expect(status == BROADSIDE_OK && events.ended_count == 0, "one pair of boxes is left", &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 2, &events, &error);
+  expect(status == BROADSIDE_INVALID_FRAME && strstr(error.message, "owners 7 and 9 have 1 pairs") != NULL,
+         "more end than begin", &error);
+  status = broadside_owner_pairs_update(cars, NULL, 0, pairs, 1, &events, &error);
+  expect(status == BROADSIDE_OK && events.ended_count == 1 && events.ended[0].second == 9, "owners end",
+         &error);
+  broadside_owner_pairs_destroy(cars);
 }
 
 static void try_world(void) {
@@ -134,6 +171,7 @@ static void try_world(void) {
 
 int main(void) {
   try_floats();
+  try_owners();
   try_world();
   return failures == 0 ? 0 : 1;
 }

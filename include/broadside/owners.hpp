@@ -1,0 +1,145 @@
+// OwnerPairs: from the pairs of boxes to the pairs of their owners, such as bodies made of several boxes.
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadside/error.hpp"
+#include "broadside/pair.hpp"
+
+namespace broadside {
+
+/// Two owners, first < second. An owner is a number of yours.
+struct OwnerPair {
+  std::uint64_t first;
+  std::uint64_t second;
+
+  friend constexpr auto operator<=>(const OwnerPair&, const OwnerPair&) = default;
+};
+
+/// The pairs of owners that began and that ended, each once and sorted. Valid until the next update.
+struct OwnerEvents {
+  std::span<const OwnerPair> begun;
+  std::span<const OwnerPair> ended;
+};
+
+/// Tells which pairs of owners touch, from the pairs of boxes that begin and end: two owners touch while at
+/// least one box of each touches a box of the other. Boxes of one owner never count as a pair;
+/// filters_of_keys(KeyRule::different, owners) also keeps a search from finding them. Its memory and the cost
+/// of pairs() follow the pairs of owners, the cost of an update the events.
+///
+/// With a world, the owner of a box is its user data:
+///
+///     const Events events = world.update();
+///     const OwnerEvents of_cars = cars.update(events.begun_data, events.ended_data);
+///
+/// With a tracker, or for the pairs of one search, the owners are an array with one for each box:
+///
+///     cars.update(begun, ended, owners);
+///     cars.update(find_pairs(boxes), {}, owners);
+///
+/// A box that is removed ends its pairs, as its world or tracker tells. Its owner must be the same as when
+/// its pairs began.
+class OwnerPairs {
+ public:
+  /// Takes the owners of the boxes of the pairs that began and ended since the last update, in any order.
+  /// Each has a `first` and a `second`, as UserDataPair. Throws InvalidFrame if a pair of owners would end
+  /// more often than it began. Then nothing has changed.
+  template <typename Pairs>
+  OwnerEvents update(const Pairs& begun, const Pairs& ended) {
+    changes_.clear();
+    append(begun, +1, [](std::uint64_t owner) { return owner; });
+    append(ended, -1, [](std::uint64_t owner) { return owner; });
+    return apply();
+  }
+
+  /// The same for pairs of boxes, where owners[i] is the owner of box i. Also throws InvalidFrame if a pair
+  /// has a box without an owner.
+  OwnerEvents update(std::span<const Pair> begun, std::span<const Pair> ended,
+                     std::span<const std::uint64_t> owners) {
+    const auto owner_of = [owners](BoxId box) {
+      if (index(box) >= owners.size())
+        throw InvalidFrame("owners has " + std::to_string(owners.size()) + " elements, and box " +
+                           std::to_string(index(box)) + " is in a pair; expected one for each box");
+      return owners[index(box)];
+    };
+    changes_.clear();
+    append(begun, +1, owner_of);
+    append(ended, -1, owner_of);
+    return apply();
+  }
+
+  /// The pairs of owners that touch now, sorted.
+  [[nodiscard]] std::vector<OwnerPair> pairs() const {
+    std::vector<OwnerPair> all;
+    all.reserve(counts_.size());
+    for (const auto& [pair, count] : counts_) all.push_back(pair);
+    return all;
+  }
+
+  /// How many pairs of owners touch now.
+  [[nodiscard]] std::size_t size() const noexcept { return counts_.size(); }
+
+ private:
+  using Change = std::pair<OwnerPair, std::int64_t>;
+
+  template <typename Pairs, typename OwnerOf>
+  void append(const Pairs& pairs, std::int64_t by, const OwnerOf& owner_of) {
+    for (const auto& pair : pairs) {
+      const std::uint64_t a = owner_of(pair.first);
+      const std::uint64_t b = owner_of(pair.second);
+      if (a != b) changes_.push_back({{std::min(a, b), std::max(a, b)}, by});
+    }
+  }
+
+  /// Makes one change of each pair of owners, checks all, and then takes them.
+  OwnerEvents apply() {
+    std::sort(changes_.begin(), changes_.end());
+    std::size_t merged = 0;
+    for (const Change& change : changes_) {
+      if (merged > 0 && changes_[merged - 1].first == change.first)
+        changes_[merged - 1].second += change.second;
+      else
+        changes_[merged++] = change;
+    }
+    changes_.resize(merged);
+    begun_.clear();
+    ended_.clear();
+    for (const auto& [pair, by] : changes_) {
+      const auto found = counts_.find(pair);
+      const std::int64_t before = found == counts_.end() ? 0 : found->second;
+      if (before + by < 0)
+        throw InvalidFrame("boxes of the owners " + std::to_string(pair.first) + " and " +
+                           std::to_string(pair.second) + " have " + std::to_string(before) + " pairs, and " +
+                           std::to_string(-by) + " more end than begin; expected pairs that began");
+      if (before == 0 && by > 0) begun_.push_back(pair);
+      if (before > 0 && before + by == 0) ended_.push_back(pair);
+    }
+    std::size_t taken = 0;
+    try {
+      for (; taken < begun_.size(); ++taken) counts_.emplace(begun_[taken], 0);
+    } catch (...) {  // out of memory
+      for (std::size_t i = 0; i < taken; ++i) counts_.erase(begun_[i]);
+      throw;
+    }
+    for (const auto& [pair, by] : changes_) {
+      if (by != 0) counts_.find(pair)->second += by;
+    }
+    for (const OwnerPair& pair : ended_) counts_.erase(pair);
+    return {begun_, ended_};
+  }
+
+  std::map<OwnerPair, std::int64_t> counts_;  // how many pairs of boxes each pair of owners has; never 0
+  std::vector<Change> changes_;
+  std::vector<OwnerPair> begun_;
+  std::vector<OwnerPair> ended_;
+};
+
+}  // namespace broadside
