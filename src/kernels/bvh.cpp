@@ -88,15 +88,19 @@ std::uint32_t near(const Block<D>& node, const DistanceQuery<D>& query, float li
     for (int axis = 0; axis < D; ++axis) {
       const FloatVector min = load(node.min[axis], at);
       const FloatVector max = load(node.max[axis], at);
-      const FloatVector low = all(query.point.min[axis]);
-      const FloatVector high = all(query.point.max[axis]);
+      const FloatVector low = all(query.box.min[axis]);
+      const FloatVector high = all(query.box.max[axis]);
       // Selected so that the difference of equal infinities is never used.
       const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
       const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
       const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
       sum = hn::Add(sum, hn::Mul(weighted, weighted));
     }
-    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.max)), all(query.share)), all(query.allowance));
+    // Less than rounding to floats may have added: a share of a normal number, or a subnormal number.
+    constexpr float share = 1 - 0x1p-18f;
+    constexpr float max = std::numeric_limits<float>::max();
+    constexpr float allowance = std::numeric_limits<float>::min();
+    sum = hn::Sub(hn::Mul(hn::Min(sum, all(max)), all(share)), all(allowance));
     hn::StoreU(sum, Floats(), result.data() + at);
     bits |= bits_of(hn::Le(sum, all(limit))) << at;
   }

@@ -50,15 +50,12 @@ struct CastQuery {
   bool exact;                      ///< whether boxes are tested by the definition, with divisions
 };
 
-/// A query for squared distances from a point, given as a box that contains it: the sum of the squares of the
-/// weighted gaps on the axes, at most `max`, times `share`, less `allowance`.
+/// A query for lower bounds of squared distances from a box: of the sum of the squares of the weighted gaps
+/// on the axes.
 template <int D>
 struct DistanceQuery {
-  Box<D> point;
-  std::array<float, D> weight;
-  float share = 1;
-  float allowance = 0;
-  float max = 0;
+  Box<D> box;
+  std::array<float, D> weight;  ///< at most 1
 };
 
 /// Writes the boxes that overlap `box`; returns false if take() ended the search. The tree must have a root.
@@ -75,7 +72,8 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Sets `distances` to the squared distances of the node's children, as `query` defines them. Returns a bit
+/// Sets `distances` to lower bounds of the squared distances of the node's children, finite and at most some
+/// 2^-18 below the sums as floats. Returns a bit
 /// for each child that is not farther away than `limit`; those of places without a child mean nothing.
 template <int D>
 std::uint32_t near_children(const Block<D>& node, const DistanceQuery<D>& query, float limit,

@@ -117,7 +117,7 @@ TEST(BoxIndex, AnswersNothingBeforeAnUpdateAndWithoutBoxes) {
   const std::vector<Box2> absent(40, absent_box<2>());
   index.update({.boxes = absent, .changed = {}});
   EXPECT_THAT(overlapping(index, everything), IsEmpty());
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   index.nearest({0, 0}, 3, found);
   EXPECT_THAT(found, IsEmpty());
 }
@@ -207,22 +207,22 @@ TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
   const std::vector<Box2> boxes(300, Box2{{5, 0}, {6, 1}});
   auto index = index_of(boxes);
   EXPECT_EQ(index.first_hit(Ray<2>{{0, 0.5f}, {1, 0}}), (Hit<float>{BoxId(0), 5}));
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   index.nearest({3, 0}, 3, found);
-  EXPECT_THAT(found, ElementsAre(Neighbour<float>{BoxId(0), 4}, Neighbour<float>{BoxId(1), 4},
-                                 Neighbour<float>{BoxId(2), 4}));
+  EXPECT_THAT(found, ElementsAre(Neighbour{BoxId(0), 4}, Neighbour{BoxId(1), 4},
+                                 Neighbour{BoxId(2), 4}));
 }
 
 /// The boxes of which the distance to a point is at most `max_distance`, by the definition.
 template <int D, typename Real>
-std::vector<Neighbour<Real>> within(const std::vector<Box<D, Real>>& boxes, const Point<D, Real>& point,
+std::vector<Neighbour> within(const std::vector<Box<D, Real>>& boxes, const Point<D, Real>& point,
                                     Real max_distance) {
-  std::vector<Neighbour<Real>> found;
+  std::vector<Neighbour> found;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Real squared = distance_squared(point, boxes[i]);
     if (squared <= max_distance * max_distance) found.push_back({BoxId(i), squared});
   }
-  std::ranges::stable_sort(found, {}, &Neighbour<Real>::distance_squared);
+  std::ranges::stable_sort(found, {}, &Neighbour::distance_squared);
   return found;
 }
 
@@ -269,7 +269,7 @@ TEST(BoxIndex, FindsABoxThatIsExactlyAsFarAsTheGreatestDistance) {
   EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = 5}).size(), 2U);
   EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = std::nextafter(5.0f, 0.0f)}).size(), 1U);
   EXPECT_EQ(index.nearest({tenth, 0.5f}, 9, {.max_distance = 0}),
-            (std::vector{Neighbour<float>{BoxId(0), 0}}));
+            (std::vector{Neighbour{BoxId(0), 0}}));
 }
 
 TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
@@ -279,13 +279,13 @@ TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
   index.update({.boxes = row(6), .changed = {}, .filters = filters});
   const Filter filter{.mask = 1};
   EXPECT_THAT(index.nearest({0, 0}, 9, {.filter = &filter, .except = BoxId(2), .max_distance = 6}),
-              ElementsAre(Neighbour<float>{BoxId(1), 4}, Neighbour<float>{BoxId(3), 36}));
+              ElementsAre(Neighbour{BoxId(1), 4}, Neighbour{BoxId(3), 36}));
 }
 
 TEST(BoxIndex, HandsTheNearestToAFunctionUntilItEnds) {
   const auto index = index_of(row(100));
   std::vector<BoxId> found;
-  const bool is_whole = index.nearest({0, 0}, 90, [&found](const Neighbour<float>& one) {
+  const bool is_whole = index.nearest({0, 0}, 90, [&found](const Neighbour& one) {
     found.push_back(one.box);
     return found.size() < 3;
   });
@@ -310,7 +310,7 @@ TEST(BoxIndex, TakesTheFilterAndTheBoxLeftOutInEveryQuery) {
 TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   const auto index = index_of(row(3));
   const auto ignore = [](auto) {};
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   const Ray<2> good{{0, 0}, {1, 0}};
   Ray<2> bad = good;
   bad.origin[1] = infinity;

@@ -27,7 +27,7 @@ void PrintTo(const Hit<Real>& hit, std::ostream* out) {
 }
 
 template <typename Real>
-void PrintTo(const Neighbour<Real>& neighbour, std::ostream* out) {
+void PrintTo(const Neighbour& neighbour, std::ostream* out) {
   *out << "box " << index(neighbour.box) << " at the square of " << std::sqrt(neighbour.distance_squared);
 }
 
@@ -202,15 +202,15 @@ class QueryLaw : public testing::Test {
                       const Filter* filter, std::optional<BoxId> except, Counts counts) {
     const std::size_t count = rng_.one_in(10) ? boxes.size() : rng_.below(12);
     const Real max_distance = any_distance(boxes, point);
-    std::vector<Neighbour<Real>> expected;
+    std::vector<Neighbour> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!counts(i)) continue;
       const Real distance = distance_squared(point, boxes[i]);
       if (distance <= max_distance * max_distance) expected.push_back({BoxId(i), distance});
     }
-    std::ranges::stable_sort(expected, {}, &Neighbour<Real>::distance_squared);
+    std::ranges::stable_sort(expected, {}, &Neighbour::distance_squared);
     if (expected.size() > count) expected.resize(count);
-    std::vector<Neighbour<Real>> found = {{BoxId(7), 7}};
+    std::vector<Neighbour> found = {{BoxId(7), 7}};
     index.nearest(point, count, found, {filter, except, max_distance});
     EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point) << " within "
                                << max_distance;

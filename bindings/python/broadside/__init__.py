@@ -28,7 +28,7 @@ from broadside._pairs import (
     pairs,
 )
 from broadside._partition import Assignment, Partition
-from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
+from broadside._queries import FirstHits, Found, Hits, Index, Neighbours, nearest_pairs
 
 __all__ = [
     "Advice",
@@ -61,6 +61,7 @@ __all__ = [
     "filters",
     "find_pairs_batch",
     "invalid_rows",
+    "nearest_pairs",
     "pairs",
     "read",
 ]

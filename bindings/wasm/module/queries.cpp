@@ -12,7 +12,7 @@ namespace {
 
 /// The results of the last query: ids, which are slots in a world.
 std::vector<BoxId> ids;
-std::vector<Neighbour<float>> neighbours;
+std::vector<Neighbour> neighbours;
 
 // The results that JavaScript reads.
 std::vector<double> handles;
@@ -114,7 +114,7 @@ broadside_status query_nearest(bool is_world, void* address, const Filter* filte
       is_world, address, except, [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
         index.nearest(point_at(0), k, neighbours, {filter, left_out, static_cast<float>(max_distance)});
         distances.clear();
-        for (const Neighbour<float>& neighbour : neighbours) {
+        for (const Neighbour& neighbour : neighbours) {
           ids.push_back(neighbour.box);
           distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
         }

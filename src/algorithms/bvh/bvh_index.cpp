@@ -8,8 +8,12 @@
 #include <limits>
 #include <utility>
 
+#include "algorithms/bvh/box_order.hpp"
+#include "algorithms/bvh/bvh_packer.hpp"
 #include "algorithms/bvh/query_results.hpp"
 #include "core/input_check.hpp"
+#include "core/message.hpp"
+#include "core/parallel.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -177,16 +181,16 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   return found.best;
 }
 
+/// Offers to `found` all boxes that may be among the nearest to `box`, which is present. The tree has a root.
 template <int D, typename Real>
-bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                                     Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const {
-  if (is_empty()) return true;
+void BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box, const QueryOptions& options,
+                                       NearestBoxes& found) const {
+  // What the kernel computes in float must not exceed the definition's distances.
   kernels::DistanceQuery<D> query;
   query.weight.fill(1);
-  query.point = in_tree(Box<D, Real>{point, point});
-  query.max = std::numeric_limits<float>::infinity();
-  Real unit = 1;                    // the caller's squared distance 1, in the tree
-  if constexpr (!is_float<Real>) {  // distances in the tree must not exceed the true ones
+  query.box = in_tree(box);
+  double unit = 1;  // the caller's squared distance 1, in the tree
+  if constexpr (!is_float<Real>) {
     // Beyond this limit, the definition's squares may overflow or lose their last places.
     constexpr int max_exponent = 400;
     int exponent = max_exponent;
@@ -194,19 +198,10 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
     exponent = std::max(exponent, -max_exponent);
     for (int axis = 0; axis < D; ++axis)
       query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
-    unit = std::ldexp(Real{1}, 2 * exponent);
-    query.max = std::numeric_limits<float>::max();
-    query.share = 1 - 0x1p-18f;
-    query.allowance = std::numeric_limits<float>::min();
+    unit = std::ldexp(1.0, 2 * exponent);
   }
-  NearestBoxes<Real> found(count, max_distance_squared);
   // Beyond this, a node or box in the tree is farther away than the farthest of those found.
-  const auto limit_in_tree = [&] {
-    if constexpr (is_float<Real>)
-      return found.limit();
-    else
-      return rounded_up(found.limit() * unit);
-  };
+  const auto limit_in_tree = [&] { return rounded_up(found.limit() * unit); };
   struct PendingNode {
     float distance;
     std::uint32_t number;
@@ -240,13 +235,107 @@ bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real
       const std::uint32_t child = node.id[i];
       if (!may_find(BoxId{child}, options)) continue;
       if constexpr (is_float<Real>)
-        found.offer({BoxId{child}, distances[i]});
+        found.offer({BoxId{child}, squared_distance<D, Real>(box, node.box(i))});
       else
-        found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
+        found.offer({BoxId{child}, squared_distance<D, Real>(box, exact_[child])});
     }
   }
-  const std::span<const Neighbour<Real>> nearest = found.sorted();
+}
+
+template <int D, typename Real>
+bool BvhIndex<D, Real>::find_nearest(const Box<D, Real>& box, std::size_t count, double max_distance_squared,
+                                     Visitor<Neighbour>& visitor, const QueryOptions& options) const {
+  if (is_empty()) return true;
+  NearestBoxes found(count, max_distance_squared);
+  search_nearest(box, options, found);
+  const std::span<const Neighbour> nearest = found.sorted();
   return nearest.empty() || visitor.visit(nearest);
+}
+
+namespace {
+
+/// The queries in an order in which neighbours in space follow one another: that of a packed tree's leaves.
+template <int D>
+std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, core::Parallel& parallel) {
+  std::vector<std::uint32_t> order;
+  order.reserve(queries.size());
+  std::vector<Box<D>> boxes;
+  for (const NumberedBox<D>& query : queries) boxes.push_back(query.box);
+  BvhPacker<D> packer;
+  packer.pack(boxes, parallel);
+  const kernels::TreeLevel<D>& places = packer.tree().levels[0];
+  for (std::size_t place = 0; place < places.size; ++place) {
+    if (places.min[0][place] <= places.max[0][place])  // not a place without a box
+      order.push_back(queries[index(packer.tree().id[place])].number);
+  }
+  return order;
+}
+
+/// The greatest distance from a point of `from` to `to`: if a box is at distance d from `from`, it is at most
+/// at this distance and d from `to`.
+template <int D, typename Real>
+double way_between(const Box<D, Real>& from, const Box<D, Real>& to) {
+  double sum = 0;
+  for (int axis = 0; axis < D; ++axis) {
+    const double before = double{to.min[axis]} - double{from.min[axis]};
+    const double behind = double{from.max[axis]} - double{to.max[axis]};
+    const double way = std::max({0.0, before, behind});  // 0 if all of these are NaN: equal infinities
+    sum += way * way;
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
+                                             std::span<BoxId> found, std::span<double> distances_squared,
+                                             const NearestOfEachOptions& options) const {
+  std::vector<NumberedBox<D>> queries;
+  queries.reserve(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D, Real> box = boxes[i];
+    if (!is_present(box) && !is_absent(box))
+      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
+    if (is_present(box)) queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
+  }
+  std::fill(found.begin(), found.end(), no_box);
+  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
+  if (is_empty() || queries.empty()) return;
+
+  const double max_squared = options.max_distance * options.max_distance;
+  core::Parallel parallel;
+  parallel.start(options.workers, queries.size());
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, parallel);
+  parallel.for_ranges(order.size(), [&](core::Range range, std::size_t worker) {
+    Checkpoint* const checkpoint = parallel.checkpoint(worker);
+    double reached = std::numeric_limits<double>::infinity();  // the distance within which the last query
+    Box<D, Real> last{};                                       // found one box more than it was to find
+    for (std::size_t at = range.begin; at < range.end; ++at) {
+      const std::uint32_t number = order[at];
+      const Box<D, Real> box = boxes[number];
+      // One box more than asked for, so that the one left out, which is no neighbour, is among them or is not
+      // needed. So all queries search for the same number of boxes, and each bounds the next one.
+      // The margins are for roundings, and for squares that lose their last places near 0.
+      const double bound = (reached + way_between(last, box)) * (1 + 0x1p-40) + 0x1p-500;
+      QueryOptions eligible;
+      if (!options.filters.empty()) eligible.filter = &options.filters[number];
+      const BoxId except = options.except.empty() ? no_box : options.except[number];
+      NearestBoxes nearest(count + 1, std::min(max_squared, bound * bound));
+      search_nearest(box, eligible, nearest);
+      const std::span<const Neighbour> sorted = nearest.sorted();
+      std::size_t to = number * count;
+      for (const Neighbour& one : sorted) {
+        if (one.box == except || to == (number + 1) * count) continue;
+        found[to] = one.box;
+        distances_squared[to++] = one.distance_squared;
+      }
+      last = box;
+      reached = options.filters.empty() && sorted.size() > count ? std::sqrt(sorted.back().distance_squared)
+                                                                 : std::numeric_limits<double>::infinity();
+      if (checkpoint != nullptr) checkpoint->count(16 * (fan_out + count));
+    }
+  });
 }
 
 template class BvhIndex<2, float>;

@@ -23,16 +23,18 @@ inline constexpr bool is_float = std::is_same_v<Real, float>;
 
 /// distance_squared() for code that is in a DefaultEnvironment already.
 template <int D, typename Real>
-Real squared_distance(const Point<D, Real>& point, const Box<D, Real>& box) noexcept {
-  Real sum = 0;
+double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
+  double sum = 0;
   for (int axis = 0; axis < D; ++axis) {
-    Real outside = 0;
-    if (point[axis] < box.min[axis]) outside = box.min[axis] - point[axis];
-    if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
-    sum += outside * outside;
+    double gap = 0;
+    if (a.max[axis] < b.min[axis]) gap = double{b.min[axis]} - double{a.max[axis]};
+    if (b.max[axis] < a.min[axis]) gap = double{a.min[axis]} - double{b.max[axis]};
+    sum += gap * gap;
   }
   return sum;
 }
+
+class NearestBoxes;
 
 /// The kernels search floats exactly. Boxes of doubles are in the tree as floats about an origin, by
 /// conservative rounding; what the kernels find is tested again in double, by the queries' definitions.
@@ -62,8 +64,10 @@ class BvhIndex {
   bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                  const QueryOptions& options) const;
   std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast, const QueryOptions& options) const;
-  bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                    Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const;
+  bool find_nearest(const Box<D, Real>& box, std::size_t count, double max_distance_squared,
+                    Visitor<Neighbour>& visitor, const QueryOptions& options) const;
+  void find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
+                            std::span<double> distances_squared, const NearestOfEachOptions& options) const;
 
   std::size_t bytes() const noexcept {
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
@@ -101,6 +105,7 @@ class BvhIndex {
   }
 
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
+  void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
 
   DynamicBvh<D> tree_;
   std::vector<Box<D, Real>> exact_;  // by id; only for doubles

@@ -75,39 +75,38 @@ class FirstHit final : public kernels::FoundBoxes {
 };
 
 /// The nearest boxes so far: a max-heap of at most `count` boxes, on the stack while it is small.
-template <typename Real>
 class NearestBoxes {
  public:
-  NearestBoxes(std::size_t count, Real max_distance_squared)
+  NearestBoxes(std::size_t count, double max_distance_squared)
       : count_(count), max_distance_squared_(max_distance_squared) {}
 
   /// A box with a greater squared distance is not among the nearest.
-  Real limit() const noexcept {
+  double limit() const noexcept {
     return size_ < count_ ? max_distance_squared_ : heap_.front().distance_squared;
   }
 
-  void offer(const Neighbour<Real>& one) {
+  void offer(const Neighbour& one) {
     if (!(one.distance_squared <= max_distance_squared_)) return;
     if (size_ == count_) {
       if (!is_before(one, heap_.front())) return;
-      const std::span<Neighbour<Real>> heap = heap_.first(size_--);
+      const std::span<Neighbour> heap = heap_.first(size_--);
       std::pop_heap(heap.begin(), heap.end(), is_before);
     }
     if (size_ == heap_.size()) grow();
     heap_[size_++] = one;
-    const std::span<Neighbour<Real>> heap = heap_.first(size_);
+    const std::span<Neighbour> heap = heap_.first(size_);
     std::push_heap(heap.begin(), heap.end(), is_before);
   }
 
   /// All of them, the nearest first. This destroys the heap.
-  std::span<const Neighbour<Real>> sorted() {
-    const std::span<Neighbour<Real>> heap = heap_.first(size_);
+  std::span<const Neighbour> sorted() {
+    const std::span<Neighbour> heap = heap_.first(size_);
     std::sort_heap(heap.begin(), heap.end(), is_before);
     return heap;
   }
 
  private:
-  static bool is_before(const Neighbour<Real>& a, const Neighbour<Real>& b) noexcept {
+  static bool is_before(const Neighbour& a, const Neighbour& b) noexcept {
     return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
   }
 
@@ -118,11 +117,11 @@ class NearestBoxes {
   }
 
   std::size_t count_;
-  Real max_distance_squared_;
+  double max_distance_squared_;
   std::size_t size_ = 0;
-  std::array<Neighbour<Real>, 64> few_;
-  std::vector<Neighbour<Real>> many_;
-  std::span<Neighbour<Real>> heap_ = few_;
+  std::array<Neighbour, 64> few_;
+  std::vector<Neighbour> many_;
+  std::span<Neighbour> heap_ = few_;
 };
 
 }  // namespace broadside::algorithm

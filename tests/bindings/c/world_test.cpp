@@ -116,7 +116,7 @@ TEST_F(CWorld, AnswersQueriesAsTheClassBehindIt) {
       EXPECT_EQ(hit.t_enter, first->t_enter);
     }
 
-    std::vector<HandleNeighbour<float>> near;
+    std::vector<HandleNeighbour> near;
     model.nearest(asked.min, 3, near);
     broadside_neighbour neighbours[3];
     ASSERT_EQ(broadside_world_nearest(world_, &asked.min, nullptr, neighbours, 3, &count, &error_),
