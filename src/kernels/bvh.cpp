@@ -79,32 +79,78 @@ bool overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found) {
   });
 }
 
+/// A box to measure distances from, in every lane.
 template <int D>
-std::uint32_t near(const Block<D>& node, const DistanceQuery<D>& query, float limit,
-                   std::array<float, fan_out>& result) {
-  std::uint32_t bits = 0;
-  for (std::size_t at = 0; at < fan_out; at += lanes) {
-    FloatVector sum = hn::Zero(Floats());
+class DistanceFrom {
+ public:
+  HWY_INLINE explicit DistanceFrom(const DistanceQuery<D>& query) {
     for (int axis = 0; axis < D; ++axis) {
-      const FloatVector min = load(node.min[axis], at);
-      const FloatVector max = load(node.max[axis], at);
-      const FloatVector low = all(query.box.min[axis]);
-      const FloatVector high = all(query.box.max[axis]);
-      // Selected so that the difference of equal infinities is never used.
-      const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
-      const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
-      const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
-      sum = hn::Add(sum, hn::Mul(weighted, weighted));
+      low_[axis] = all(query.box.min[axis]);
+      high_[axis] = all(query.box.max[axis]);
+      weight_[axis] = all(query.weight[axis]);
     }
-    // Less than rounding to floats may have added: a share of a normal number, or a subnormal number.
-    constexpr float share = 1 - 0x1p-18f;
-    constexpr float max = std::numeric_limits<float>::max();
-    constexpr float allowance = std::numeric_limits<float>::min();
-    sum = hn::Sub(hn::Mul(hn::Min(sum, all(max)), all(share)), all(allowance));
-    hn::StoreU(sum, Floats(), result.data() + at);
-    bits |= bits_of(hn::Le(sum, all(limit))) << at;
   }
-  return bits;
+
+  /// Which children from `at` on are within the squared distance `limit`. Sets `sum` to the distances.
+  HWY_INLINE FloatMask within(const Block<D>& node, std::size_t at, float limit, FloatVector& sum) const {
+    sum = hn::Zero(Floats());
+    FloatMask is_there = hn::Le(load(node.min[0], at), load(node.max[0], at));
+    for (int axis = 0; axis < D; ++axis) {
+      const FloatVector gap = hn::Max(hn::Sub(load(node.min[axis], at), high_[axis]),
+                                      hn::Sub(low_[axis], load(node.max[axis], at)));
+      // The difference of equal infinities is NaN, and the other difference then not positive.
+      const FloatVector weighted =
+          hn::Mul(hn::IfThenElseZero(hn::Gt(gap, hn::Zero(Floats())), gap), weight_[axis]);
+      sum = hn::MulAdd(weighted, weighted, sum);
+    }
+    return hn::And(is_there, hn::Le(sum, all(limit)));
+  }
+
+ private:
+  FloatVector low_[D];
+  FloatVector high_[D];
+  FloatVector weight_[D];
+};
+
+template <int D>
+void near(const BvhView<D>& tree, const DistanceQuery<D>& query, NearLeaves<D>& found) {
+  const DistanceFrom<D> from(query);
+  const auto take = [&](const Block<D>& leaf) HWY_ATTR {
+    std::uint32_t bits = 0;
+    FloatVector sum;
+    for (std::size_t at = 0; at < fan_out; at += lanes)
+      bits |= bits_of(from.within(leaf, at, found.limit, sum)) << at;
+    if (bits != 0) found.take(leaf, bits);
+  };
+  const Block<D>* const first = found.first;
+  if (first != nullptr) take(*first);
+  alignas(64) std::uint32_t waiting[(longest_path + 2) * fan_out];
+  alignas(64) float distances[(longest_path + 2) * fan_out];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  distances[0] = 0;
+  while (count > 0) {
+    if (!(distances[--count] <= found.limit)) continue;
+    const std::uint32_t number = waiting[count];
+    const Block<D>& node = tree.nodes[number & ~leaf_bit];
+    if ((number & leaf_bit) != 0) {
+      if (&node != first) take(node);
+      continue;
+    }
+    const std::size_t begin = count;
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
+      FloatVector sum;
+      const FloatMask mask = from.within(node, at, found.limit, sum);
+      count += append_entries(node, at, mask, sum, waiting + count, distances + count);
+    }
+    if (count == begin) continue;
+    std::size_t nearest = begin;
+    for (std::size_t i = begin + 1; i < count; ++i) {
+      if (distances[i] < distances[nearest]) nearest = i;
+    }
+    std::swap(waiting[nearest], waiting[count - 1]);
+    std::swap(distances[nearest], distances[count - 1]);
+  }
 }
 
 }  // namespace
@@ -160,14 +206,12 @@ bool find_overlapping(const BvhView<3>& tree, const Box<3>& box, FoundBoxes& fou
   return HWY_DYNAMIC_DISPATCH(overlapping_3)(tree, box, found);
 }
 template <>
-std::uint32_t near_children(const Block<2>& node, const DistanceQuery<2>& query, float limit,
-                            std::array<float, fan_out>& result) {
-  return HWY_DYNAMIC_DISPATCH(near_2)(node, query, limit, result);
+void find_near(const BvhView<2>& tree, const DistanceQuery<2>& query, NearLeaves<2>& found) {
+  HWY_DYNAMIC_DISPATCH(near_2)(tree, query, found);
 }
 template <>
-std::uint32_t near_children(const Block<3>& node, const DistanceQuery<3>& query, float limit,
-                            std::array<float, fan_out>& result) {
-  return HWY_DYNAMIC_DISPATCH(near_3)(node, query, limit, result);
+void find_near(const BvhView<3>& tree, const DistanceQuery<3>& query, NearLeaves<3>& found) {
+  HWY_DYNAMIC_DISPATCH(near_3)(tree, query, found);
 }
 
 }  // namespace broadside::kernels

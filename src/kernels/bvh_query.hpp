@@ -50,12 +50,28 @@ struct CastQuery {
   bool exact;                      ///< whether boxes are tested by the definition, with divisions
 };
 
-/// A query for lower bounds of squared distances from a box: of the sum of the squares of the weighted gaps
-/// on the axes.
+/// A query for what is near a box. A squared distance is the sum of the squares of the weighted gaps on the
+/// axes, computed in float.
 template <int D>
 struct DistanceQuery {
   Box<D> box;
-  std::array<float, D> weight;  ///< at most 1
+  std::array<float, D> weight;
+};
+
+/// Takes the boxes that a search finds near a query's box, leaf by leaf.
+template <int D>
+class NearLeaves {
+ public:
+  /// `near` has a bit for each box of the leaf whose squared distance is not greater than `limit`, which
+  /// take() may lower.
+  virtual void take(const Block<D>& leaf, std::uint32_t near) = 0;
+
+  float limit = 0;
+  const Block<D>* first = nullptr;  ///< a leaf of the tree to search before the others; may be null
+
+ protected:
+  NearLeaves() = default;
+  ~NearLeaves() = default;
 };
 
 /// Writes the boxes that overlap `box`; returns false if take() ended the search. The tree must have a root.
@@ -72,11 +88,9 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Sets `distances` to lower bounds of the squared distances of the node's children, finite and at most some
-/// 2^-18 below the sums as floats. Returns a bit
-/// for each child that is not farther away than `limit`; those of places without a child mean nothing.
+/// Calls found.take() for each leaf with a box whose squared distance is not greater than `found.limit`. Of a
+/// node's children, goes to the nearest one first.
 template <int D>
-std::uint32_t near_children(const Block<D>& node, const DistanceQuery<D>& query, float limit,
-                            std::array<float, fan_out>& distances);
+void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, NearLeaves<D>& found);
 
 }  // namespace broadside::kernels

@@ -90,6 +90,8 @@ TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
   EXPECT_THAT(found, ElementsAre(HandleNeighbour{near, 4}, HandleNeighbour{as_near, 4}));
   world.nearest({0, 0}, 9, found);
   EXPECT_EQ(found.back(), (HandleNeighbour{far, 25}));
+  EXPECT_THAT(world.nearest(Box2{{-1, 0}, {4, 0}}, 2),
+              ElementsAre(HandleNeighbour{near, 0}, HandleNeighbour{far, 1}));
 }
 
 template <int D, typename Real>
@@ -105,11 +107,11 @@ void expect_nearest_within() {
   world.remove(handles[4]);
   Point<D, Real> point;
   point.fill(5);
-  for (const Real max_distance : {Real(0), Real(0.3), Real(2), std::numeric_limits<Real>::infinity()}) {
+  for (const double max_distance : {0.0, 0.3, 2.0, std::numeric_limits<double>::infinity()}) {
     std::vector<HandleNeighbour> expected;
     for (const Handle handle : handles) {
       if (!world.contains(handle) || handle == handles[5]) continue;
-      const Real squared = distance_squared(point, world.box(handle));
+      const double squared = distance_squared(point, world.box(handle));
       if (squared <= max_distance * max_distance) expected.push_back({handle, squared});
     }
     std::ranges::stable_sort(expected, {}, &HandleNeighbour::distance_squared);

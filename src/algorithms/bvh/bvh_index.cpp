@@ -181,15 +181,16 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   return found.best;
 }
 
-/// Offers to `found` all boxes that may be among the nearest to `box`, which is present. The tree has a root.
+/// Offers to `found` all boxes that may be among the nearest to `box`, which is present; those of the leaf
+/// `first` before others, if that is not null. Returns the leaf of the nearest one, or null. The tree has a
+/// root.
 template <int D, typename Real>
-void BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box, const QueryOptions& options,
-                                       NearestBoxes& found) const {
-  // What the kernel computes in float must not exceed the definition's distances.
-  kernels::DistanceQuery<D> query;
+const kernels::Block<D>* BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box,
+                                                           const QueryOptions& options, NearestBoxes& found,
+                                                           const kernels::Block<D>* first) const {
+  kernels::DistanceQuery<D> query{in_tree(box), {}};
   query.weight.fill(1);
-  query.box = in_tree(box);
-  double unit = 1;  // the caller's squared distance 1, in the tree
+  double unit = 1;
   if constexpr (!is_float<Real>) {
     // Beyond this limit, the definition's squares may overflow or lose their last places.
     constexpr int max_exponent = 400;
@@ -200,46 +201,10 @@ void BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box, const QueryOptio
       query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
     unit = std::ldexp(1.0, 2 * exponent);
   }
-  // Beyond this, a node or box in the tree is farther away than the farthest of those found.
-  const auto limit_in_tree = [&] { return rounded_up(found.limit() * unit); };
-  struct PendingNode {
-    float distance;
-    std::uint32_t number;
-  };
-  const kernels::BvhView<D> tree = tree_.view();
-  std::array<PendingNode, (kernels::longest_path + 1) * fan_out> waiting;
-  std::array<float, fan_out> distances;
-  std::size_t waits = 1;
-  waiting[0] = {0, tree.root};
-  while (waits > 0) {
-    const auto [distance, number] = waiting[--waits];
-    if (!(distance <= limit_in_tree())) continue;
-    const kernels::Block<D>& node = tree.nodes[number & ~leaf_bit];
-    std::uint32_t near = kernels::near_children(node, query, limit_in_tree(), distances) &
-                         ((1U << tree_.child_count(number)) - 1);
-    if ((number & leaf_bit) == 0) {
-      const std::size_t begin = waits;
-      for (; near != 0; near &= near - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(near));
-        waiting[waits++] = {distances[i], node.id[i]};
-      }
-      // The nearest comes last, since the last one is taken next.
-      std::sort(waiting.data() + begin, waiting.data() + waits,
-                [](const PendingNode& a, const PendingNode& b) {
-                  return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
-                });
-      continue;
-    }
-    for (; near != 0; near &= near - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      const std::uint32_t child = node.id[i];
-      if (!may_find(BoxId{child}, options)) continue;
-      if constexpr (is_float<Real>)
-        found.offer({BoxId{child}, squared_distance<D, Real>(box, node.box(i))});
-      else
-        found.offer({BoxId{child}, squared_distance<D, Real>(box, exact_[child])});
-    }
-  }
+  NearestSearch<D, Real> search(*this, box, options, unit, found);
+  search.first = first;
+  kernels::find_near(tree_.view(), query, search);
+  return search.nearest_leaf;
 }
 
 template <int D, typename Real>
@@ -310,6 +275,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   parallel.for_ranges(order.size(), [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
     double reached = std::numeric_limits<double>::infinity();  // the distance within which the last query
+    const kernels::Block<D>* leaf = nullptr;                   // where the last query found the nearest one
     Box<D, Real> last{};                                       // found one box more than it was to find
     for (std::size_t at = range.begin; at < range.end; ++at) {
       const std::uint32_t number = order[at];
@@ -322,7 +288,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
       if (!options.filters.empty()) eligible.filter = &options.filters[number];
       const BoxId except = options.except.empty() ? no_box : options.except[number];
       NearestBoxes nearest(count + 1, std::min(max_squared, bound * bound));
-      search_nearest(box, eligible, nearest);
+      leaf = search_nearest(box, eligible, nearest, leaf);
       const std::span<const Neighbour> sorted = nearest.sorted();
       std::size_t to = number * count;
       for (const Neighbour& one : sorted) {

@@ -26,9 +26,11 @@ template <int D, typename Real>
 double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
   double sum = 0;
   for (int axis = 0; axis < D; ++axis) {
-    double gap = 0;
-    if (a.max[axis] < b.min[axis]) gap = double{b.min[axis]} - double{a.max[axis]};
-    if (b.max[axis] < a.min[axis]) gap = double{a.min[axis]} - double{b.max[axis]};
+    // Without branches, since no processor could predict them. Equal infinities are no gap, but NaN.
+    const double before = double{b.min[axis]} - double{a.max[axis]};
+    const double behind = double{a.min[axis]} - double{b.max[axis]};
+    double gap = before > 0 ? before : 0;
+    gap = behind > gap ? behind : gap;
     sum += gap * gap;
   }
   return sum;
@@ -81,6 +83,14 @@ class BvhIndex {
            accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
   }
 
+  /// The box in this lane of a leaf, as the caller gave it.
+  Box<D, Real> exact(const kernels::Block<D>& leaf, std::size_t lane) const {
+    if constexpr (is_float<Real>)
+      return leaf.box(lane);
+    else
+      return exact_[leaf.id[lane]];
+  }
+
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
                                  std::size_t i) const {
     if constexpr (is_float<Real>)
@@ -105,7 +115,9 @@ class BvhIndex {
   }
 
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
-  void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  const kernels::Block<D>* search_nearest(const Box<D, Real>& box, const QueryOptions& options,
+                                          NearestBoxes& found,
+                                          const kernels::Block<D>* first = nullptr) const;
 
   DynamicBvh<D> tree_;
   std::vector<Box<D, Real>> exact_;  // by id; only for doubles

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -74,7 +77,7 @@ class FirstHit final : public kernels::FoundBoxes {
   int exponent_;
 };
 
-/// The nearest boxes so far: a max-heap of at most `count` boxes, on the stack while it is small.
+/// The nearest boxes so far, at most `count`: few are sorted, on the stack; more are a max-heap.
 class NearestBoxes {
  public:
   NearestBoxes(std::size_t count, double max_distance_squared)
@@ -82,13 +85,20 @@ class NearestBoxes {
 
   /// A box with a greater squared distance is not among the nearest.
   double limit() const noexcept {
-    return size_ < count_ ? max_distance_squared_ : heap_.front().distance_squared;
+    return size_ < count_ ? max_distance_squared_ : heap_[is_sorted() ? size_ - 1 : 0].distance_squared;
   }
 
-  void offer(const Neighbour& one) {
-    if (!(one.distance_squared <= max_distance_squared_)) return;
+  /// Returns whether it is one of the nearest so far.
+  bool offer(const Neighbour& one) {
+    if (!(one.distance_squared <= max_distance_squared_)) return false;
+    if (size_ == count_ && !is_before(one, heap_[is_sorted() ? size_ - 1 : 0])) return false;
+    if (is_sorted()) {
+      std::size_t at = size_ < count_ ? size_++ : size_ - 1;
+      for (; at > 0 && is_before(one, few_[at - 1]); --at) few_[at] = few_[at - 1];
+      few_[at] = one;
+      return true;
+    }
     if (size_ == count_) {
-      if (!is_before(one, heap_.front())) return;
       const std::span<Neighbour> heap = heap_.first(size_--);
       std::pop_heap(heap.begin(), heap.end(), is_before);
     }
@@ -96,12 +106,13 @@ class NearestBoxes {
     heap_[size_++] = one;
     const std::span<Neighbour> heap = heap_.first(size_);
     std::push_heap(heap.begin(), heap.end(), is_before);
+    return true;
   }
 
   /// All of them, the nearest first. This destroys the heap.
   std::span<const Neighbour> sorted() {
     const std::span<Neighbour> heap = heap_.first(size_);
-    std::sort_heap(heap.begin(), heap.end(), is_before);
+    if (!is_sorted()) std::sort_heap(heap.begin(), heap.end(), is_before);
     return heap;
   }
 
@@ -109,6 +120,8 @@ class NearestBoxes {
   static bool is_before(const Neighbour& a, const Neighbour& b) noexcept {
     return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
   }
+
+  bool is_sorted() const noexcept { return count_ <= few_.size(); }
 
   void grow() {
     if (many_.empty()) many_.assign(few_.begin(), few_.end());
@@ -122,6 +135,48 @@ class NearestBoxes {
   std::array<Neighbour, 64> few_;
   std::vector<Neighbour> many_;
   std::span<Neighbour> heap_ = few_;
+};
+
+/// Offers to NearestBoxes what the kernel finds near `box`, which is present.
+template <int D, typename Real>
+class NearestSearch final : public kernels::NearLeaves<D> {
+ public:
+  /// `unit` is the caller's squared distance 1 in the tree.
+  NearestSearch(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, const QueryOptions<BoxId>& options,
+                double unit, NearestBoxes& found)
+      : boxes_(boxes), box_(box), options_(options), unit_(unit), found_(found) {
+    set_limit();
+  }
+
+  void take(const kernels::Block<D>& leaf, std::uint32_t near) override {
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(near));
+      const BoxId id{leaf.id[i]};
+      if (!boxes_.may_find(id, options_)) continue;
+      const double distance = squared_distance<D, Real>(box_, boxes_.exact(leaf, i));
+      if (!found_.offer({id, distance}) || distance >= least_) continue;
+      least_ = distance;
+      nearest_leaf = &leaf;
+    }
+    set_limit();
+  }
+
+  const kernels::Block<D>* nearest_leaf = nullptr;  // of the nearest box
+
+ private:
+  /// The kernel's distances may exceed the true ones by a few roundings, also of subnormal numbers.
+  void set_limit() {
+    constexpr double margin = 1 + 0x1p-18;
+    constexpr double min_normal = 0x1p-126;
+    this->limit = rounded_up(found_.limit() * unit_ * margin + min_normal);
+  }
+
+  const BvhIndex<D, Real>& boxes_;
+  const Box<D, Real>& box_;
+  const QueryOptions<BoxId>& options_;
+  double unit_;
+  NearestBoxes& found_;
+  double least_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace broadside::algorithm
