@@ -16,6 +16,7 @@
 #include "broadside/follower.hpp"
 #include "broadside/index.hpp"
 #include "broadside/keys.hpp"
+#include "broadside/nearest_pairs.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/queries.hpp"
 #include "broadside/searcher.hpp"

@@ -58,22 +58,6 @@ struct DistanceQuery {
   std::array<float, D> weight;
 };
 
-/// Takes the boxes that a search finds near a query's box, leaf by leaf.
-template <int D>
-class NearLeaves {
- public:
-  /// `near` has a bit for each box of the leaf whose squared distance is not greater than `limit`, which
-  /// take() may lower.
-  virtual void take(const Block<D>& leaf, std::uint32_t near) = 0;
-
-  float limit = 0;
-  const Block<D>* first = nullptr;  ///< a leaf of the tree to search before the others; may be null
-
- protected:
-  NearLeaves() = default;
-  ~NearLeaves() = default;
-};
-
 /// Writes the boxes that overlap `box`; returns false if take() ended the search. The tree must have a root.
 /// At the end, fewer than `full` boxes are left for the caller to take.
 template <int D>
@@ -88,9 +72,31 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Calls found.take() for each leaf with a box whose squared distance is not greater than `found.limit`. Of a
-/// node's children, goes to the nearest one first.
+/// Writes the boxes whose squared distance is at most `found.t_max`: to `found.ids` their slots in the tree,
+/// to `found.t_enter` the distances. Of a node's children, goes to the nearest one first.
 template <int D>
-void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, NearLeaves<D>& found);
+void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& found);
+
+/// Sixteen queries that are close to each other, and the boxes nearest to each: lists, one per lane, of slots
+/// in the tree and of squared distances as in DistanceQuery, in ascending order of these.
+template <int D>
+struct NearGroup {
+  static constexpr std::size_t max_count = 32;
+
+  /// Empties the lists, of which each will have `size` boxes, up to max_count.
+  void start(std::size_t size);
+
+  Block<D> queries;  ///< lanes without a query hold nan_box()
+  std::array<float, D> weight;
+  float limit;  ///< boxes that are farther away need not be found
+  std::size_t count;
+  alignas(64) std::array<std::array<float, fan_out>, max_count> distances;
+  alignas(
+      64) std::array<std::array<std::uint32_t, fan_out>, max_count> slots;  ///< no_slot after the last one
+};
+
+/// Fills the lists, by one traversal for all queries.
+template <int D>
+void find_near(const BvhView<D>& tree, NearGroup<D>& group);
 
 }  // namespace broadside::kernels

@@ -82,16 +82,15 @@ TEST(BvhNode, TakesABoxIntoTheChildThatGrowsLeastAndOfThoseTheSmallest) {
   });
 }
 
-/// Collects the boxes of the leaves that a search for near boxes finds.
-template <int D>
-struct NearCollector final : NearLeaves<D> {
-  void take(const Block<D>& leaf, std::uint32_t near) override {
-    for (std::size_t lane = 0; lane < fan_out; ++lane) {
-      if ((near >> lane & 1) != 0) ids.push_back(leaf.id[lane]);
-    }
+/// Collects the slots of the boxes that a search for near boxes finds.
+struct NearCollector final : FoundBoxes {
+  bool take() override {
+    slots.insert(slots.end(), ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
+    count = 0;
+    return true;
   }
 
-  std::vector<std::uint32_t> ids;
+  std::vector<std::uint32_t> slots;
 };
 
 TEST(BvhNear, FindsTheBoxesWithinADistance) {
@@ -103,18 +102,20 @@ TEST(BvhNear, FindsTheBoxesWithinADistance) {
       tree.build(boxes);
       DistanceQuery<D> query{.box = random_box<D>(rng, {.places = 20, .max_extent = 2}), .weight = {}};
       query.weight.fill(1);
-      NearCollector<D> found;
-      found.limit = rng.one_in(4) ? infinity : static_cast<float>(rng.whole(0, 40));
-      // Any leaf may come first, and is found once.
-      if (rng.one_in(2)) found.first = &tree.view().nodes[tree.slot(BoxId(0)) / fan_out];
+      NearCollector found;
+      found.t_max = rng.one_in(4) ? infinity : static_cast<float>(rng.whole(0, 40));
       find_near(tree.view(), query, found);
-      std::ranges::sort(found.ids);
+      found.take();
+      std::vector<std::uint32_t> ids;
+      for (const std::uint32_t slot : found.slots)
+        ids.push_back(tree.view().nodes[slot / fan_out].id[slot % fan_out]);
+      std::ranges::sort(ids);
       std::vector<std::uint32_t> expected;
       for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (algorithm::squared_distance<D, float>(query.box, boxes[i]) <= found.limit)
+        if (algorithm::squared_distance<D, float>(query.box, boxes[i]) <= found.t_max)
           expected.push_back(static_cast<std::uint32_t>(i));
       }
-      EXPECT_EQ(found.ids, expected);
+      EXPECT_EQ(ids, expected);
     }
   });
 }

@@ -20,7 +20,6 @@ namespace {
 
 using kernels::fan_out;
 using kernels::FoundBoxes;
-using kernels::leaf_bit;
 
 /// A cast's parameter in the tree: 2^exponent times the caller's.
 template <typename Real>
@@ -181,30 +180,29 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   return found.best;
 }
 
-/// Offers to `found` all boxes that may be among the nearest to `box`, which is present; those of the leaf
-/// `first` before others, if that is not null. Returns the leaf of the nearest one, or null. The tree has a
-/// root.
+/// The caller's squared distance 1 in the tree, where gaps are multiplied by the `weight` of their axis.
 template <int D, typename Real>
-const kernels::Block<D>* BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box,
-                                                           const QueryOptions& options, NearestBoxes& found,
-                                                           const kernels::Block<D>* first) const {
+double BvhIndex<D, Real>::distance_unit(std::array<float, D>& weight) const {
+  weight.fill(1);
+  if constexpr (is_float<Real>) return 1;
+  // Beyond this limit, the definition's squares may overflow or lose their last places.
+  constexpr int max_exponent = 400;
+  int exponent = max_exponent;
+  for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
+  exponent = std::max(exponent, -max_exponent);
+  for (int axis = 0; axis < D; ++axis)
+    weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
+  return std::ldexp(1.0, 2 * exponent);
+}
+
+/// Offers to `found` all boxes that may be among the nearest to `box`, which is present. The tree has a root.
+template <int D, typename Real>
+void BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box, const QueryOptions& options,
+                                       NearestBoxes& found) const {
   kernels::DistanceQuery<D> query{in_tree(box), {}};
-  query.weight.fill(1);
-  double unit = 1;
-  if constexpr (!is_float<Real>) {
-    // Beyond this limit, the definition's squares may overflow or lose their last places.
-    constexpr int max_exponent = 400;
-    int exponent = max_exponent;
-    for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
-    exponent = std::max(exponent, -max_exponent);
-    for (int axis = 0; axis < D; ++axis)
-      query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
-    unit = std::ldexp(1.0, 2 * exponent);
-  }
-  NearestSearch<D, Real> search(*this, box, options, unit, found);
-  search.first = first;
+  NearestSearch<D, Real> search(*this, box, options, distance_unit(query.weight), found);
   kernels::find_near(tree_.view(), query, search);
-  return search.nearest_leaf;
+  search.take();
 }
 
 template <int D, typename Real>
@@ -236,20 +234,6 @@ std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries
   return order;
 }
 
-/// The greatest distance from a point of `from` to `to`: if a box is at distance d from `from`, it is at most
-/// at this distance and d from `to`.
-template <int D, typename Real>
-double way_between(const Box<D, Real>& from, const Box<D, Real>& to) {
-  double sum = 0;
-  for (int axis = 0; axis < D; ++axis) {
-    const double before = double{to.min[axis]} - double{from.min[axis]};
-    const double behind = double{from.max[axis]} - double{to.max[axis]};
-    const double way = std::max({0.0, before, behind});  // 0 if all of these are NaN: equal infinities
-    sum += way * way;
-  }
-  return std::sqrt(sum);
-}
-
 }  // namespace
 
 template <int D, typename Real>
@@ -272,34 +256,55 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   core::Parallel parallel;
   parallel.start(options.workers, queries.size());
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, parallel);
-  parallel.for_ranges(order.size(), [&](core::Range range, std::size_t worker) {
+  std::array<float, D> weight;
+  const double unit = distance_unit(weight);
+  // One box more than asked for, so that one left out may be among them; and another one, whose distance
+  // shows that no other is as near.
+  const bool in_groups = options.filters.empty() && count + 2 <= kernels::NearGroup<D>::max_count;
+  const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
+  parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
-    double reached = std::numeric_limits<double>::infinity();  // the distance within which the last query
-    const kernels::Block<D>* leaf = nullptr;                   // where the last query found the nearest one
-    Box<D, Real> last{};                                       // found one box more than it was to find
-    for (std::size_t at = range.begin; at < range.end; ++at) {
-      const std::uint32_t number = order[at];
-      const Box<D, Real> box = boxes[number];
-      // One box more than asked for, so that the one left out, which is no neighbour, is among them or is not
-      // needed. So all queries search for the same number of boxes, and each bounds the next one.
-      // The margins are for roundings, and for squares that lose their last places near 0.
-      const double bound = (reached + way_between(last, box)) * (1 + 0x1p-40) + 0x1p-500;
-      QueryOptions eligible;
-      if (!options.filters.empty()) eligible.filter = &options.filters[number];
-      const BoxId except = options.except.empty() ? no_box : options.except[number];
-      NearestBoxes nearest(count + 1, std::min(max_squared, bound * bound));
-      leaf = search_nearest(box, eligible, nearest, leaf);
-      const std::span<const Neighbour> sorted = nearest.sorted();
-      std::size_t to = number * count;
-      for (const Neighbour& one : sorted) {
-        if (one.box == except || to == (number + 1) * count) continue;
-        found[to] = one.box;
-        distances_squared[to++] = one.distance_squared;
+    kernels::NearGroup<D> group;
+    for (std::size_t number = range.begin; number < range.end; ++number) {
+      const std::span<const std::uint32_t> some =
+          std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
+      if (in_groups) {
+        group.queries.clear();
+        for (std::size_t lane = 0; lane < some.size(); ++lane)
+          group.queries.set(lane, in_tree(boxes[some[lane]]));
+        group.weight = weight;
+        group.limit = limit_in_tree(max_squared * unit);
+        group.start(count + 2);
+        kernels::find_near(tree_.view(), group);
       }
-      last = box;
-      reached = options.filters.empty() && sorted.size() > count ? std::sqrt(sorted.back().distance_squared)
-                                                                 : std::numeric_limits<double>::infinity();
-      if (checkpoint != nullptr) checkpoint->count(16 * (fan_out + count));
+      for (std::size_t lane = 0; lane < some.size(); ++lane) {
+        const std::size_t query = some[lane];
+        const Box<D, Real> box = boxes[query];
+        NearestBoxes nearest(count + 1, max_squared);
+        for (std::size_t i = 0; in_groups && i < group.count; ++i) {
+          const std::uint32_t slot = group.slots[i][lane];
+          if (slot == kernels::no_slot) break;
+          const BoxId id = id_at(slot);
+          nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+        }
+        const bool is_sure =
+            in_groups && (group.slots[count + 1][lane] == kernels::no_slot ||
+                          limit_in_tree(nearest.limit() * unit) < group.distances[count + 1][lane]);
+        if (!is_sure) {
+          QueryOptions eligible;
+          if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          nearest.start_over();
+          search_nearest(box, eligible, nearest);
+        }
+        const BoxId except = options.except.empty() ? no_box : options.except[query];
+        std::size_t to = query * count;
+        for (const Neighbour& one : nearest.sorted()) {
+          if (one.box == except || to == (query + 1) * count) continue;
+          found[to] = one.box;
+          distances_squared[to++] = one.distance_squared;
+        }
+      }
+      if (checkpoint != nullptr) checkpoint->count(fan_out * fan_out * (fan_out + count));
     }
   });
 }

@@ -2,7 +2,9 @@
 // answers queries.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -83,12 +85,13 @@ class BvhIndex {
            accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
   }
 
-  /// The box in this lane of a leaf, as the caller gave it.
-  Box<D, Real> exact(const kernels::Block<D>& leaf, std::size_t lane) const {
+  /// The id of the box in a slot of the tree, and the box as the caller gave it.
+  BoxId id_at(std::uint32_t slot) const { return BoxId{leaf_of(slot).id[slot % kernels::fan_out]}; }
+  Box<D, Real> exact(std::uint32_t slot, BoxId id) const {
     if constexpr (is_float<Real>)
-      return leaf.box(lane);
+      return leaf_of(slot).box(slot % kernels::fan_out);
     else
-      return exact_[leaf.id[lane]];
+      return exact_[index(id)];
   }
 
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
@@ -115,9 +118,11 @@ class BvhIndex {
   }
 
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
-  const kernels::Block<D>* search_nearest(const Box<D, Real>& box, const QueryOptions& options,
-                                          NearestBoxes& found,
-                                          const kernels::Block<D>* first = nullptr) const;
+  double distance_unit(std::array<float, D>& weight) const;
+  void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  const kernels::Block<D>& leaf_of(std::uint32_t slot) const {
+    return tree_.view().nodes[slot / kernels::fan_out];
+  }
 
   DynamicBvh<D> tree_;
   std::vector<Box<D, Real>> exact_;  // by id; only for doubles

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -80,6 +79,8 @@ class FirstHit final : public kernels::FoundBoxes {
 /// The nearest boxes so far, at most `count`: few are sorted, on the stack; more are a max-heap.
 class NearestBoxes {
  public:
+  NearestBoxes(const NearestBoxes&) = delete;
+  NearestBoxes& operator=(const NearestBoxes&) = delete;
   NearestBoxes(std::size_t count, double max_distance_squared)
       : count_(count), max_distance_squared_(max_distance_squared) {}
 
@@ -88,15 +89,22 @@ class NearestBoxes {
     return size_ < count_ ? max_distance_squared_ : heap_[is_sorted() ? size_ - 1 : 0].distance_squared;
   }
 
-  /// Returns whether it is one of the nearest so far.
-  bool offer(const Neighbour& one) {
-    if (!(one.distance_squared <= max_distance_squared_)) return false;
-    if (size_ == count_ && !is_before(one, heap_[is_sorted() ? size_ - 1 : 0])) return false;
+  std::size_t count() const noexcept { return count_; }
+
+  /// Forgets the boxes, but not how far away the farthest one was, to search all again.
+  void start_over() noexcept {
+    max_distance_squared_ = limit();
+    size_ = 0;
+  }
+
+  void offer(const Neighbour& one) {
+    if (!(one.distance_squared <= max_distance_squared_)) return;
+    if (size_ == count_ && !is_before(one, heap_[is_sorted() ? size_ - 1 : 0])) return;
     if (is_sorted()) {
       std::size_t at = size_ < count_ ? size_++ : size_ - 1;
       for (; at > 0 && is_before(one, few_[at - 1]); --at) few_[at] = few_[at - 1];
       few_[at] = one;
-      return true;
+      return;
     }
     if (size_ == count_) {
       const std::span<Neighbour> heap = heap_.first(size_--);
@@ -106,7 +114,6 @@ class NearestBoxes {
     heap_[size_++] = one;
     const std::span<Neighbour> heap = heap_.first(size_);
     std::push_heap(heap.begin(), heap.end(), is_before);
-    return true;
   }
 
   /// All of them, the nearest first. This destroys the heap.
@@ -137,9 +144,17 @@ class NearestBoxes {
   std::span<Neighbour> heap_ = few_;
 };
 
+/// The kernel's greatest squared distance for this true one, in the tree's unit: the kernel's may exceed the
+/// true ones by a few roundings, also of subnormal numbers.
+inline float limit_in_tree(double distance_squared) noexcept {
+  constexpr double margin = 1 + 0x1p-18;
+  constexpr double min_normal = 0x1p-126;
+  return rounded_up(distance_squared * margin + min_normal);
+}
+
 /// Offers to NearestBoxes what the kernel finds near `box`, which is present.
 template <int D, typename Real>
-class NearestSearch final : public kernels::NearLeaves<D> {
+class NearestSearch final : public kernels::FoundBoxes {
  public:
   /// `unit` is the caller's squared distance 1 in the tree.
   NearestSearch(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, const QueryOptions<BoxId>& options,
@@ -148,35 +163,40 @@ class NearestSearch final : public kernels::NearLeaves<D> {
     set_limit();
   }
 
-  void take(const kernels::Block<D>& leaf, std::uint32_t near) override {
-    for (; near != 0; near &= near - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      const BoxId id{leaf.id[i]};
-      if (!boxes_.may_find(id, options_)) continue;
-      const double distance = squared_distance<D, Real>(box_, boxes_.exact(leaf, i));
-      if (!found_.offer({id, distance}) || distance >= least_) continue;
-      least_ = distance;
-      nearest_leaf = &leaf;
+  /// Begins with the nearest ones, as far as that is cheap to know: they lower the limit for the others. In a
+  /// ball of radius r, some count * (r' / r)^D boxes are within r'.
+  bool take() override {
+    full = std::min(2 * full, max_found);
+    float step = t_max;
+    if (count > found_.count() + 4 && t_max < std::numeric_limits<float>::max()) {
+      const auto share = static_cast<float>(found_.count() + 4) / static_cast<float>(count);
+      step *= D == 2 ? share : std::sqrt(share * std::sqrt(share));  // about share^(2 / 3)
+      step = std::max(step, 0x1p-126f);                              // not 0, which would stay 0
     }
-    set_limit();
+    for (float from = -1; from < t_max; from = step, step *= 2) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (t_enter[i] > from && t_enter[i] <= std::min(step, t_max)) offer(ids[i]);
+      }
+      set_limit();
+    }
+    count = 0;
+    return true;
   }
-
-  const kernels::Block<D>* nearest_leaf = nullptr;  // of the nearest box
 
  private:
-  /// The kernel's distances may exceed the true ones by a few roundings, also of subnormal numbers.
-  void set_limit() {
-    constexpr double margin = 1 + 0x1p-18;
-    constexpr double min_normal = 0x1p-126;
-    this->limit = rounded_up(found_.limit() * unit_ * margin + min_normal);
+  void offer(std::uint32_t slot) {
+    const BoxId id = boxes_.id_at(slot);
+    if (!boxes_.may_find(id, options_)) return;
+    found_.offer({id, squared_distance<D, Real>(box_, boxes_.exact(slot, id))});
   }
+
+  void set_limit() { t_max = limit_in_tree(found_.limit() * unit_); }
 
   const BvhIndex<D, Real>& boxes_;
   const Box<D, Real>& box_;
   const QueryOptions<BoxId>& options_;
   double unit_;
   NearestBoxes& found_;
-  double least_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace broadside::algorithm
