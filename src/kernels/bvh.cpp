@@ -4,6 +4,11 @@
 #define HWY_TARGET_INCLUDE "kernels/bvh.cpp"
 #include "kernels/bvh.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -190,17 +195,22 @@ HWY_INLINE void insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum
 template <int D>
 void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
   float limit = group.limit;
+  const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
   traverse_near(
-      tree, DistanceFrom<D>({bounds(group.queries), group.weight}), [&] { return limit; },
+      tree, from_all, [&] { return limit; },
       [&](std::uint32_t number) HWY_ATTR {
         const Block<D>& leaf = tree.nodes[number];
-        for (std::size_t lane = 0; lane < fan_out; ++lane) {
-          const Box<D> box = leaf.box(lane);
-          if (!(box.min[0] <= box.max[0])) continue;
-          const DistanceFrom<D> from({box, group.weight});
+        std::uint32_t near = 0;
+        FloatVector sum;
+        for (std::size_t at = 0; at < fan_out; at += lanes)
+          near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
+        for (; near != 0; near &= near - 1) {
+          const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+          const DistanceFrom<D> from({leaf.box(lane), group.weight});
           for (std::size_t at = 0; at < fan_out; at += lanes) {
-            FloatVector sum;
             from.within(group.queries, at, infinity, sum);
+            // Finite, so that a list with room takes it.
+            sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
             insert_near(group, at, sum, static_cast<std::uint32_t>(number * fan_out + lane));
           }
         }
