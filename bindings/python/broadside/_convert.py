@@ -59,8 +59,8 @@ def are_points(found: Any, name: str, dimension: int) -> bool:
         return False
     try:
         if isinstance(found, (list, tuple, np.ndarray)) and (array := np.asarray(found)).dtype.names is None:
-            return array.ndim == 2 and array.shape[1] == dimension
-        return _with_float_rows(found, name, _Points(name, dimension)).shape[1] == dimension
+            return bool(array.ndim == 2 and array.shape[1] == dimension)
+        return bool(_with_float_rows(found, name, _Points(name, dimension)).shape[1] == dimension)
     except (TypeError, ValueError):
         return False
 

@@ -226,7 +226,7 @@ class World:
         exclude: ArrayLike | None = None,
     ) -> Neighbours:
         """The k boxes nearest to each of `queries`, points or boxes: see `Index.nearest`."""
-        return _nearest(self._world, None, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
+        return _nearest(self, self._world, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
 
     def snapshot(self) -> bytes:
         """All that the world's future depends on, as bytes that are the same on every machine."""

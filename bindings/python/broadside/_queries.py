@@ -187,7 +187,7 @@ class Index:
         number of boxes where these are more. `threads` are the most to use; None: all cores. Raises InvalidQueryError
         for a NaN; an infinite point is infinitely far from every finite box, and nothing is near an absent box.
         """
-        return _nearest(self._index, self._crs, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
+        return _nearest(self, self._index, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
 
     def __reduce__(self) -> tuple[Any, ...]:
         made_of = (type(self), self._boxes, self._crs, self._filters)
@@ -204,13 +204,13 @@ def _unpickled_index(kind: type[Index], boxes: NDArray[Any], crs: Any, filters: 
 
 
 def _nearest(
-    asked: Any, crs: Any, queries: Any, k: int, max_distance: float, threads: int | None, filters: Any, exclude: Any
+    known: Any, asked: Any, queries: Any, k: int, max_distance: float, threads: int | None, filters: Any, exclude: Any
 ) -> Neighbours:
-    """Asks an index or a world of the extension module."""
+    """Asks an index or a world, `known` to users, of the extension module."""
     limit = _checked_distance(max_distance)
-    are_points = _convert.are_points(queries, "queries", asked.dimension())
-    if not are_points:
-        _convert.common_crs(crs, "the index", queries, "queries")
+    are_points = _convert.are_points(queries, "queries", known.dimension)
+    if not are_points and isinstance(known, Index):
+        _convert.common_crs(known._crs, "the index", queries, "queries")
     return Neighbours(*asked.nearest(queries, are_points, k, limit, threads, filters, exclude))
 
 
