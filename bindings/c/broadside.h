@@ -477,7 +477,7 @@ typedef struct broadside_hit {
   double t_enter;
 } broadside_hit;
 
-/** A box and the square of its distance from a point. */
+/** A box and the square of its distance from a point or a box. */
 typedef struct broadside_neighbour {
   broadside_handle handle; /**< in an index: { place, 0 } */
   double distance_squared;
@@ -512,8 +512,15 @@ BROADSIDE_API broadside_status broadside_world_nearest(const broadside_world* wo
                                                        size_t* count, broadside_error* error);
 
 /** As broadside_world_nearest(), but only boxes with distance_squared <= max_distance * max_distance.
- * `max_distance` is at least 0 and may be infinite. It and the product are rounded to the world's type. */
+ * `max_distance` is at least 0 and may be infinite. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_world_nearest_within(const broadside_world* world, const void* point,
+                                                              double max_distance,
+                                                              const broadside_query* query,
+                                                              broadside_neighbour* neighbours, size_t room,
+                                                              size_t* count, broadside_error* error);
+
+/** As broadside_world_nearest_within(), but nearest to a box. The distance of boxes that overlap is 0. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_nearest_to_box(const broadside_world* world, const void* box,
                                                               double max_distance,
                                                               const broadside_query* query,
                                                               broadside_neighbour* neighbours, size_t room,
@@ -552,6 +559,44 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_index_nearest_within(const bro
                                                               const broadside_query* query,
                                                               broadside_neighbour* neighbours, size_t room,
                                                               size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_nearest_to_box(const broadside_index* index, const void* box,
+                                                              double max_distance,
+                                                              const broadside_query* query,
+                                                              broadside_neighbour* neighbours, size_t room,
+                                                              size_t* count, broadside_error* error);
+
+/* ---- The nearest boxes of many ---- */
+
+/** Begin with broadside_nearest_options_init(), which sets the defaults. */
+typedef struct broadside_nearest_options {
+  size_t size;         /**< of this struct */
+  double max_distance; /**< boxes that are farther away are not found; infinity */
+  const broadside_filter* filters;       /**< one for each box (of the left set), or null */
+  const broadside_filter* right_filters; /**< for two sets: one for each box of the right one, or null */
+  size_t threads;                        /**< the most threads, 0: as many as there are; 1 */
+  const broadside_executor* executor;    /**< if several threads are allowed; null: the library's */
+} broadside_nearest_options;
+
+BROADSIDE_API void broadside_nearest_options_init(broadside_nearest_options* options);
+
+/** Finds for each box the `k` boxes of `right` that are nearest to it or, if that is null, of the same set,
+ * without itself. Writes `k` places and squared distances for each box in turn, by distance and then by place.
+ * A row with fewer boxes ends with places UINT32_MAX at infinite distances. `options` may be null. If the call
+ * fails, the arrays are as they were. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_nearest_pairs(const broadside_boxes* boxes,
+                                                       const broadside_boxes* right, size_t k,
+                                                       const broadside_nearest_options* options,
+                                                       uint32_t* places, double* distances_squared,
+                                                       broadside_error* error);
+
+/** The same for many boxes and an index. Boxes without min <= max are invalid queries. `except` is null, or has
+ * for each box the place of one to leave out; UINT32_MAX stands for none. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_nearest_of_each(const broadside_index* index,
+                                                               const broadside_boxes* boxes, size_t k,
+                                                               const broadside_nearest_options* options,
+                                                               const uint32_t* except, uint32_t* places,
+                                                               double* distances_squared,
+                                                               broadside_error* error);
 
 #ifdef __cplusplus
 }

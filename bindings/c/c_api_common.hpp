@@ -293,19 +293,25 @@ broadside_status first_hit(const Object* object, const void* box, const void* di
       });
 }
 
+/// The boxes nearest to a point or a box, whose address the caller gives, and null for the other one.
 template <typename Object>
-broadside_status nearest(const Object* object, const void* point, double max_distance,
+broadside_status nearest(const Object* object, const void* point, const void* box, double max_distance,
                          const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
                          std::size_t* count, broadside_error* error) noexcept {
   return ask_index(
       object, query, error,
       [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
         Buffer<broadside_neighbour> buffer(neighbours, room, count, "neighbours");
-        index.nearest(value_of<Point<D, Real>>(point, "point"), room,
-                      [&](const Neighbour<Real>& one) {
+        Box<D, Real> from;
+        if (box != nullptr)
+          from = value_of<Box<D, Real>>(box, "box");
+        else
+          from.min = from.max = value_of<Point<D, Real>>(point, "point or box");
+        index.nearest(from, room,
+                      [&](const Neighbour& one) {
                         buffer.add({queried.handle_of(one.box), one.distance_squared});
                       },
-                      {options.filter, options.except, static_cast<Real>(max_distance)});
+                      {options.filter, options.except, max_distance});
         buffer.finish();
       });
 }

@@ -1,4 +1,6 @@
 // The C API's indexes over arrays of boxes, for queries.
+#include "broadside/nearest_pairs.hpp"
+
 #include "bindings/c/c_api_common.hpp"
 
 using namespace broadside;
@@ -17,6 +19,33 @@ struct IndexImpl {
   BoxIndex<D, Real> boxes;
   FrameMemory<D, Real> memory;
 };
+
+constexpr const char* nearest_options_name = "broadside_nearest_options";
+
+broadside_nearest_options nearest_options_of(const broadside_nearest_options* given) {
+  if (given != nullptr) return options_of(given, nearest_options_name);
+  broadside_nearest_options options;
+  broadside_nearest_options_init(&options);
+  return options;
+}
+
+/// Calls search(places, distances_squared) with arrays of their own, and copies these to the caller's, so
+/// that a call that fails leaves them as they were.
+template <typename Search>
+void fill_rows(std::size_t queries, std::size_t k, std::uint32_t* places, double* distances_squared,
+               const Search& search) {
+  if (queries > 0) {
+    required(places, "places");
+    required(distances_squared, "distances_squared");
+  }
+  if (queries > 0 && k > std::numeric_limits<std::size_t>::max() / sizeof(double) / queries)
+    throw std::bad_alloc();
+  std::vector<BoxId> found(queries * k);
+  std::vector<double> distances(queries * k);
+  search(std::span(found), std::span(distances));
+  copy_as(std::span<const BoxId>(found), places);
+  copy_as(std::span<const double>(distances), distances_squared);
+}
 
 }  // namespace
 
@@ -68,13 +97,78 @@ broadside_status broadside_index_first_hit(const broadside_index* index, const v
 broadside_status broadside_index_nearest(const broadside_index* index, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return c::nearest(index, point, std::numeric_limits<double>::infinity(), query, neighbours, room, count,
-                    error);
+  return c::nearest(index, point, nullptr, std::numeric_limits<double>::infinity(), query, neighbours, room,
+                    count, error);
 }
 
 broadside_status broadside_index_nearest_within(const broadside_index* index, const void* point,
                                                 double max_distance, const broadside_query* query,
                                                 broadside_neighbour* neighbours, size_t room, size_t* count,
                                                 broadside_error* error) {
-  return c::nearest(index, point, max_distance, query, neighbours, room, count, error);
+  return c::nearest(index, point, nullptr, max_distance, query, neighbours, room, count, error);
+}
+
+broadside_status broadside_index_nearest_to_box(const broadside_index* index, const void* box,
+                                                double max_distance, const broadside_query* query,
+                                                broadside_neighbour* neighbours, size_t room, size_t* count,
+                                                broadside_error* error) {
+  return c::nearest(index, nullptr, box, max_distance, query, neighbours, room, count, error);
+}
+
+void broadside_nearest_options_init(broadside_nearest_options* options) {
+  if (options == nullptr) return;
+  *options = default_options<broadside_nearest_options>();
+  options->max_distance = std::numeric_limits<double>::infinity();
+  options->threads = 1;
+}
+
+broadside_status broadside_index_nearest_of_each(const broadside_index* index, const broadside_boxes* boxes,
+                                                 size_t k, const broadside_nearest_options* given,
+                                                 const uint32_t* except, uint32_t* places,
+                                                 double* distances_squared, broadside_error* error) {
+  return call(index, error, [&]<int D, typename Real>(const IndexImpl<D, Real>& self) {
+    const broadside_nearest_options options = nearest_options_of(given);
+    if (options.right_filters != nullptr)
+      throw std::invalid_argument("right_filters are given to an index, which has its own; expected null");
+    const BoxView<D, Real> queries = view_of<D, Real>(required(boxes, "boxes"));
+    const auto executor = make_executor(options.executor);
+    std::vector<Filter> filters;
+    take_filters(options.filters, queries.size(), filters);
+    std::vector<BoxId> excepted;
+    if (except != nullptr) copy_as(std::span(except, queries.size()), excepted);
+    fill_rows(queries.size(), k, places, distances_squared, [&](auto found, auto distances) {
+      self.boxes.nearest_of_each(queries, k, found, distances,
+                                 {.max_distance = options.max_distance,
+                                  .filters = filters,
+                                  .except = excepted,
+                                  .workers = {.threads = options.threads, .executor = executor.get()}});
+    });
+  });
+}
+
+broadside_status broadside_nearest_pairs(const broadside_boxes* boxes, const broadside_boxes* right, size_t k,
+                                         const broadside_nearest_options* given, uint32_t* places,
+                                         double* distances_squared, broadside_error* error) {
+  return guarded(error, [&] {
+    const broadside_nearest_options options = nearest_options_of(given);
+    const auto executor = make_executor(options.executor);
+    std::vector<Filter> filters;
+    std::vector<Filter> right_filters;
+    take_filters(options.filters, required(boxes, "boxes").count, filters);
+    if (right == nullptr && options.right_filters != nullptr)
+      throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
+    if (right != nullptr) take_filters(options.right_filters, right->count, right_filters);
+    const NearestPairsOptions which{.max_distance = options.max_distance,
+                                    .filters = filters,
+                                    .right_filters = right_filters,
+                                    .threads = options.threads,
+                                    .executor = executor.get()};
+    with_kind(boxes->kind, [&]<int D, typename Real>() {
+      const BoxView<D, Real> left = view_of<D, Real>(*boxes);
+      const BoxView<D, Real> other = right == nullptr ? left : view_of<D, Real>(*right);
+      fill_rows(left.size(), k, places, distances_squared, [&](auto found, auto distances) {
+        detail::nearest_pairs(left, right == nullptr ? nullptr : &other, k, which, found, distances);
+      });
+    });
+  });
 }

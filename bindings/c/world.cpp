@@ -254,13 +254,20 @@ broadside_status broadside_world_first_hit(const broadside_world* world, const v
 broadside_status broadside_world_nearest(const broadside_world* world, const void* point,
                                          const broadside_query* query, broadside_neighbour* neighbours,
                                          size_t room, size_t* count, broadside_error* error) {
-  return c::nearest(world, point, std::numeric_limits<double>::infinity(), query, neighbours, room, count,
-                    error);
+  return c::nearest(world, point, nullptr, std::numeric_limits<double>::infinity(), query, neighbours, room,
+                    count, error);
 }
 
 broadside_status broadside_world_nearest_within(const broadside_world* world, const void* point,
                                                 double max_distance, const broadside_query* query,
                                                 broadside_neighbour* neighbours, size_t room, size_t* count,
                                                 broadside_error* error) {
-  return c::nearest(world, point, max_distance, query, neighbours, room, count, error);
+  return c::nearest(world, point, nullptr, max_distance, query, neighbours, room, count, error);
+}
+
+broadside_status broadside_world_nearest_to_box(const broadside_world* world, const void* box,
+                                                double max_distance, const broadside_query* query,
+                                                broadside_neighbour* neighbours, size_t room, size_t* count,
+                                                broadside_error* error) {
+  return c::nearest(world, nullptr, box, max_distance, query, neighbours, room, count, error);
 }

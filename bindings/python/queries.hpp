@@ -92,30 +92,44 @@ class Queries {
     return nb::make_tuple(array_of(std::move(boxes)), array_of(std::move(enters)));
   }
 
-  nb::object nearest(nb::handle points, std::size_t k, double max_distance, const QueryChoice& choice) const {
-    const Rows rows = Rows::of(points, "points", D, are_doubles);
-    std::vector<Point> memory;
-    const std::span<const Point> asked = rows.array(memory);
-    if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(asked.size(), 1))
-      throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(asked.size()) +
-                                  " points; expected at most 2^32 answers");
-    const Real most = rounded_down(max_distance);
-    std::vector<Number> boxes(k * asked.size(), none);
-    std::vector<Real> distances(k * asked.size(), std::numeric_limits<Real>::infinity());
-    std::vector<Neighbour<Real>> found;
-    ask_each(asked.size(), choice,
-             [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
-               // A copy: another thread may write to the caller's points after the check.
-               const Point point = asked[i];
-               index.nearest(point, k, found, {options.filter, options.except, most});
-               for (std::size_t j = 0; j < found.size(); ++j) {
-                 boxes[i * k + j] = number_of(found[j].box);
-                 distances[i * k + j] = found[j].distance_squared;
-               }
-             });
-    const std::size_t count = asked.size();
-    return nb::make_tuple(array_of<Number>(std::move(boxes), {count, k}),
-                          array_of<Real>(std::move(distances), {count, k}));
+  nb::object nearest(nb::handle queries, bool are_points, std::size_t k, double max_distance,
+                     nb::handle max_threads, const QueryChoice& choice) const {
+    const Rows rows = Rows::of(queries, "queries", are_points ? D : 2 * D, are_doubles);
+    std::vector<Box> memory;
+    if (are_points) {
+      std::vector<Point> scratch;
+      for (const Point& point : rows.array(scratch)) memory.push_back({point, point});
+    }
+    const BoxView<D, Real> boxes = are_points ? BoxView<D, Real>(memory) : rows.boxes<D, Real>();
+    const std::size_t count = boxes.size();
+    if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(count, 1))
+      throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(count) +
+                                  " queries; expected at most 2^32 answers");
+    const Excluded excluded(choice, count);
+    NearestOfEachOptions options{.max_distance = max_distance, .filters = excluded.filters};
+    options.workers.threads = threads_of(max_threads, "");
+    std::vector<BoxId> found(k * count);
+    std::vector<double> distances(k * count);
+    std::vector<Number> numbers;
+    without_gil([&](WithoutGil& released) {
+      options.workers.checkpoint = [&released] { released.check_signals(); };
+      asked_.ask([&](const auto& index, const auto& number_of, const auto& place_of) {
+        std::vector<BoxId> except;
+        for (const std::uint64_t number : excluded.numbers)
+          except.push_back(place_of(static_cast<Number>(number)).value_or(no_box));
+        options.except = except;
+        index.nearest_of_each(boxes, k, found, distances, options);
+        if constexpr (!std::is_same_v<Number, std::uint32_t>) {
+          for (const BoxId id : found) numbers.push_back(id == no_box ? none : number_of(id));
+        }
+      });
+    });
+    nb::object named;
+    if constexpr (std::is_same_v<Number, std::uint32_t>)
+      named = array_of<std::uint32_t>(std::move(found), {count, k});
+    else
+      named = array_of<Number>(std::move(numbers), {count, k});
+    return nb::make_tuple(named, array_of<double>(std::move(distances), {count, k}));
   }
 
  private:
@@ -158,27 +172,37 @@ class Queries {
     Real t_max_;
   };
 
+  /// The boxes that `count` queries do not find: a filter and a number for each query, or none.
+  struct Excluded {
+    Excluded(const QueryChoice& choice, std::size_t count) {
+      if (count > std::numeric_limits<std::uint32_t>::max())
+        throw std::invalid_argument("there are " + std::to_string(count) +
+                                    " queries; expected at most 2^32 - 1");
+      filters = query_filters(choice.filters, count);
+      if (choice.exclude.is_none()) return;
+      numbers = integers(choice.exclude, "exclude", none);
+      if (numbers.size() == 1) numbers.resize(count, numbers.front());
+      if (numbers.size() != count)
+        throw std::invalid_argument("there are " + std::to_string(count) + " queries and " +
+                                    std::to_string(numbers.size()) +
+                                    " boxes in exclude; expected one for each query, or one for all");
+    }
+
+    std::vector<Filter> filters;
+    std::vector<std::uint64_t> numbers;
+  };
+
   /// Calls ask(index, number_of, i, options) for each i < count, with the GIL released.
   template <typename Ask>
   void ask_each(std::size_t count, const QueryChoice& choice, const Ask& ask) const {
-    if (count > std::numeric_limits<std::uint32_t>::max())
-      throw std::invalid_argument("there are " + std::to_string(count) +
-                                  " queries; expected at most 2^32 - 1");
-    const std::vector<Filter> filters = query_filters(choice.filters, count);
-    std::vector<std::uint64_t> excluded;
-    if (!choice.exclude.is_none()) excluded = integers(choice.exclude, "exclude", none);
-    if (excluded.size() == 1) excluded.resize(count, excluded.front());
-    if (!choice.exclude.is_none() && excluded.size() != count)
-      throw std::invalid_argument("there are " + std::to_string(count) + " queries and " +
-                                  std::to_string(excluded.size()) +
-                                  " boxes in exclude; expected one for each query, or one for all");
+    const Excluded excluded(choice, count);
     without_gil([&](WithoutGil& released) {
       asked_.ask([&](const auto& index, const auto& number_of, const auto& place_of) {
         for (std::size_t i = 0; i < count; ++i) {
           if (i % queries_at_once == 0) released.check_signals();
           QueryOptions options;
-          if (!filters.empty()) options.filter = &filters[i];
-          if (!excluded.empty()) options.except = place_of(static_cast<Number>(excluded[i]));
+          if (!excluded.filters.empty()) options.filter = &excluded.filters[i];
+          if (!excluded.numbers.empty()) options.except = place_of(static_cast<Number>(excluded.numbers[i]));
           try {
             ask(index, number_of, i, options);
           } catch (const InvalidQuery& error) {
@@ -248,12 +272,14 @@ void add_queries(nb::class_<Any>& type) {
       nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"));
   add(
       "nearest",
-      [](Any& self, handle points, std::size_t k, double max_distance, handle filters, handle exclude) {
+      [](Any& self, handle queries, bool are_points, std::size_t k, double max_distance, handle threads,
+         handle filters, handle exclude) {
         return self.visit([&](auto& asked) {
-          return Queries(asked).nearest(points, k, max_distance, {filters, exclude});
+          return Queries(asked).nearest(queries, are_points, k, max_distance, threads, {filters, exclude});
         });
       },
-      nb::arg("points").none(), nb::arg("k"), nb::arg("max_distance"));
+      nb::arg("queries").none(), nb::arg("are_points"), nb::arg("k"), nb::arg("max_distance"),
+      nb::arg("threads").none());
 }
 
 }  // namespace broadside::python

@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <vector>
 
 #include "broadside/box.hpp"
+#include "broadside/box_view.hpp"
+#include "broadside/executor.hpp"
 #include "broadside/export.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/queries.hpp"
@@ -20,8 +23,19 @@ template <int D, typename Real>
 class BvhIndex;
 }  // namespace algorithm
 
+/// Stands for no box in arrays of ids.
+inline constexpr BoxId no_box{0xFFFFFFFFU};
+
+/// The options of BoxIndex::nearest_of_each().
+struct NearestOfEachOptions {
+  double max_distance = std::numeric_limits<double>::infinity();  ///< as in NearestOptions
+  std::span<const Filter> filters{};  ///< a filter for each query, or none, as in QueryOptions
+  std::span<const BoxId> except{};    ///< for each query a box that it does not find, or none; may be no_box
+  Workers workers{};
+};
+
 /// Finds the boxes of a frame that overlap a box, contain a point, are hit by a ray cast or a box cast, or
-/// are nearest to a point. Results are exact, by the definitions in queries.hpp and box.hpp.
+/// are nearest to a point or a box. Results are exact, by the definitions in queries.hpp and box.hpp.
 ///
 ///     BoxIndex<2> index;
 ///     index.update({.boxes = boxes});
@@ -43,7 +57,7 @@ class BROADSIDE_PUBLIC BoxIndex final {
  public:
   using Point = broadside::Point<D, Real>;
   using QueryOptions = broadside::QueryOptions<BoxId>;
-  using NearestOptions = broadside::NearestOptions<BoxId, Real>;
+  using NearestOptions = broadside::NearestOptions<BoxId>;
 
   BoxIndex();
   BoxIndex(BoxIndex&& other) noexcept;
@@ -80,24 +94,42 @@ class BROADSIDE_PUBLIC BoxIndex final {
     return first_hit(as_cast(ray), options);
   }
 
-  /// Visits the `count` boxes nearest to the point, or all if there are fewer, in one chunk, sorted by
-  /// distance and then by id.
-  bool nearest(const Point& point, std::size_t count, Visitor<Neighbour<Real>>& visitor,
-               const NearestOptions& options = {}) const;
+  /// Visits the `count` boxes nearest to a point or a box, or all if there are fewer, in one chunk, sorted by
+  /// distance_squared() and then by id. Nothing is near an absent box. For many queries, nearest_of_each() is
+  /// faster.
+  template <typename PointOrBox = Point>
+  bool nearest(const PointOrBox& from, std::size_t count, Visitor<Neighbour>& visitor,
+               const NearestOptions& options = {}) const {
+    return visit_nearest(box_of(from), count, visitor, options);
+  }
 
   /// The same in a vector: a new one, or `found`, which is cleared first.
-  [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Neighbour<Real>> nearest(
-      const Point& point, std::size_t count, const NearestOptions& options = {}) const {
-    std::vector<Neighbour<Real>> found;
-    nearest(point, count, found, options);
+  template <typename PointOrBox = Point>
+  [[nodiscard]] BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<Neighbour> nearest(
+      const PointOrBox& from, std::size_t count, const NearestOptions& options = {}) const {
+    std::vector<Neighbour> found;
+    nearest(from, count, found, options);
     return found;
   }
-  BROADSIDE_HIDDEN void nearest(const Point& point, std::size_t count, std::vector<Neighbour<Real>>& found,
+  template <typename PointOrBox = Point>
+  BROADSIDE_HIDDEN void nearest(const PointOrBox& from, std::size_t count, std::vector<Neighbour>& found,
                                 const NearestOptions& options = {}) const {
     found.clear();
     nearest(
-        point, count, [&found](const Neighbour<Real>& one) { found.push_back(one); }, options);
+        from, count, [&found](const Neighbour& one) { found.push_back(one); }, options);
   }
+
+  /// Finds the `count` > 0 boxes nearest to each of `boxes`, sorted as by nearest(). Writes their ids to
+  /// `found` and their squared distances to `distances_squared`, `count` places for each query in turn.
+  /// Places without a box, after the others, get no_box and infinity.
+  ///
+  /// Queries that are close to each other in space are asked one after the other, so that they share caches.
+  /// The order of `boxes` has little effect on the time, and the threads of `workers` none on the result.
+  ///
+  /// Throws InvalidQuery if a box is invalid, `count` is 0, `max_distance` is negative or NaN, or a span has
+  /// another length than it must have. Nothing is written then.
+  void nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
+                       std::span<double> distances_squared, const NearestOfEachOptions& options = {}) const;
 
   /// The same with a function of each BoxId, Hit or Neighbour.
   template <VisitFunction<BoxId> Function>
@@ -114,11 +146,11 @@ class BROADSIDE_PUBLIC BoxIndex final {
     detail::FunctionVisitor<Hit<Real>, std::remove_reference_t<Function>> visitor(function);
     return hits(ray_or_cast, static_cast<Visitor<Hit<Real>>&>(visitor), options);
   }
-  template <VisitFunction<Neighbour<Real>> Function>
-  bool nearest(const Point& point, std::size_t count, Function&& function,
+  template <typename PointOrBox = Point, VisitFunction<Neighbour> Function>
+  bool nearest(const PointOrBox& from, std::size_t count, Function&& function,
                const NearestOptions& options = {}) const {
-    detail::FunctionVisitor<Neighbour<Real>, std::remove_reference_t<Function>> visitor(function);
-    return nearest(point, count, static_cast<Visitor<Neighbour<Real>>&>(visitor), options);
+    detail::FunctionVisitor<Neighbour, std::remove_reference_t<Function>> visitor(function);
+    return visit_nearest(box_of(from), count, visitor, options);
   }
 
   /// The number of bytes held.
@@ -126,6 +158,11 @@ class BROADSIDE_PUBLIC BoxIndex final {
 
  private:
   friend class algorithm::BvhIndex<D, Real>;
+
+  static Box<D, Real> box_of(const Point& point) { return {point, point}; }
+  static const Box<D, Real>& box_of(const Box<D, Real>& box) { return box; }
+  bool visit_nearest(const Box<D, Real>& box, std::size_t count, Visitor<Neighbour>& visitor,
+                     const NearestOptions& options) const;
 
   std::unique_ptr<algorithm::BvhIndex<D, Real>> tree_;
 };

@@ -73,13 +73,23 @@ template <int D, typename Real>
   return t_enter(as_cast(ray), box);
 }
 
-/// The squared distance from a point to a present box: 0 if the box contains the point, otherwise the sum of
-/// the squared distances along each axis, in order of the axes. Infinity if it overflows.
+/// The squared Euclidean distance of two present boxes: 0 if they overlap, otherwise the sum of the squares
+/// of the gaps along each axis, in order of the axes. A gap is the lower bound of one box less the upper
+/// bound of the other. Each gap, square and sum is rounded to double, also for boxes of floats. So among
+/// boxes of floats only the sum of squares is rounded, unless their coordinates differ in size by a factor of
+/// 2^29. Infinity if it overflows, which floats do not.
 ///
 /// It is compiled into the library, so that every program rounds it in the same way.
 template <int D, typename Real>
-[[nodiscard]] BROADSIDE_PUBLIC Real distance_squared(const std::type_identity_t<Point<D, Real>>& point,
-                                                     const Box<D, Real>& box) noexcept;
+[[nodiscard]] BROADSIDE_PUBLIC double distance_squared(const Box<D, Real>& a,
+                                                       const std::type_identity_t<Box<D, Real>>& b) noexcept;
+
+/// The squared distance from a point, which is a box with min = max.
+template <int D, typename Real>
+[[nodiscard]] double distance_squared(const std::type_identity_t<Point<D, Real>>& point,
+                                      const Box<D, Real>& box) noexcept {
+  return distance_squared<D, Real>(Box<D, Real>{point, point}, box);
+}
 
 /// A box that a ray or a cast box hits, and the t of the first contact.
 template <typename Real>
@@ -90,11 +100,10 @@ struct Hit {
   friend constexpr bool operator==(const Hit&, const Hit&) = default;
 };
 
-/// A box and its squared distance from a point.
-template <typename Real>
+/// A box and its squared distance from a query's box or point.
 struct Neighbour {
   BoxId box;
-  Real distance_squared;
+  double distance_squared;
 
   friend constexpr bool operator==(const Neighbour&, const Neighbour&) = default;
 };
@@ -107,15 +116,15 @@ struct QueryOptions {
 };
 
 /// The boxes that nearest() may find; all by default.
-template <typename Id, typename Real>
+template <typename Id>
 struct NearestOptions {
   const Filter* filter = nullptr;  ///< as in QueryOptions
   std::optional<Id> except{};
 
   /// Boxes that are farther away are not found. At least 0, and may be infinite. A box is near enough if
-  /// distance_squared() <= max_distance * max_distance, with the product rounded to Real. So a box at exactly
-  /// max_distance along one axis is found. With 0, only boxes that contain the point are found.
-  Real max_distance = std::numeric_limits<Real>::infinity();
+  /// distance_squared() <= max_distance * max_distance, with the product rounded to double. So a box at
+  /// exactly max_distance along one axis is found. With 0, only boxes that overlap the query's are found.
+  double max_distance = std::numeric_limits<double>::infinity();
 };
 
 /// Receives the results of a query in chunks. `Found` is BoxId, Hit or Neighbour.

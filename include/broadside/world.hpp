@@ -203,11 +203,10 @@ struct HandleHit {
   friend constexpr bool operator==(const HandleHit&, const HandleHit&) = default;
 };
 
-/// A box and its squared distance from a point.
-template <typename Real>
+/// A box and its squared distance from a query's box or point.
 struct HandleNeighbour {
   Handle handle;
-  Real distance_squared;
+  double distance_squared;
 
   friend constexpr bool operator==(const HandleNeighbour&, const HandleNeighbour&) = default;
 };
@@ -314,7 +313,7 @@ class BROADSIDE_PUBLIC World {
   }
 
   using QueryOptions = broadside::QueryOptions<Handle>;
-  using NearestOptions = broadside::NearestOptions<Handle, Real>;
+  using NearestOptions = broadside::NearestOptions<Handle>;
 
   /// Queries about the boxes as they are now, with the costs and exceptions of BoxIndex. Margins, ignored
   /// pairs and predicates have no effect. `function` takes a Handle, or a Handle and its t_enter, and ends
@@ -347,22 +346,24 @@ class BROADSIDE_PUBLIC World {
     return HandleHit<Real>{handle_of(hit->box), hit->t_enter};
   }
 
-  /// Finds the `count` nearest boxes, or all if there are fewer, ordered by distance and then by slot: see
-  /// BoxIndex::nearest(). Returns them, or puts them into `found`, which is cleared first.
-  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<HandleNeighbour<Real>> nearest(
-      const Point<D, Real>& point, std::size_t count, const NearestOptions& options = {}) const {
-    std::vector<HandleNeighbour<Real>> found;
-    nearest(point, count, found, options);
+  /// Finds the `count` boxes nearest to a point or a box, or all if there are fewer, ordered by distance and
+  /// then by slot: see BoxIndex::nearest(). Returns them, or puts them into `found`, which is cleared first.
+  template <typename PointOrBox = Point<D, Real>>
+  BROADSIDE_HIDDEN BROADSIDE_CALLERS_VECTOR std::vector<HandleNeighbour> nearest(
+      const PointOrBox& from, std::size_t count, const NearestOptions& options = {}) const {
+    std::vector<HandleNeighbour> found;
+    nearest(from, count, found, options);
     return found;
   }
-  BROADSIDE_HIDDEN void nearest(const Point<D, Real>& point, std::size_t count,
-                                std::vector<HandleNeighbour<Real>>& found,
+  template <typename PointOrBox = Point<D, Real>>
+  BROADSIDE_HIDDEN void nearest(const PointOrBox& from, std::size_t count,
+                                std::vector<HandleNeighbour>& found,
                                 const NearestOptions& options = {}) const {
     found.clear();
-    const auto add = [&](const Neighbour<Real>& one) {
+    const auto add = [&](const Neighbour& one) {
       found.push_back({handle_of(one.box), one.distance_squared});
     };
-    box_index().nearest(point, count, add, {options.filter, slot_of(options.except), options.max_distance});
+    box_index().nearest(from, count, add, {options.filter, slot_of(options.except), options.max_distance});
   }
 
   /// The index that queries use, brought up to date; valid until the world changes. Its ids are slots:

@@ -4,6 +4,11 @@
 #define HWY_TARGET_INCLUDE "kernels/bvh.cpp"
 #include "kernels/bvh.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -79,28 +84,139 @@ bool overlapping(const BvhView<D>& tree, const Box<D>& box, FoundBoxes& found) {
   });
 }
 
+/// A box to measure distances from, in every lane.
 template <int D>
-std::uint32_t near(const Block<D>& node, const DistanceQuery<D>& query, float limit,
-                   std::array<float, fan_out>& result) {
-  std::uint32_t bits = 0;
-  for (std::size_t at = 0; at < fan_out; at += lanes) {
-    FloatVector sum = hn::Zero(Floats());
+class DistanceFrom {
+ public:
+  HWY_INLINE explicit DistanceFrom(const DistanceQuery<D>& query) {
     for (int axis = 0; axis < D; ++axis) {
-      const FloatVector min = load(node.min[axis], at);
-      const FloatVector max = load(node.max[axis], at);
-      const FloatVector low = all(query.point.min[axis]);
-      const FloatVector high = all(query.point.max[axis]);
-      // Selected so that the difference of equal infinities is never used.
-      const FloatVector before = hn::IfThenElseZero(hn::Lt(high, min), hn::Sub(min, high));
-      const FloatVector gap = hn::IfThenElse(hn::Lt(max, low), hn::Sub(low, max), before);
-      const FloatVector weighted = hn::Mul(gap, all(query.weight[axis]));
-      sum = hn::Add(sum, hn::Mul(weighted, weighted));
+      low_[axis] = all(query.box.min[axis]);
+      high_[axis] = all(query.box.max[axis]);
+      weight_[axis] = all(query.weight[axis]);
     }
-    sum = hn::Sub(hn::Mul(hn::Min(sum, all(query.max)), all(query.share)), all(query.allowance));
-    hn::StoreU(sum, Floats(), result.data() + at);
-    bits |= bits_of(hn::Le(sum, all(limit))) << at;
   }
-  return bits;
+
+  /// Which children from `at` on are within the squared distance `limit`. Sets `sum` to the distances.
+  HWY_INLINE FloatMask within(const Block<D>& node, std::size_t at, float limit, FloatVector& sum) const {
+    sum = hn::Zero(Floats());
+    FloatMask is_there = hn::Le(load(node.min[0], at), load(node.max[0], at));
+    for (int axis = 0; axis < D; ++axis) {
+      const FloatVector gap = hn::Max(hn::Sub(load(node.min[axis], at), high_[axis]),
+                                      hn::Sub(low_[axis], load(node.max[axis], at)));
+      // The difference of equal infinities is NaN, and the other difference then not positive.
+      const FloatVector weighted =
+          hn::Mul(hn::IfThenElseZero(hn::Gt(gap, hn::Zero(Floats())), gap), weight_[axis]);
+      sum = hn::MulAdd(weighted, weighted, sum);
+    }
+    return hn::And(is_there, hn::Le(sum, all(limit)));
+  }
+
+ private:
+  FloatVector low_[D];
+  FloatVector high_[D];
+  FloatVector weight_[D];
+};
+
+/// A depth-first traversal of what is near, of a node's children the nearest one first. limit() is the
+/// greatest squared distance that counts; leaf(number) searches a leaf, and may lower it.
+template <int D, typename Limit, typename Leaf>
+HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& from, const Limit& limit,
+                              const Leaf& leaf) {
+  alignas(64) std::uint32_t waiting[(longest_path + 2) * fan_out];
+  alignas(64) float distances[(longest_path + 2) * fan_out];
+  std::size_t count = 1;
+  waiting[0] = tree.root;
+  distances[0] = 0;
+  while (count > 0) {
+    if (!(distances[--count] <= limit())) continue;
+    const std::uint32_t number = waiting[count];
+    if ((number & leaf_bit) != 0) {
+      leaf(number & ~leaf_bit);
+      continue;
+    }
+    const std::size_t begin = count;
+    for (std::size_t at = 0; at < fan_out; at += lanes) {
+      FloatVector sum;
+      const FloatMask mask = from.within(tree.nodes[number], at, limit(), sum);
+      count += append_entries(tree.nodes[number], at, mask, sum, waiting + count, distances + count);
+    }
+    for (std::size_t i = begin + 1; i < count; ++i) {
+      const float distance = distances[i];
+      const std::uint32_t child = waiting[i];
+      std::size_t to = i;
+      for (; to > begin && distances[to - 1] < distance; --to) {
+        distances[to] = distances[to - 1];
+        waiting[to] = waiting[to - 1];
+      }
+      distances[to] = distance;
+      waiting[to] = child;
+    }
+  }
+}
+
+template <int D>
+void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& found) {
+  const DistanceFrom<D> from(query);
+  traverse_near(
+      tree, from, [&] { return found.t_max; },
+      [&](std::uint32_t number) HWY_ATTR {
+        for (std::size_t at = 0; at < fan_out; at += lanes) {
+          FloatVector sum;
+          const FloatMask near = from.within(tree.nodes[number], at, found.t_max, sum);
+          const auto hits = hn::RebindMask(Numbers(), near);
+          const auto slots = hn::Iota(Numbers(), static_cast<std::uint32_t>(number * fan_out + at));
+          const auto sums = hn::BitCast(Numbers(), sum);
+          hn::StoreU(compress(Numbers(), slots, hits), Numbers(), found.ids.data() + found.count);
+          hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), sums, hits)), Floats(),
+                     found.t_enter.data() + found.count);
+          found.count += count_true(Floats(), near);
+        }
+        if (found.count >= found.full) found.take();
+      });
+}
+
+/// Inserts a box into the lists of the queries from `at` on: `sum` are its distances.
+template <int D>
+HWY_INLINE void insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum, std::uint32_t slot) {
+  if (all_false(Floats(), hn::Lt(sum, load(group.distances[group.count - 1], at)))) return;
+  NumberVector slots = hn::Set(Numbers(), slot);
+  for (std::size_t i = 0; i < group.count; ++i) {
+    const FloatVector other = load(group.distances[i], at);
+    const NumberVector others = hn::Load(Numbers(), group.slots[i].data() + at);
+    const FloatMask is_nearer = hn::Lt(sum, other);
+    const auto moves = hn::RebindMask(Numbers(), is_nearer);
+    hn::Store(hn::IfThenElse(is_nearer, sum, other), Floats(), group.distances[i].data() + at);
+    hn::Store(hn::IfThenElse(moves, slots, others), Numbers(), group.slots[i].data() + at);
+    sum = hn::IfThenElse(is_nearer, other, sum);
+    slots = hn::IfThenElse(moves, others, slots);
+  }
+}
+
+template <int D>
+void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
+  float limit = group.limit;
+  const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
+  traverse_near(
+      tree, from_all, [&] { return limit; },
+      [&](std::uint32_t number) HWY_ATTR {
+        const Block<D>& leaf = tree.nodes[number];
+        std::uint32_t near = 0;
+        FloatVector sum;
+        for (std::size_t at = 0; at < fan_out; at += lanes)
+          near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
+        for (; near != 0; near &= near - 1) {
+          const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+          const DistanceFrom<D> from({leaf.box(lane), group.weight});
+          for (std::size_t at = 0; at < fan_out; at += lanes) {
+            from.within(group.queries, at, infinity, sum);
+            // Finite, so that a list with room takes it.
+            sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
+            insert_near(group, at, sum, static_cast<std::uint32_t>(number * fan_out + lane));
+          }
+        }
+        const std::array<float, fan_out>& farthest = group.distances[group.count - 1];
+        limit = std::min(group.limit, *std::max_element(farthest.begin(), farthest.end()));
+      });
 }
 
 }  // namespace
@@ -114,6 +230,8 @@ constexpr auto& overlapping_2 = overlapping<2>;
 constexpr auto& overlapping_3 = overlapping<3>;
 constexpr auto& near_2 = near<2>;
 constexpr auto& near_3 = near<3>;
+constexpr auto& near_group_2 = near_group<2>;
+constexpr auto& near_group_3 = near_group<3>;
 
 }  // namespace broadside::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -129,6 +247,8 @@ HWY_EXPORT(overlapping_2);
 HWY_EXPORT(overlapping_3);
 HWY_EXPORT(near_2);
 HWY_EXPORT(near_3);
+HWY_EXPORT(near_group_2);
+HWY_EXPORT(near_group_3);
 
 template <>
 Box<2> bounds_of(const Block<2>& node) {
@@ -156,15 +276,36 @@ bool find_overlapping(const BvhView<3>& tree, const Box<3>& box, FoundBoxes& fou
   return HWY_DYNAMIC_DISPATCH(overlapping_3)(tree, box, found);
 }
 template <>
-std::uint32_t near_children(const Block<2>& node, const DistanceQuery<2>& query, float limit,
-                            std::array<float, fan_out>& result) {
-  return HWY_DYNAMIC_DISPATCH(near_2)(node, query, limit, result);
+void find_near(const BvhView<2>& tree, const DistanceQuery<2>& query, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(near_2)(tree, query, found);
 }
 template <>
-std::uint32_t near_children(const Block<3>& node, const DistanceQuery<3>& query, float limit,
-                            std::array<float, fan_out>& result) {
-  return HWY_DYNAMIC_DISPATCH(near_3)(node, query, limit, result);
+void find_near(const BvhView<3>& tree, const DistanceQuery<3>& query, FoundBoxes& found) {
+  HWY_DYNAMIC_DISPATCH(near_3)(tree, query, found);
 }
+template <>
+void find_near(const BvhView<2>& tree, NearGroup<2>& group) {
+  HWY_DYNAMIC_DISPATCH(near_group_2)(tree, group);
+}
+template <>
+void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
+  HWY_DYNAMIC_DISPATCH(near_group_3)(tree, group);
+}
+
+template <int D>
+void NearGroup<D>::start(std::size_t size) {
+  count = size;
+  for (std::size_t i = 0; i < count; ++i) {
+    slots[i].fill(no_slot);
+    for (std::size_t lane = 0; lane < fan_out; ++lane) {
+      const bool is_there = queries.min[0][lane] <= queries.max[0][lane];
+      distances[i][lane] =
+          is_there ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
+    }
+  }
+}
+template void NearGroup<2>::start(std::size_t);
+template void NearGroup<3>::start(std::size_t);
 
 }  // namespace broadside::kernels
 #endif  // HWY_ONCE

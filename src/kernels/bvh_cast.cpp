@@ -23,16 +23,6 @@ namespace {
 constexpr float margin = 1 + 0x1p-20f;
 constexpr float min_normal = 0x1p-126f;
 
-/// As append(); also appends the parameters at which the cast enters these children to `entries_to`.
-template <int D>
-HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, FloatMask mask,
-                                      FloatVector entries, std::uint32_t* to, float* entries_to) {
-  const auto hits = hn::RebindMask(Numbers(), mask);
-  const auto bits = hn::BitCast(Numbers(), entries);
-  hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), entries_to);
-  return append(node, at, mask, to);
-}
-
 /// A cast, in every lane.
 template <int D>
 class Cast {

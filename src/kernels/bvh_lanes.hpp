@@ -40,6 +40,17 @@ HWY_INLINE std::size_t append(const Block<D>& node, std::size_t at, FloatMask ma
   return count_true(Floats(), mask);
 }
 
+/// As append(); also appends a number of each of these children, such as where a cast enters it, to
+/// `values_to`.
+template <int D>
+HWY_INLINE std::size_t append_entries(const Block<D>& node, std::size_t at, FloatMask mask,
+                                      FloatVector values, std::uint32_t* to, float* values_to) {
+  const auto hits = hn::RebindMask(Numbers(), mask);
+  const auto bits = hn::BitCast(Numbers(), values);
+  hn::StoreU(hn::BitCast(Floats(), compress(Numbers(), bits, hits)), Floats(), values_to);
+  return append(node, at, mask, to);
+}
+
 /// A depth-first traversal. `may_hold(node, at)` is the mask of the children from `at` on to descend to.
 /// Calls `leaf` with each leaf that it reaches, until one call returns false; returns false then.
 template <int D, typename MayHold, typename Leaf>

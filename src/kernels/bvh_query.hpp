@@ -50,15 +50,12 @@ struct CastQuery {
   bool exact;                      ///< whether boxes are tested by the definition, with divisions
 };
 
-/// A query for squared distances from a point, given as a box that contains it: the sum of the squares of the
-/// weighted gaps on the axes, at most `max`, times `share`, less `allowance`.
+/// A query for what is near a box. A squared distance is the sum of the squares of the weighted gaps on the
+/// axes, computed in float.
 template <int D>
 struct DistanceQuery {
-  Box<D> point;
+  Box<D> box;
   std::array<float, D> weight;
-  float share = 1;
-  float allowance = 0;
-  float max = 0;
 };
 
 /// Writes the boxes that overlap `box`; returns false if take() ended the search. The tree must have a root.
@@ -75,10 +72,31 @@ bool find_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& foun
 template <int D>
 void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes& found);
 
-/// Sets `distances` to the squared distances of the node's children, as `query` defines them. Returns a bit
-/// for each child that is not farther away than `limit`; those of places without a child mean nothing.
+/// Writes the boxes whose squared distance is at most `found.t_max`: to `found.ids` their slots in the tree,
+/// to `found.t_enter` the distances. Of a node's children, goes to the nearest one first.
 template <int D>
-std::uint32_t near_children(const Block<D>& node, const DistanceQuery<D>& query, float limit,
-                            std::array<float, fan_out>& distances);
+void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& found);
+
+/// Sixteen queries that are close to each other, and the boxes nearest to each: lists, one per lane, of slots
+/// in the tree and of squared distances as in DistanceQuery, in ascending order of these.
+template <int D>
+struct NearGroup {
+  static constexpr std::size_t max_count = 32;
+
+  /// Empties the lists, of which each will have `size` boxes, up to max_count.
+  void start(std::size_t size);
+
+  Block<D> queries;  ///< lanes without a query hold nan_box()
+  std::array<float, D> weight;
+  float limit;  ///< boxes that are farther away need not be found
+  std::size_t count;
+  alignas(64) std::array<std::array<float, fan_out>, max_count> distances;
+  alignas(
+      64) std::array<std::array<std::uint32_t, fan_out>, max_count> slots;  ///< no_slot after the last one
+};
+
+/// Fills the lists, by one traversal for all queries.
+template <int D>
+void find_near(const BvhView<D>& tree, NearGroup<D>& group);
 
 }  // namespace broadside::kernels

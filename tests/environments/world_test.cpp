@@ -59,9 +59,9 @@ void ask(const World<D, Real>& world, const Box<D, Real>& box, Log& log) {
   const auto add = [&log](Handle handle) { log.add(handle); };
   world.overlapping(box, add);
   world.containing(box.max, add);
-  std::vector<HandleNeighbour<Real>> nearest;
+  std::vector<HandleNeighbour> nearest;
   world.nearest(box.max, 5, nearest);
-  for (const HandleNeighbour<Real>& near : nearest) {
+  for (const HandleNeighbour& near : nearest) {
     log.add(near.handle);
     log.add(near.distance_squared);
     log.add(distance_squared(box.max, world.box(near.handle)));

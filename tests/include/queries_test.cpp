@@ -107,6 +107,15 @@ TEST(DistanceSquared, IsZeroInsideAndDefinedForInfinities) {
   EXPECT_EQ(distance_squared({4, -4}, box), 25);
   EXPECT_EQ(distance_squared({0, infinity}, box), 0);
   EXPECT_EQ(distance_squared({-infinity, 0}, box), infinity);
+  EXPECT_EQ(distance_squared(Box2{{4, -6}, {5, -4}}, box), 25);
+  EXPECT_EQ(distance_squared(box, Box2{{1, -3}, {5, 0}}), 0) << "touching";
+  EXPECT_EQ(distance_squared(Box2{{-1, infinity}, {0, infinity}}, box), 0);
+}
+
+TEST(DistanceSquared, OfFloatsIsComputedInDouble) {
+  const Box2 box{{3e38f, 1 + 0x1p-20f}, {3e38f, 2}};
+  EXPECT_EQ(distance_squared({3e38f, 0}, box), (1 + 0x1p-20) * (1 + 0x1p-20));
+  EXPECT_EQ(distance_squared({-3e38f, 2}, box), 4 * (double{3e38f} * double{3e38f}));
 }
 
 TEST(BoxIndex, AnswersNothingBeforeAnUpdateAndWithoutBoxes) {
@@ -117,7 +126,7 @@ TEST(BoxIndex, AnswersNothingBeforeAnUpdateAndWithoutBoxes) {
   const std::vector<Box2> absent(40, absent_box<2>());
   index.update({.boxes = absent, .changed = {}});
   EXPECT_THAT(overlapping(index, everything), IsEmpty());
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   index.nearest({0, 0}, 3, found);
   EXPECT_THAT(found, IsEmpty());
 }
@@ -207,22 +216,21 @@ TEST(BoxIndex, OfEqualEntriesAndDistancesTakesTheLeastIds) {
   const std::vector<Box2> boxes(300, Box2{{5, 0}, {6, 1}});
   auto index = index_of(boxes);
   EXPECT_EQ(index.first_hit(Ray<2>{{0, 0.5f}, {1, 0}}), (Hit<float>{BoxId(0), 5}));
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   index.nearest({3, 0}, 3, found);
-  EXPECT_THAT(found, ElementsAre(Neighbour<float>{BoxId(0), 4}, Neighbour<float>{BoxId(1), 4},
-                                 Neighbour<float>{BoxId(2), 4}));
+  EXPECT_THAT(found, ElementsAre(Neighbour{BoxId(0), 4}, Neighbour{BoxId(1), 4}, Neighbour{BoxId(2), 4}));
 }
 
 /// The boxes of which the distance to a point is at most `max_distance`, by the definition.
 template <int D, typename Real>
-std::vector<Neighbour<Real>> within(const std::vector<Box<D, Real>>& boxes, const Point<D, Real>& point,
-                                    Real max_distance) {
-  std::vector<Neighbour<Real>> found;
+std::vector<Neighbour> within(const std::vector<Box<D, Real>>& boxes, const Point<D, Real>& point,
+                              double max_distance) {
+  std::vector<Neighbour> found;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Real squared = distance_squared(point, boxes[i]);
+    const double squared = distance_squared(point, boxes[i]);
     if (squared <= max_distance * max_distance) found.push_back({BoxId(i), squared});
   }
-  std::ranges::stable_sort(found, {}, &Neighbour<Real>::distance_squared);
+  std::ranges::stable_sort(found, {}, &Neighbour::distance_squared);
   return found;
 }
 
@@ -242,7 +250,7 @@ void expect_nearest_within() {
   point.fill(5);
   for (const Real max_distance :
        {Real(0), Real(0.1), Real(1), boxes[7].max[0], Real(1e6), std::numeric_limits<Real>::infinity()}) {
-    const auto expected = within(boxes, point, max_distance);
+    const auto expected = within(boxes, point, double{max_distance});
     EXPECT_EQ(index.nearest(point, 1000, {.max_distance = max_distance}), expected) << max_distance;
     if (expected.size() < 3) continue;
     const std::vector few(expected.begin(), expected.begin() + 3);
@@ -268,8 +276,7 @@ TEST(BoxIndex, FindsABoxThatIsExactlyAsFarAsTheGreatestDistance) {
   EXPECT_THAT(index.nearest({0, 0}, 9, {.max_distance = less}), IsEmpty());
   EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = 5}).size(), 2U);
   EXPECT_EQ(index.nearest({0, 0}, 9, {.max_distance = std::nextafter(5.0f, 0.0f)}).size(), 1U);
-  EXPECT_EQ(index.nearest({tenth, 0.5f}, 9, {.max_distance = 0}),
-            (std::vector{Neighbour<float>{BoxId(0), 0}}));
+  EXPECT_EQ(index.nearest({tenth, 0.5f}, 9, {.max_distance = 0}), (std::vector{Neighbour{BoxId(0), 0}}));
 }
 
 TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
@@ -279,13 +286,60 @@ TEST(BoxIndex, FindsNearestOnlyWhatAcceptsTheFilter) {
   index.update({.boxes = row(6), .changed = {}, .filters = filters});
   const Filter filter{.mask = 1};
   EXPECT_THAT(index.nearest({0, 0}, 9, {.filter = &filter, .except = BoxId(2), .max_distance = 6}),
-              ElementsAre(Neighbour<float>{BoxId(1), 4}, Neighbour<float>{BoxId(3), 36}));
+              ElementsAre(Neighbour{BoxId(1), 4}, Neighbour{BoxId(3), 36}));
+}
+
+TEST(BoxIndex, FindsTheNearestToABox) {
+  const auto index = index_of(row(5));
+  const Box2 between{{3.25f, 3}, {3.5f, 9}};
+  EXPECT_THAT(index.nearest(between, 3), ElementsAre(Neighbour{BoxId(1), 4.0625}, Neighbour{BoxId(2), 4.25},
+                                                     Neighbour{BoxId(0), 9.0625}));
+  EXPECT_THAT(index.nearest(Box2{{2, 0}, {6, 0}}, 3),
+              ElementsAre(Neighbour{BoxId(1), 0}, Neighbour{BoxId(2), 0}, Neighbour{BoxId(3), 0}));
+  EXPECT_THAT(index.nearest(absent_box<2>(), 3), IsEmpty());
+  EXPECT_THROW(static_cast<void>(index.nearest(Box2{{1, 0}, {0, 0}}, 1)), InvalidQuery);
+}
+
+TEST(BoxIndex, WritesTheNearestOfEachQueryInARow) {
+  const auto index = index_of(row(2));
+  const std::vector<Box2> queries = {{{7, 0}, {8, 0}}, absent_box<2>(), {{0, 0}, {0, 0}}};
+  std::vector<BoxId> found(9);
+  std::vector<double> distances(9);
+  index.nearest_of_each(queries, 3, found, distances);
+  EXPECT_THAT(found,
+              ElementsAre(BoxId(1), BoxId(0), no_box, no_box, no_box, no_box, BoxId(0), BoxId(1), no_box));
+  EXPECT_THAT(distances, ElementsAre(16, 36, infinity, infinity, infinity, infinity, 0, 4, infinity));
+  const std::vector<BoxId> except = {BoxId(1), no_box, BoxId(0)};
+  index.nearest_of_each(queries, 3, found, distances, {.max_distance = 2, .except = except});
+  EXPECT_THAT(found, ElementsAre(no_box, no_box, no_box, no_box, no_box, no_box, BoxId(1), no_box, no_box));
+}
+
+TEST(BoxIndex, RefusesBadQueriesOfManyAndWritesNothing) {
+  const auto index = index_of(row(2));
+  const std::vector<Box2> bad = {{{0, 0}, {1, 1}}, {{0, nan}, {1, 1}}};
+  std::vector<BoxId> found(4, BoxId(7));
+  std::vector<double> distances(4, 7);
+  const auto message = [&](std::span<const Box2> queries, std::size_t count,
+                           const NearestOfEachOptions& options) {
+    return message_of<InvalidQuery>(
+        [&] { index.nearest_of_each(queries, count, found, distances, options); });
+  };
+  const std::span<const Box2> two(bad);
+  EXPECT_THAT(message(two, 2, {}), HasSubstr("query 1 has min (0, nan)"));
+  EXPECT_THAT(message(two, 0, {}), HasSubstr("k is 0; expected at least 1"));
+  EXPECT_THAT(message(two, 3, {}), HasSubstr("found has 4 places for 2 queries; expected 3 for each"));
+  EXPECT_THAT(message(two, 2, {.max_distance = nan}), HasSubstr("max_distance is nan; expected at least 0"));
+  EXPECT_THAT(message(two, 2, {.max_distance = -1}), HasSubstr("max_distance is -1"));
+  const std::vector<Filter> filters(1);
+  EXPECT_THAT(message(two, 2, {.filters = filters}), HasSubstr("filters has 1 places for 2 queries"));
+  EXPECT_THAT(found, testing::Each(BoxId(7)));
+  EXPECT_THAT(distances, testing::Each(7));
 }
 
 TEST(BoxIndex, HandsTheNearestToAFunctionUntilItEnds) {
   const auto index = index_of(row(100));
   std::vector<BoxId> found;
-  const bool is_whole = index.nearest({0, 0}, 90, [&found](const Neighbour<float>& one) {
+  const bool is_whole = index.nearest({0, 0}, 90, [&found](const Neighbour& one) {
     found.push_back(one.box);
     return found.size() < 3;
   });
@@ -310,7 +364,7 @@ TEST(BoxIndex, TakesTheFilterAndTheBoxLeftOutInEveryQuery) {
 TEST(BoxIndex, RefusesQuestionsWithoutAMeaning) {
   const auto index = index_of(row(3));
   const auto ignore = [](auto) {};
-  std::vector<Neighbour<float>> found;
+  std::vector<Neighbour> found;
   const Ray<2> good{{0, 0}, {1, 0}};
   Ray<2> bad = good;
   bad.origin[1] = infinity;

@@ -82,18 +82,40 @@ TEST(BvhNode, TakesABoxIntoTheChildThatGrowsLeastAndOfThoseTheSmallest) {
   });
 }
 
-TEST(BvhNode, TellsHowFarItsChildrenAre) {
-  on_nodes([]<int D>(Rng& rng, const std::vector<Box<D>>& children) {
-    const Box<D> point = random_box<D>(rng, {.places = 20, .max_extent = 0, .infinite_one_in = 0});
-    DistanceQuery<D> query{.point = point, .weight = {}, .max = infinity};
-    query.weight.fill(1);
-    std::array<float, fan_out> found;
-    const float limit = algorithm::squared_distance(point.min, children[0]);
-    const std::uint32_t near = near_children(node_of(children), query, limit, found);
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      const float distance = algorithm::squared_distance(point.min, children[i]);
-      EXPECT_EQ(found[i], distance) << i;
-      EXPECT_EQ(near >> i & 1, distance <= limit ? 1u : 0u) << i;
+/// Collects the slots of the boxes that a search for near boxes finds.
+struct NearCollector final : FoundBoxes {
+  bool take() override {
+    slots.insert(slots.end(), ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
+    count = 0;
+    return true;
+  }
+
+  std::vector<std::uint32_t> slots;
+};
+
+TEST(BvhNear, FindsTheBoxesWithinADistance) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(6);
+    for (int round = 0; round < 200; ++round) {
+      const std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
+      algorithm::DynamicBvh<D> tree;
+      tree.build(boxes);
+      DistanceQuery<D> query{.box = random_box<D>(rng, {.places = 20, .max_extent = 2}), .weight = {}};
+      query.weight.fill(1);
+      NearCollector found;
+      found.t_max = rng.one_in(4) ? infinity : static_cast<float>(rng.whole(0, 40));
+      find_near(tree.view(), query, found);
+      found.take();
+      std::vector<std::uint32_t> ids;
+      for (const std::uint32_t slot : found.slots)
+        ids.push_back(tree.view().nodes[slot / fan_out].id[slot % fan_out]);
+      std::ranges::sort(ids);
+      std::vector<std::uint32_t> expected;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (algorithm::squared_distance<D, float>(query.box, boxes[i]) <= found.t_max)
+          expected.push_back(static_cast<std::uint32_t>(i));
+      }
+      EXPECT_EQ(ids, expected);
     }
   });
 }

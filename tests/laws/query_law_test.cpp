@@ -26,8 +26,7 @@ void PrintTo(const Hit<Real>& hit, std::ostream* out) {
   *out << "box " << index(hit.box) << " at " << hit.t_enter;
 }
 
-template <typename Real>
-void PrintTo(const Neighbour<Real>& neighbour, std::ostream* out) {
+void PrintTo(const Neighbour& neighbour, std::ostream* out) {
   *out << "box " << index(neighbour.box) << " at the square of " << std::sqrt(neighbour.distance_squared);
 }
 
@@ -156,8 +155,10 @@ class QueryLaw : public testing::Test {
       Point point;
       for (int axis = 0; axis < D; ++axis) point[axis] = coordinate(boxes, axis);
       expect_nearest(index, boxes, point, filter, except, counts);
+      expect_nearest(index, boxes, any_box(boxes), filter, except, counts);
       if (this->HasFailure()) return;
     }
+    expect_nearest_of_each(index, boxes, filters);
   }
 
   template <typename Counts>
@@ -197,24 +198,68 @@ class QueryLaw : public testing::Test {
     EXPECT_EQ(index.first_hit(cast, {filter, except}), first) << shown();
   }
 
+  /// The nearest boxes by the definition.
   template <typename Counts>
-  void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const Point& point,
-                      const Filter* filter, std::optional<BoxId> except, Counts counts) {
-    const std::size_t count = rng_.one_in(10) ? boxes.size() : rng_.below(12);
-    const Real max_distance = any_distance(boxes, point);
-    std::vector<Neighbour<Real>> expected;
+  std::vector<Neighbour> nearest(const Boxes& boxes, const Box<D, Real>& from, std::size_t count,
+                                 double max_distance, Counts counts) {
+    std::vector<Neighbour> expected;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (!counts(i)) continue;
-      const Real distance = distance_squared(point, boxes[i]);
+      if (!is_present(from) || !counts(i)) continue;
+      const double distance = distance_squared(from, boxes[i]);
       if (distance <= max_distance * max_distance) expected.push_back({BoxId(i), distance});
     }
-    std::ranges::stable_sort(expected, {}, &Neighbour<Real>::distance_squared);
+    std::ranges::stable_sort(expected, {}, &Neighbour::distance_squared);
     if (expected.size() > count) expected.resize(count);
-    std::vector<Neighbour<Real>> found = {{BoxId(7), 7}};
-    index.nearest(point, count, found, {filter, except, max_distance});
-    EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(point) << " within "
+    return expected;
+  }
+
+  static Box<D, Real> box_of(const Point& point) { return {point, point}; }
+  static Box<D, Real> box_of(const Box<D, Real>& box) { return box; }
+
+  template <typename PointOrBox, typename Counts>
+  void expect_nearest(const BoxIndex<D, Real>& index, const Boxes& boxes, const PointOrBox& from,
+                      const Filter* filter, std::optional<BoxId> except, Counts counts) {
+    const std::size_t count = rng_.one_in(10) ? boxes.size() : rng_.below(12);
+    const double max_distance = any_distance(boxes, box_of(from).min);
+    const auto expected = nearest(boxes, box_of(from), count, max_distance, counts);
+    std::vector<Neighbour> found = {{BoxId(7), 7}};
+    index.nearest(from, count, found, {filter, except, max_distance});
+    EXPECT_EQ(found, expected) << "nearest to " << testing::PrintToString(box_of(from).min) << " within "
                                << max_distance;
-    EXPECT_EQ(index.nearest(point, count, {filter, except, max_distance}), expected);
+    EXPECT_EQ(index.nearest(from, count, {filter, except, max_distance}), expected);
+  }
+
+  void expect_nearest_of_each(const BoxIndex<D, Real>& index, const Boxes& boxes,
+                              const std::vector<Filter>& filters) {
+    Boxes queries(rng_.below(30));
+    for (Box<D, Real>& query : queries) query = any_box(boxes);  // often one of `boxes`, which may be absent
+    std::vector<Filter> of_queries(rng_.one_in(3) ? queries.size() : 0);
+    for (Filter& filter : of_queries) filter.mask = rng_.one_in(2) ? 1 : 3;
+    std::vector<BoxId> except(rng_.one_in(2) ? queries.size() : 0);
+    for (BoxId& id : except) id = rng_.one_in(4) ? no_box : BoxId(rng_.below(boxes.size() + 1));
+    const std::size_t count = rng_.one_in(5) ? boxes.size() + 1 : 1 + rng_.below(12);
+    const double max_distance = rng_.one_in(2) || queries.empty()
+                                    ? std::numeric_limits<double>::infinity()
+                                    : double{any_distance(boxes, queries[0].min)};
+    std::vector<BoxId> found(count * queries.size());
+    std::vector<double> distances(found.size());
+    index.nearest_of_each(queries, count, found, distances,
+                          {.max_distance = max_distance,
+                           .filters = of_queries,
+                           .except = except,
+                           .workers = {.threads = 2, .boxes_per_thread = 1}});
+    for (std::size_t query = 0; query < queries.size(); ++query) {
+      const auto counts = [&](std::size_t i) {
+        return is_present(boxes[i]) && (except.empty() || except[query] != BoxId(i)) &&
+               (of_queries.empty() || accepts(of_queries[query], filters.empty() ? Filter{} : filters[i]));
+      };
+      std::vector<Neighbour> expected = nearest(boxes, queries[query], count, max_distance, counts);
+      expected.resize(count, {no_box, std::numeric_limits<double>::infinity()});
+      std::vector<Neighbour> row;
+      for (std::size_t i = query * count; i < (query + 1) * count; ++i)
+        row.push_back({found[i], distances[i]});
+      EXPECT_EQ(row, expected) << "query " << query << " of " << queries.size();
+    }
   }
 
   /// A greatest distance: often none, or the very distance along an axis from the point to a box.

@@ -43,7 +43,7 @@ std::string play(std::size_t max_boxes, std::uint64_t seed, Injector& injector) 
       changed.push_back(BoxId(i));
     }
     while (!injector.attempt([&] { index.update({boxes, changed}); })) {
-      std::vector<Neighbour<Real>> near;
+      std::vector<Neighbour> near;
       index.nearest({}, 1, near);
       const bool is_empty = overlapping(index, everywhere).empty() && near.empty() &&
                             !index.first_hit(BoxCast<D, Real>{.box = everywhere, .direction = {}});

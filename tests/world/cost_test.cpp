@@ -74,7 +74,7 @@ class Crowd {
       case 3:
         return void(world.first_hit(ray));
       default:
-        std::vector<HandleNeighbour<float>> found;
+        std::vector<HandleNeighbour> found;
         world.nearest(box.min, 3, found);
     }
   }

@@ -85,11 +85,13 @@ TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
   const Handle far = world.add({{5, 0}, {6, 1}});
   const Handle near = world.add({{2, 0}, {3, 1}});
   const Handle as_near = world.add({{-3, 0}, {-2, 1}});
-  std::vector<HandleNeighbour<float>> found;
+  std::vector<HandleNeighbour> found;
   world.nearest({0, 0}, 2, found);
-  EXPECT_THAT(found, ElementsAre(HandleNeighbour<float>{near, 4}, HandleNeighbour<float>{as_near, 4}));
+  EXPECT_THAT(found, ElementsAre(HandleNeighbour{near, 4}, HandleNeighbour{as_near, 4}));
   world.nearest({0, 0}, 9, found);
-  EXPECT_EQ(found.back(), (HandleNeighbour<float>{far, 25}));
+  EXPECT_EQ(found.back(), (HandleNeighbour{far, 25}));
+  EXPECT_THAT(world.nearest(Box2{{-1, 0}, {4, 0}}, 2),
+              ElementsAre(HandleNeighbour{near, 0}, HandleNeighbour{far, 1}));
 }
 
 template <int D, typename Real>
@@ -105,14 +107,14 @@ void expect_nearest_within() {
   world.remove(handles[4]);
   Point<D, Real> point;
   point.fill(5);
-  for (const Real max_distance : {Real(0), Real(0.3), Real(2), std::numeric_limits<Real>::infinity()}) {
-    std::vector<HandleNeighbour<Real>> expected;
+  for (const double max_distance : {0.0, 0.3, 2.0, std::numeric_limits<double>::infinity()}) {
+    std::vector<HandleNeighbour> expected;
     for (const Handle handle : handles) {
       if (!world.contains(handle) || handle == handles[5]) continue;
-      const Real squared = distance_squared(point, world.box(handle));
+      const double squared = distance_squared(point, world.box(handle));
       if (squared <= max_distance * max_distance) expected.push_back({handle, squared});
     }
-    std::ranges::stable_sort(expected, {}, &HandleNeighbour<Real>::distance_squared);
+    std::ranges::stable_sort(expected, {}, &HandleNeighbour::distance_squared);
     EXPECT_EQ(world.nearest(point, 999, {.except = handles[5], .max_distance = max_distance}), expected);
   }
   EXPECT_EQ(world.nearest(point, 999, {.except = handles[4]}).size(), 299U) << "one that is gone";

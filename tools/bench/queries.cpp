@@ -198,7 +198,7 @@ class BenchedQueries {
   static void own_nearest(const BoxIndex<D, Real>& index, std::span<const Point<D, Real>> points,
                           std::size_t count, std::vector<Pair>& found) {
     for (std::size_t i = 0; i < points.size(); ++i)
-      index.nearest(points[i], count, [&found, i](Neighbour<Real> neighbour) {
+      index.nearest(points[i], count, [&found, i](Neighbour neighbour) {
         found.push_back({BoxId(i), neighbour.box});
       });
   }

@@ -30,7 +30,7 @@ from broadside._pairs import (
     pairs,
 )
 from broadside._partition import Assignment, Partition
-from broadside._queries import FirstHits, Found, Hits, Index, Neighbours
+from broadside._queries import FirstHits, Found, Hits, Index, Neighbours, nearest_pairs
 from broadside._within import NeighbourLists, distances, neighbour_lists
 
 __all__ = [
@@ -70,6 +70,7 @@ __all__ = [
     "find_pairs_batch",
     "intervals",
     "invalid_rows",
+    "nearest_pairs",
     "neighbour_lists",
     "pairs",
     "read",

@@ -52,6 +52,29 @@ def _are_valid(found: Any, name: str, columns: str) -> bool:
         return False
 
 
+def are_points(found: Any, name: str, dimension: int) -> bool:
+    """Whether these are rows of points, not of boxes. Geometries count as boxes, which have the bounds of points too."""
+    if is_empty_sequence(found):
+        return True
+    if hasattr(found, "geometry") or hasattr(found, "geom_type"):
+        return False
+    try:
+        if isinstance(found, (list, tuple, np.ndarray)) and (array := np.asarray(found)).dtype.names is None:
+            return bool(array.ndim == 2 and array.shape[1] == dimension)
+        return bool(_with_float_rows(found, name, _Points(name, dimension)).shape[1] == dimension)
+    except (TypeError, ValueError):
+        return False
+
+
+def boxes_or_points(found: Any, name: str, columns: Columns | None) -> Rows:
+    """Rows of boxes, as by boxes(); points become boxes with equal minima and maxima."""
+    for dimension in (2, 3):
+        if columns is None and not is_empty_sequence(found) and are_points(found, name, dimension):
+            points = rows_of(found, name, dimension, True) if np.asarray(found).dtype != np.float32 else np.asarray(found)
+            return np.concatenate((points, points), axis=1)
+    return boxes(found, name, columns)
+
+
 def given(found: Any, name: str, columns: Columns | None) -> Any:
     """The boxes as the extension module takes them; converted if the caller gives `columns`."""
     return found if columns is None else boxes(found, name, columns)

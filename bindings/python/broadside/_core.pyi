@@ -34,7 +34,14 @@ class _Queried:
         self, origins: object, directions: object, t_max: float, filters: object | None, exclude: object | None
     ) -> tuple[Any, Any]: ...
     def nearest(
-        self, points: object, k: int, max_distance: float, filters: object | None, exclude: object | None
+        self,
+        queries: object,
+        are_points: bool,
+        k: int,
+        max_distance: float,
+        threads: SupportsInt | None,
+        filters: object | None,
+        exclude: object | None,
     ) -> tuple[Any, Any]: ...
     def bytes(self) -> int: ...
     def __len__(self) -> int: ...

@@ -20,8 +20,8 @@ from broadside._queries import (
     Hits,
     Neighbours,
     _checked_dimension,
-    _checked_distance,
     _checked_k,
+    _nearest,
     _has_doubles,
 )
 
@@ -219,16 +219,16 @@ class World:
 
     def nearest(
         self,
-        points: Any,
+        queries: Any,
         k: int = 1,
         *,
         max_distance: float = math.inf,
+        threads: int | None = None,
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> Neighbours:
-        """The k boxes nearest to each of `points`: see `Index.nearest`."""
-        limit = _checked_distance(max_distance)
-        return Neighbours(*self._world.nearest(points, _checked_k(k, len(self)), limit, filters, exclude))
+        """The k boxes nearest to each of `queries`, points or boxes: see `Index.nearest`."""
+        return _nearest(self, self._world, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
 
     def snapshot(self) -> bytes:
         """All that the world's future depends on, as bytes that are the same on every machine."""

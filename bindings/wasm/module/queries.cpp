@@ -12,7 +12,7 @@ namespace {
 
 /// The results of the last query: ids, which are slots in a world.
 std::vector<BoxId> ids;
-std::vector<Neighbour<float>> neighbours;
+std::vector<Neighbour> neighbours;
 
 // The results that JavaScript reads.
 std::vector<double> handles;
@@ -112,14 +112,32 @@ broadside_status query_nearest(bool is_world, void* address, const Filter* filte
                                std::size_t k, double max_distance) {
   return asked(
       is_world, address, except, [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-        index.nearest(point_at(0), k, neighbours, {filter, left_out, static_cast<float>(max_distance)});
+        const Box<dimension> box{point_at(0), point_at(dimension)};
+        index.nearest(box, k, neighbours, {filter, left_out, max_distance});
         distances.clear();
-        for (const Neighbour<float>& neighbour : neighbours) {
+        for (const Neighbour& neighbour : neighbours) {
           ids.push_back(neighbour.box);
-          distances.push_back(std::sqrt(static_cast<double>(neighbour.distance_squared)));
+          distances.push_back(std::sqrt(neighbour.distance_squared));
         }
         answer(std::span<const double>(distances), 1);
       });
+}
+
+BROADSIDE_EXPORT(query_nearest_of_each)
+broadside_status query_nearest_of_each(WasmIndex* asked, const float* boxes, std::size_t count,
+                                       const BoxId* except, std::size_t except_count, const Filter* filters,
+                                       std::size_t k, double max_distance) {
+  return guarded([&] {
+    ids.resize(count * k);
+    distances.resize(count * k);
+    asked->index().nearest_of_each(boxes_at<dimension>(boxes, count), k, ids, distances,
+                                   {.max_distance = max_distance,
+                                    .filters = filters_at(filters, count),
+                                    .except = {except, except_count}});
+    for (double& distance : distances) distance = std::sqrt(distance);
+    answer(std::span<const BoxId>(ids));
+    answer(std::span<const double>(distances), 1);
+  });
 }
 
 /// Writes the parameter of the hit to `question`.

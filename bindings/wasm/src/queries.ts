@@ -1,7 +1,7 @@
 // Queries: indexes of arrays of boxes, and worlds that are asked as well.
 import type {
-  BoxArray, Dimension, Filters, FrameOptions, Hit, Index, NearestOptions, Neighbours, OverlappingOptions, QueriedWorld,
-  Queries, QueryOptions, RayOptions, WorldOptions,
+  BoxArray, Dimension, Filters, FrameOptions, Hit, Index, NearestOfEachOptions, NearestOptions, Neighbours, OverlappingOptions,
+  QueriedWorld, Queries, QueryOptions, RayOptions, WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, bytesOfFilter, countIn, putFilter } from "./boxes.ts";
 import type { Core, Cores, Exports } from "./core.ts";
@@ -21,6 +21,10 @@ export interface QueryExports extends Exports {
   query_nearest(
     isWorld: number, asked: number, filter: number, except: number, k: number, maxDistance: number,
   ): number;
+  query_nearest_of_each(
+    index: number, boxes: number, count: number, except: number, exceptCount: number, filters: number, k: number,
+    maxDistance: number,
+  ): number;
   query_first_hit(isWorld: number, asked: number, filter: number, except: number): number;
 }
 
@@ -29,6 +33,17 @@ const foundOptions = [...queryOptions, "view"];
 const nearestOptions = [...foundOptions, "maxDistance"];
 const rayOptions = [...queryOptions, "tMax", "halfExtent"];
 const nothing = -1;  // the `except` of a query that leaves none out
+
+function checkK(k: unknown, least: number): void {
+  if (!Number.isInteger(k) || (k as number) < least || (k as number) >= 2 ** 32)
+    refuse("k", k, `a whole number of at least ${least}`);
+}
+
+function maxDistanceOf({ maxDistance = Infinity }: { readonly maxDistance?: number }): number {
+  if (!(typeof maxDistance === "number" && maxDistance >= 0))
+    refuse("maxDistance", maxDistance, "at least 0, or Infinity");
+  return maxDistance;
+}
 
 /** Asks an index or a world. `Numbers` are ids or handles. */
 class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbers> {
@@ -73,16 +88,20 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     return this.#found(view);
   }
 
-  nearest(point: ArrayLike<number>, k: number, options: NearestOptions = {}): Neighbours<Numbers> {
+  nearest(from: ArrayLike<number>, k: number, options: NearestOptions = {}): Neighbours<Numbers> {
     const address = this.#address();
-    if (!Number.isInteger(k) || k < 0 || k >= 2 ** 32) refuse("k", k, "a whole number of at least 0");
-    const { maxDistance = Infinity } = options;
-    if (!(typeof maxDistance === "number" && maxDistance >= 0))
-      refuse("maxDistance", maxDistance, "at least 0, or Infinity");
+    checkK(k, 0);
+    const maxDistance = maxDistanceOf(options);
     const { filter, except } = this.#options(options, nearestOptions);
     const view = asksForView(options);
-    this.#ask(0, point, this.#dimension, "point");
     const core = this.#core;
+    const dimension = this.#dimension;
+    if (countIn(from, 1, "point") === 2 * dimension) {
+      this.#ask(0, from, 2 * dimension, "box");
+    } else {
+      this.#ask(0, from, dimension, "point");
+      this.#ask(dimension, from, dimension, "point");
+    }
     core.check(this.#exports.query_nearest(this.#isWorld, address, filter, except, k, maxDistance));
     return { ids: this.#found(view), distances: handlesOf(core, 1, 1, view) };
   }
@@ -141,8 +160,22 @@ export class KeptIndex extends Kept implements Index {
     return this.#asker.overlapping(box, options);
   }
 
-  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Uint32Array> {
-    return this.#asker.nearest(point, k, options);
+  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Uint32Array> {
+    return this.#asker.nearest(from, k, options);
+  }
+
+  nearestOfEach(boxes: BoxArray, k: number, options: NearestOfEachOptions = {}): Neighbours<Uint32Array> {
+    const core = this.#core;
+    const index = this.address;
+    checkOptions(options, ["except", "filters", "maxDistance", "view"]);
+    checkK(k, 1);
+    const maxDistance = maxDistanceOf(options);
+    const view = asksForView(options);
+    const { except: changed, filters } = options;
+    const given = putFrame(core, boxes as Given, { ...(changed && { changed }), ...(filters && { filters }) }, "except");
+    core.check((core.exports as QueryExports).query_nearest_of_each(index, given.at, given.count, given.changed,
+      given.changedCount, given.filters, k, maxDistance));
+    return { ids: idsOf(core, 0, 1, view), distances: handlesOf(core, 1, 1, view) };
   }
 
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined {
@@ -163,8 +196,8 @@ export class AskedWorld extends KeptWorld implements QueriedWorld {
     return this.#asker.overlapping(box, options);
   }
 
-  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Float64Array> {
-    return this.#asker.nearest(point, k, options);
+  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Float64Array> {
+    return this.#asker.nearest(from, k, options);
   }
 
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined {

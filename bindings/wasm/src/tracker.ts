@@ -22,10 +22,10 @@ export function specOf(cores: Cores, options: TrackerOptions): { core: Core; alg
 export const frameOptions = ["changed", "filters"];
 
 /** Puts a frame's arguments into the module. */
-export function putFrame(core: Core, boxes: Given, options: FrameOptions) {
+export function putFrame(core: Core, boxes: Given, options: FrameOptions, listName = "changed") {
   const { changed, filters } = options;
   const count = countOf(core, boxes);
-  const changedCount = changed === undefined ? 0 : countIn(changed, 1, "changed");
+  const changedCount = changed === undefined ? 0 : countIn(changed, 1, listName);
   if (filters !== undefined) checkFilters(filters, count);
   core.stage(bytesOf(boxes) + 4 * changedCount + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
   return {

@@ -218,6 +218,15 @@ export interface NearestOptions extends OverlappingOptions {
   readonly maxDistance?: number;
 }
 
+export interface NearestOfEachOptions extends ResultOptions {
+  /** Boxes farther away are not found. */
+  readonly maxDistance?: number;
+  /** For each query the id of a box that it does not find: to leave out the box itself, its place. */
+  readonly except?: ArrayLike<number>;
+  /** A filter for each query, which then finds only boxes whose filters accept it. */
+  readonly filters?: Filters;
+}
+
 export interface RayOptions extends QueryOptions {
   /** The ray ends at `origin + tMax * direction`. If left out, it does not end. */
   readonly tMax?: number;
@@ -241,8 +250,8 @@ export interface Neighbours<Numbers> {
 export interface Queries<Numbers> {
   /** The boxes that overlap a box. For the boxes that contain a point, give it as minima and as maxima. */
   overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Numbers;
-  /** The `k` boxes nearest to a point. */
-  nearest(point: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Numbers>;
+  /** The `k` boxes nearest to a point or a box: by distance, then by id. */
+  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Numbers>;
   /** The first box that a ray hits. */
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options?: RayOptions): Hit | undefined;
 }
@@ -252,6 +261,11 @@ export interface Index extends Queries<Uint32Array>, Freeable {
   readonly dimension: Dimension;
   /** Replaces the boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
   update(boxes: BoxArray, options?: FrameOptions): void;
+  /**
+   * The `k` boxes nearest to each of `boxes`: `k` ids and distances for each in turn, by distance, then by id. A row
+   * with fewer boxes ends with ids 4294967295 at `Infinity`.
+   */
+  nearestOfEach(boxes: BoxArray, k: number, options?: NearestOfEachOptions): Neighbours<Uint32Array>;
 }
 
 /** A world with queries. */

@@ -42,6 +42,19 @@ void check(const BoxCast<D, Real>& cast) {
   if (!(cast.t_max >= 0)) refuse("a cast's t_max", &cast.t_max, 1, "at least 0, or infinity");
 }
 
+/// False for the absent box. Throws InvalidQuery for an invalid one.
+template <int D, typename Real>
+bool has_points(const Box<D, Real>& box) {
+  if (is_present(box)) return true;
+  if (is_absent(box)) return false;
+  throw InvalidQuery(core::fault_of(box, "the query's box or point", true));
+}
+
+double squared_max_distance(double max_distance) {
+  if (!(max_distance >= 0)) refuse("max_distance", &max_distance, 1, "at least 0, or infinity");
+  return max_distance * max_distance;
+}
+
 /// Calls a visitor in the floating-point environment of the query's caller.
 template <typename Found>
 class CallersVisitor final : public Visitor<Found> {
@@ -60,9 +73,9 @@ class CallersVisitor final : public Visitor<Found> {
 }  // namespace
 
 template <int D, typename Real>
-Real distance_squared(const std::type_identity_t<Point<D, Real>>& point, const Box<D, Real>& box) noexcept {
+double distance_squared(const Box<D, Real>& a, const std::type_identity_t<Box<D, Real>>& b) noexcept {
   const core::DefaultEnvironment environment;
-  const volatile Real result = algorithm::squared_distance<D, Real>(point, box);
+  const volatile double result = algorithm::squared_distance<D, Real>(a, b);
   return result;
 }
 
@@ -90,10 +103,7 @@ template <int D, typename Real>
 bool BoxIndex<D, Real>::overlapping(const Box<D, Real>& box, Visitor<BoxId>& visitor,
                                     const QueryOptions& options) const {
   const core::DefaultEnvironment environment;
-  if (!is_present(box)) {
-    if (is_absent(box)) return true;
-    throw InvalidQuery(core::fault_of(box, "the query's box or point", true));
-  }
+  if (!has_points(box)) return true;
   if (!environment.is_foreign()) return tree_->find_overlapping(box, visitor, options);
   CallersVisitor callers(visitor);
   return tree_->find_overlapping(box, callers, options);
@@ -118,26 +128,41 @@ std::optional<Hit<Real>> BoxIndex<D, Real>::first_hit(const BoxCast<D, Real>& ca
 }
 
 template <int D, typename Real>
-bool BoxIndex<D, Real>::nearest(const Point& point, std::size_t count, Visitor<Neighbour<Real>>& visitor,
-                                const NearestOptions& options) const {
+bool BoxIndex<D, Real>::visit_nearest(const Box<D, Real>& box, std::size_t count, Visitor<Neighbour>& visitor,
+                                      const NearestOptions& options) const {
   const core::DefaultEnvironment environment;
-  for (const Real coordinate : point) {
-    if (std::isnan(coordinate)) refuse("a point", point.data(), D, "numbers");
-  }
-  if (!(options.max_distance >= 0))
-    refuse("max_distance", &options.max_distance, 1, "at least 0, or infinity");
-  if (count == 0) return true;
-  const Real max_squared = options.max_distance * options.max_distance;
+  const bool is_there = has_points(box);
+  const double max_squared = squared_max_distance(options.max_distance);
+  if (!is_there || count == 0) return true;
   const QueryOptions eligible{options.filter, options.except};
-  if (!environment.is_foreign()) return tree_->find_nearest(point, count, max_squared, visitor, eligible);
+  if (!environment.is_foreign()) return tree_->find_nearest(box, count, max_squared, visitor, eligible);
   CallersVisitor callers(visitor);
-  return tree_->find_nearest(point, count, max_squared, callers, eligible);
+  return tree_->find_nearest(box, count, max_squared, callers, eligible);
 }
 
-template float distance_squared(const std::array<float, 2>&, const Box<2>&) noexcept;
-template float distance_squared(const std::array<float, 3>&, const Box<3>&) noexcept;
-template double distance_squared(const std::array<double, 2>&, const DoubleBox2&) noexcept;
-template double distance_squared(const std::array<double, 3>&, const DoubleBox3&) noexcept;
+template <int D, typename Real>
+void BoxIndex<D, Real>::nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
+                                        std::span<double> distances_squared,
+                                        const NearestOfEachOptions& options) const {
+  const core::DefaultEnvironment environment;
+  if (count == 0) throw InvalidQuery("k is 0; expected at least 1");
+  squared_max_distance(options.max_distance);
+  const auto check_size = [&boxes](const char* name, std::size_t size, std::size_t each) {
+    if (size / each != boxes.size() || size % each != 0)
+      throw InvalidQuery(core::message(
+          {name, " has ", size, " places for ", boxes.size(), " queries; expected ", each, " for each"}));
+  };
+  check_size("found", found.size(), count);
+  check_size("distances_squared", distances_squared.size(), count);
+  if (!options.filters.empty()) check_size("filters", options.filters.size(), 1);
+  if (!options.except.empty()) check_size("except", options.except.size(), 1);
+  tree_->find_nearest_of_each(boxes, count, found, distances_squared, options);
+}
+
+template double distance_squared(const Box2&, const Box2&) noexcept;
+template double distance_squared(const Box3&, const Box3&) noexcept;
+template double distance_squared(const DoubleBox2&, const DoubleBox2&) noexcept;
+template double distance_squared(const DoubleBox3&, const DoubleBox3&) noexcept;
 template class BoxIndex<2, float>;
 template class BoxIndex<2, double>;
 template class BoxIndex<3, float>;

@@ -8,15 +8,18 @@
 #include <limits>
 #include <utility>
 
+#include "algorithms/bvh/box_order.hpp"
+#include "algorithms/bvh/bvh_packer.hpp"
 #include "algorithms/bvh/query_results.hpp"
 #include "core/input_check.hpp"
+#include "core/message.hpp"
+#include "core/parallel.hpp"
 
 namespace broadside::algorithm {
 namespace {
 
 using kernels::fan_out;
 using kernels::FoundBoxes;
-using kernels::leaf_bit;
 
 /// A cast's parameter in the tree: 2^exponent times the caller's.
 template <typename Real>
@@ -177,76 +180,133 @@ std::optional<Hit<Real>> BvhIndex<D, Real>::find_first_hit(const BoxCast<D, Real
   return found.best;
 }
 
+/// The caller's squared distance 1 in the tree, where gaps are multiplied by the `weight` of their axis.
 template <int D, typename Real>
-bool BvhIndex<D, Real>::find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                                     Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const {
+double BvhIndex<D, Real>::distance_unit(std::array<float, D>& weight) const {
+  weight.fill(1);
+  if constexpr (is_float<Real>) return 1;
+  // Beyond this limit, the definition's squares may overflow or lose their last places.
+  constexpr int max_exponent = 400;
+  int exponent = max_exponent;
+  for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
+  exponent = std::max(exponent, -max_exponent);
+  for (int axis = 0; axis < D; ++axis)
+    weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
+  return std::ldexp(1.0, 2 * exponent);
+}
+
+/// Offers to `found` all boxes that may be among the nearest to `box`, which is present. The tree has a root.
+template <int D, typename Real>
+void BvhIndex<D, Real>::search_nearest(const Box<D, Real>& box, const QueryOptions& options,
+                                       NearestBoxes& found) const {
+  kernels::DistanceQuery<D> query{in_tree(box), {}};
+  NearestSearch<D, Real> search(*this, box, options, distance_unit(query.weight), found);
+  kernels::find_near(tree_.view(), query, search);
+  search.take();
+}
+
+template <int D, typename Real>
+bool BvhIndex<D, Real>::find_nearest(const Box<D, Real>& box, std::size_t count, double max_distance_squared,
+                                     Visitor<Neighbour>& visitor, const QueryOptions& options) const {
   if (is_empty()) return true;
-  kernels::DistanceQuery<D> query;
-  query.weight.fill(1);
-  query.point = in_tree(Box<D, Real>{point, point});
-  query.max = std::numeric_limits<float>::infinity();
-  Real unit = 1;                    // the caller's squared distance 1, in the tree
-  if constexpr (!is_float<Real>) {  // distances in the tree must not exceed the true ones
-    // Beyond this limit, the definition's squares may overflow or lose their last places.
-    constexpr int max_exponent = 400;
-    int exponent = max_exponent;
-    for (int axis = 0; axis < D; ++axis) exponent = std::min(exponent, rounding_.exponent(axis));
-    exponent = std::max(exponent, -max_exponent);
-    for (int axis = 0; axis < D; ++axis)
-      query.weight[axis] = std::ldexp(1.0F, std::min(0, exponent - rounding_.exponent(axis)));
-    unit = std::ldexp(Real{1}, 2 * exponent);
-    query.max = std::numeric_limits<float>::max();
-    query.share = 1 - 0x1p-18f;
-    query.allowance = std::numeric_limits<float>::min();
-  }
-  NearestBoxes<Real> found(count, max_distance_squared);
-  // Beyond this, a node or box in the tree is farther away than the farthest of those found.
-  const auto limit_in_tree = [&] {
-    if constexpr (is_float<Real>)
-      return found.limit();
-    else
-      return rounded_up(found.limit() * unit);
-  };
-  struct PendingNode {
-    float distance;
-    std::uint32_t number;
-  };
-  const kernels::BvhView<D> tree = tree_.view();
-  std::array<PendingNode, (kernels::longest_path + 1) * fan_out> waiting;
-  std::array<float, fan_out> distances;
-  std::size_t waits = 1;
-  waiting[0] = {0, tree.root};
-  while (waits > 0) {
-    const auto [distance, number] = waiting[--waits];
-    if (!(distance <= limit_in_tree())) continue;
-    const kernels::Block<D>& node = tree.nodes[number & ~leaf_bit];
-    std::uint32_t near = kernels::near_children(node, query, limit_in_tree(), distances) &
-                         ((1U << tree_.child_count(number)) - 1);
-    if ((number & leaf_bit) == 0) {
-      const std::size_t begin = waits;
-      for (; near != 0; near &= near - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(near));
-        waiting[waits++] = {distances[i], node.id[i]};
-      }
-      // The nearest comes last, since the last one is taken next.
-      std::sort(waiting.data() + begin, waiting.data() + waits,
-                [](const PendingNode& a, const PendingNode& b) {
-                  return a.distance != b.distance ? a.distance > b.distance : a.number > b.number;
-                });
-      continue;
-    }
-    for (; near != 0; near &= near - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      const std::uint32_t child = node.id[i];
-      if (!may_find(BoxId{child}, options)) continue;
-      if constexpr (is_float<Real>)
-        found.offer({BoxId{child}, distances[i]});
-      else
-        found.offer({BoxId{child}, squared_distance<D, Real>(point, exact_[child])});
-    }
-  }
-  const std::span<const Neighbour<Real>> nearest = found.sorted();
+  NearestBoxes found(count, max_distance_squared);
+  search_nearest(box, options, found);
+  const std::span<const Neighbour> nearest = found.sorted();
   return nearest.empty() || visitor.visit(nearest);
+}
+
+namespace {
+
+/// The queries in an order in which neighbours in space follow one another: that of a packed tree's leaves.
+template <int D>
+std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, core::Parallel& parallel) {
+  std::vector<std::uint32_t> order;
+  order.reserve(queries.size());
+  std::vector<Box<D>> boxes;
+  for (const NumberedBox<D>& query : queries) boxes.push_back(query.box);
+  BvhPacker<D> packer;
+  packer.pack(boxes, parallel);
+  const kernels::TreeLevel<D>& places = packer.tree().levels[0];
+  for (std::size_t place = 0; place < places.size; ++place) {
+    if (places.min[0][place] <= places.max[0][place])  // not a place without a box
+      order.push_back(queries[index(packer.tree().id[place])].number);
+  }
+  return order;
+}
+
+}  // namespace
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
+                                             std::span<BoxId> found, std::span<double> distances_squared,
+                                             const NearestOfEachOptions& options) const {
+  std::vector<NumberedBox<D>> queries;
+  queries.reserve(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D, Real> box = boxes[i];
+    if (!is_present(box) && !is_absent(box))
+      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
+    if (is_present(box)) queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
+  }
+  std::fill(found.begin(), found.end(), no_box);
+  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
+  if (is_empty() || queries.empty()) return;
+
+  const double max_squared = options.max_distance * options.max_distance;
+  core::Parallel parallel;
+  parallel.start(options.workers, queries.size());
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, parallel);
+  std::array<float, D> weight;
+  const double unit = distance_unit(weight);
+  // One box more than asked for, so that one left out may be among them; and another one, whose distance
+  // shows that no other is as near.
+  const bool in_groups = options.filters.empty() && count + 2 <= kernels::NearGroup<D>::max_count;
+  const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
+  parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
+    Checkpoint* const checkpoint = parallel.checkpoint(worker);
+    kernels::NearGroup<D> group;
+    for (std::size_t number = range.begin; number < range.end; ++number) {
+      const std::span<const std::uint32_t> some =
+          std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
+      if (in_groups) {
+        group.queries.clear();
+        for (std::size_t lane = 0; lane < some.size(); ++lane)
+          group.queries.set(lane, in_tree(boxes[some[lane]]));
+        group.weight = weight;
+        group.limit = limit_in_tree(max_squared * unit);
+        group.start(count + 2);
+        kernels::find_near(tree_.view(), group);
+      }
+      for (std::size_t lane = 0; lane < some.size(); ++lane) {
+        const std::size_t query = some[lane];
+        const Box<D, Real> box = boxes[query];
+        NearestBoxes nearest(count + 1, max_squared);
+        for (std::size_t i = 0; in_groups && i < group.count; ++i) {
+          const std::uint32_t slot = group.slots[i][lane];
+          if (slot == kernels::no_slot) break;
+          const BoxId id = id_at(slot);
+          nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+        }
+        const bool is_sure =
+            in_groups && (group.slots[count + 1][lane] == kernels::no_slot ||
+                          limit_in_tree(nearest.limit() * unit) < group.distances[count + 1][lane]);
+        if (!is_sure) {
+          QueryOptions eligible;
+          if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          nearest.start_over();
+          search_nearest(box, eligible, nearest);
+        }
+        const BoxId except = options.except.empty() ? no_box : options.except[query];
+        std::size_t to = query * count;
+        for (const Neighbour& one : nearest.sorted()) {
+          if (one.box == except || to == (query + 1) * count) continue;
+          found[to] = one.box;
+          distances_squared[to++] = one.distance_squared;
+        }
+      }
+      if (checkpoint != nullptr) checkpoint->count(fan_out * fan_out * (fan_out + count));
+    }
+  });
 }
 
 template class BvhIndex<2, float>;

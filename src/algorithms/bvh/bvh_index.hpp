@@ -2,7 +2,9 @@
 // answers queries.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -23,16 +25,20 @@ inline constexpr bool is_float = std::is_same_v<Real, float>;
 
 /// distance_squared() for code that is in a DefaultEnvironment already.
 template <int D, typename Real>
-Real squared_distance(const Point<D, Real>& point, const Box<D, Real>& box) noexcept {
-  Real sum = 0;
+double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
+  double sum = 0;
   for (int axis = 0; axis < D; ++axis) {
-    Real outside = 0;
-    if (point[axis] < box.min[axis]) outside = box.min[axis] - point[axis];
-    if (point[axis] > box.max[axis]) outside = point[axis] - box.max[axis];
-    sum += outside * outside;
+    // Without branches, since no processor could predict them. Equal infinities are no gap, but NaN.
+    const double before = double{b.min[axis]} - double{a.max[axis]};
+    const double behind = double{a.min[axis]} - double{b.max[axis]};
+    double gap = before > 0 ? before : 0;
+    gap = behind > gap ? behind : gap;
+    sum += gap * gap;
   }
   return sum;
 }
+
+class NearestBoxes;
 
 /// The kernels search floats exactly. Boxes of doubles are in the tree as floats about an origin, by
 /// conservative rounding; what the kernels find is tested again in double, by the queries' definitions.
@@ -62,8 +68,10 @@ class BvhIndex {
   bool find_hits(const BoxCast<D, Real>& cast, Visitor<Hit<Real>>& visitor,
                  const QueryOptions& options) const;
   std::optional<Hit<Real>> find_first_hit(const BoxCast<D, Real>& cast, const QueryOptions& options) const;
-  bool find_nearest(const Point& point, std::size_t count, Real max_distance_squared,
-                    Visitor<Neighbour<Real>>& visitor, const QueryOptions& options) const;
+  bool find_nearest(const Box<D, Real>& box, std::size_t count, double max_distance_squared,
+                    Visitor<Neighbour>& visitor, const QueryOptions& options) const;
+  void find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
+                            std::span<double> distances_squared, const NearestOfEachOptions& options) const;
 
   std::size_t bytes() const noexcept {
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
@@ -75,6 +83,15 @@ class BvhIndex {
     if (options.except && id == *options.except) return false;
     return options.filter == nullptr ||
            accepts(*options.filter, filters_.empty() ? Filter{} : filters_[index(id)]);
+  }
+
+  /// The id of the box in a slot of the tree, and the box as the caller gave it.
+  BoxId id_at(std::uint32_t slot) const { return BoxId{leaf_of(slot).id[slot % kernels::fan_out]}; }
+  Box<D, Real> exact(std::uint32_t slot, BoxId id) const {
+    if constexpr (is_float<Real>)
+      return leaf_of(slot).box(slot % kernels::fan_out);
+    else
+      return exact_[index(id)];
   }
 
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
@@ -101,6 +118,11 @@ class BvhIndex {
   }
 
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
+  double distance_unit(std::array<float, D>& weight) const;
+  void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  const kernels::Block<D>& leaf_of(std::uint32_t slot) const {
+    return tree_.view().nodes[slot / kernels::fan_out];
+  }
 
   DynamicBvh<D> tree_;
   std::vector<Box<D, Real>> exact_;  // by id; only for doubles

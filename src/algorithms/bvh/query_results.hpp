@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -74,42 +76,59 @@ class FirstHit final : public kernels::FoundBoxes {
   int exponent_;
 };
 
-/// The nearest boxes so far: a max-heap of at most `count` boxes, on the stack while it is small.
-template <typename Real>
+/// The nearest boxes so far, at most `count`: few are sorted, on the stack; more are a max-heap.
 class NearestBoxes {
  public:
-  NearestBoxes(std::size_t count, Real max_distance_squared)
+  NearestBoxes(const NearestBoxes&) = delete;
+  NearestBoxes& operator=(const NearestBoxes&) = delete;
+  NearestBoxes(std::size_t count, double max_distance_squared)
       : count_(count), max_distance_squared_(max_distance_squared) {}
 
   /// A box with a greater squared distance is not among the nearest.
-  Real limit() const noexcept {
-    return size_ < count_ ? max_distance_squared_ : heap_.front().distance_squared;
+  double limit() const noexcept {
+    return size_ < count_ ? max_distance_squared_ : heap_[is_sorted() ? size_ - 1 : 0].distance_squared;
   }
 
-  void offer(const Neighbour<Real>& one) {
+  std::size_t count() const noexcept { return count_; }
+
+  /// Forgets the boxes, but not how far away the farthest one was, to search all again.
+  void start_over() noexcept {
+    max_distance_squared_ = limit();
+    size_ = 0;
+  }
+
+  void offer(const Neighbour& one) {
     if (!(one.distance_squared <= max_distance_squared_)) return;
+    if (size_ == count_ && !is_before(one, heap_[is_sorted() ? size_ - 1 : 0])) return;
+    if (is_sorted()) {
+      std::size_t at = size_ < count_ ? size_++ : size_ - 1;
+      for (; at > 0 && is_before(one, few_[at - 1]); --at) few_[at] = few_[at - 1];
+      few_[at] = one;
+      return;
+    }
     if (size_ == count_) {
-      if (!is_before(one, heap_.front())) return;
-      const std::span<Neighbour<Real>> heap = heap_.first(size_--);
+      const std::span<Neighbour> heap = heap_.first(size_--);
       std::pop_heap(heap.begin(), heap.end(), is_before);
     }
     if (size_ == heap_.size()) grow();
     heap_[size_++] = one;
-    const std::span<Neighbour<Real>> heap = heap_.first(size_);
+    const std::span<Neighbour> heap = heap_.first(size_);
     std::push_heap(heap.begin(), heap.end(), is_before);
   }
 
   /// All of them, the nearest first. This destroys the heap.
-  std::span<const Neighbour<Real>> sorted() {
-    const std::span<Neighbour<Real>> heap = heap_.first(size_);
-    std::sort_heap(heap.begin(), heap.end(), is_before);
+  std::span<const Neighbour> sorted() {
+    const std::span<Neighbour> heap = heap_.first(size_);
+    if (!is_sorted()) std::sort_heap(heap.begin(), heap.end(), is_before);
     return heap;
   }
 
  private:
-  static bool is_before(const Neighbour<Real>& a, const Neighbour<Real>& b) noexcept {
+  static bool is_before(const Neighbour& a, const Neighbour& b) noexcept {
     return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
   }
+
+  bool is_sorted() const noexcept { return count_ <= few_.size(); }
 
   void grow() {
     if (many_.empty()) many_.assign(few_.begin(), few_.end());
@@ -118,11 +137,66 @@ class NearestBoxes {
   }
 
   std::size_t count_;
-  Real max_distance_squared_;
+  double max_distance_squared_;
   std::size_t size_ = 0;
-  std::array<Neighbour<Real>, 64> few_;
-  std::vector<Neighbour<Real>> many_;
-  std::span<Neighbour<Real>> heap_ = few_;
+  std::array<Neighbour, 64> few_;
+  std::vector<Neighbour> many_;
+  std::span<Neighbour> heap_ = few_;
+};
+
+/// The kernel's greatest squared distance for this true one, in the tree's unit: the kernel's may exceed the
+/// true ones by a few roundings, also of subnormal numbers.
+inline float limit_in_tree(double distance_squared) noexcept {
+  constexpr double margin = 1 + 0x1p-18;
+  constexpr double min_normal = 0x1p-126;
+  return rounded_up(distance_squared * margin + min_normal);
+}
+
+/// Offers to NearestBoxes what the kernel finds near `box`, which is present.
+template <int D, typename Real>
+class NearestSearch final : public kernels::FoundBoxes {
+ public:
+  /// `unit` is the caller's squared distance 1 in the tree.
+  NearestSearch(const BvhIndex<D, Real>& boxes, const Box<D, Real>& box, const QueryOptions<BoxId>& options,
+                double unit, NearestBoxes& found)
+      : boxes_(boxes), box_(box), options_(options), unit_(unit), found_(found) {
+    set_limit();
+  }
+
+  /// Begins with the nearest ones, as far as that is cheap to know: they lower the limit for the others. In a
+  /// ball of radius r, some count * (r' / r)^D boxes are within r'.
+  bool take() override {
+    full = std::min(2 * full, max_found);
+    float step = t_max;
+    if (count > found_.count() + 4 && t_max < std::numeric_limits<float>::max()) {
+      const auto share = static_cast<float>(found_.count() + 4) / static_cast<float>(count);
+      step *= D == 2 ? share : std::sqrt(share * std::sqrt(share));  // about share^(2 / 3)
+      step = std::max(step, 0x1p-126f);                              // not 0, which would stay 0
+    }
+    for (float from = -1; from < t_max; from = step, step *= 2) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (t_enter[i] > from && t_enter[i] <= std::min(step, t_max)) offer(ids[i]);
+      }
+      set_limit();
+    }
+    count = 0;
+    return true;
+  }
+
+ private:
+  void offer(std::uint32_t slot) {
+    const BoxId id = boxes_.id_at(slot);
+    if (!boxes_.may_find(id, options_)) return;
+    found_.offer({id, squared_distance<D, Real>(box_, boxes_.exact(slot, id))});
+  }
+
+  void set_limit() { t_max = limit_in_tree(found_.limit() * unit_); }
+
+  const BvhIndex<D, Real>& boxes_;
+  const Box<D, Real>& box_;
+  const QueryOptions<BoxId>& options_;
+  double unit_;
+  NearestBoxes& found_;
 };
 
 }  // namespace broadside::algorithm

@@ -116,7 +116,18 @@ TEST_F(CWorld, AnswersQueriesAsTheClassBehindIt) {
       EXPECT_EQ(hit.t_enter, first->t_enter);
     }
 
-    std::vector<HandleNeighbour<float>> near;
+    const auto near_box = model.nearest(asked, 2);
+    broadside_neighbour to_box[2];
+    ASSERT_EQ(broadside_world_nearest_to_box(world_, &asked, std::numeric_limits<double>::infinity(), nullptr,
+                                             to_box, 2, &count, &error_),
+              BROADSIDE_OK);
+    ASSERT_EQ(count, near_box.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(handle_of(to_box[i].handle), near_box[i].handle);
+      EXPECT_EQ(to_box[i].distance_squared, near_box[i].distance_squared);
+    }
+
+    std::vector<HandleNeighbour> near;
     model.nearest(asked.min, 3, near);
     broadside_neighbour neighbours[3];
     ASSERT_EQ(broadside_world_nearest(world_, &asked.min, nullptr, neighbours, 3, &count, &error_),

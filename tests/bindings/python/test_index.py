@@ -102,8 +102,9 @@ def test_finds_the_nearest(data, k):
     answer = index.nearest(places, k)
     assert answer.box.shape == answer.distance_squared.shape == (len(places), k)
     for i, place in enumerate(places):
-        outside = np.maximum(np.maximum(boxes[:, :dimension] - place, place - boxes[:, dimension:]), 0)
-        squares = (outside * outside).sum(axis=1, dtype=dtype)
+        lower, upper = (part.astype(np.float64) for part in (boxes[:, :dimension], boxes[:, dimension:]))
+        outside = np.maximum(np.maximum(lower - place, place - upper), 0)
+        squares = (outside * outside).sum(axis=1)
         order = np.lexsort((np.arange(len(boxes)), squares))[:k]
         there = len(order)
         np.testing.assert_array_equal(answer.box[i, :there], order)
@@ -244,9 +245,9 @@ def test_queries_take_filters_and_leave_out_a_box(data, k, max_distance):
         met = sorted((t, box) for (q, box), t in expected.items() if q == query)
         assert first.box[query] == (met[0][1] if met else none)
         assert first_of_world.box[query] == (handles[met[0][1]] if met else 2**64 - 1)
-        squares = (outside(boxes, place) ** 2).sum(axis=1, dtype=dtype)
+        squares = (outside(boxes.astype(np.float64), place.astype(np.float64)) ** 2).sum(axis=1)
         order = [box for box in np.lexsort((np.arange(len(boxes)), squares)) if allowed(query, box)]
-        order = [box for box in order if squares[box] <= dtype.type(max_distance) ** 2][:k]
+        order = [box for box in order if squares[box] <= max_distance**2][:k]
         assert near.box[query].tolist() == order + [none] * (k - len(order))
         assert near_of_world.box[query].tolist() == [int(handles[box]) for box in order] + [2**64 - 1] * (k - len(order))
     again = pickle.loads(pickle.dumps(index))

@@ -63,6 +63,11 @@ for (const dimension of [2, 3] as const) {
         assert.deepEqual([...neighbours.distances], nearest.map((i) => Math.sqrt(at(distances, i))));
         assert.deepEqual([...world.nearest(point, 5).ids], nearest.map((i) => at(handles, i)));
 
+        const rows = index.nearestOfEach([...point, ...point, ...point, ...point], 5, { except: [at(nearest, 0), 99999] });
+        assert.deepEqual([...rows.ids.subarray(0, 4)], nearest.slice(1));
+        assert.deepEqual([...rows.ids.subarray(5)], nearest);
+        assert.deepEqual(rows.distances.slice(5), neighbours.distances);
+
         const direction = Float32Array.from({ length: dimension }, () => 2 * rng() - 1);
         let first: { id: number; t: number } | undefined;
         for (const i of places) {
@@ -87,6 +92,11 @@ test("options of queries", async () => {
   assert.deepEqual([...index.overlapping(all, { filter: { mask: 6 } })].sort(), [1, 2]);
   assert.deepEqual([...index.nearest([-1, 0], 3, { maxDistance: 3 }).ids], [0, 1]);
   assert.deepEqual([...index.nearest([-1, 0], 0).ids], []);
+  assert.deepEqual([...index.nearest([3, 3, 4, 5], 3).distances], [2, 2, Math.sqrt(8)]);
+  const rows = index.nearestOfEach(boxes, 1, { except: [0, 1, 2], maxDistance: 1 });
+  assert.deepEqual([[...rows.ids], [...rows.distances]], [[1, 0, 1], [1, 1, 1]]);
+  assert.deepEqual([...index.nearestOfEach(boxes, 2, { maxDistance: 0 }).ids], [0, 2 ** 32 - 1, 1, 2 ** 32 - 1, 2, 2 ** 32 - 1]);
+  assert.deepEqual([...index.nearestOfEach([-1, 0, -1, 0], 1, { filters: { mask: [4] } }).ids], [2]);
   assert.equal(index.firstHit([-1, 0], [1, 0], { tMax: 0.5 }), undefined);
   assert.deepEqual(index.firstHit([-1, 0], [1, 0], { except: 0 }), { id: 1, t: 3 });
   assert.deepEqual(index.firstHit([-1, 1.5], [1, 0], { halfExtent: [0.5, 0.5] }), { id: 0, t: 0.5 });
@@ -112,5 +122,10 @@ test("questions that cannot be", async () => {
     { code: "INVALID_ARGUMENT", message: "the length of box is 3; expected 4" });
   assert.throws(() => index.nearest([0, 0], -1), { code: "INVALID_ARGUMENT" });
   assert.throws(() => index.nearest([0, 0], 1, { maxDistance: -1 }), { code: "INVALID_ARGUMENT" });
+  assert.throws(() => index.nearest([0, 0, 1], 1), { code: "INVALID_ARGUMENT", message: "the length of point is 3; expected 2" });
+  assert.throws(() => index.nearestOfEach([0, 0, 1, 1], 0),
+    { code: "INVALID_ARGUMENT", message: "k is 0; expected a whole number of at least 1" });
+  assert.throws(() => index.nearestOfEach([0, 0, 1, NaN], 1), { code: "INVALID_QUERY" });
+  assert.throws(() => index.nearestOfEach([0, 0, 1, 1], 1, { except: [1, 2] }), { code: "INVALID_QUERY" });
   assert.throws(() => index.nearest([0, 0], 1, { tMax: 1 } as object), { code: "INVALID_ARGUMENT" });
 });

@@ -169,9 +169,9 @@ void track() {
     changed = {BoxId{2}};
     boxes[2].min[0] -= 1;
   }
-  std::vector<Neighbour<Real>> nearest;
+  std::vector<Neighbour> nearest;
   index.nearest({}, 3, nearest);
-  for (const Neighbour<Real>& one : nearest) print("nearest", broadside::index(one.box));
+  for (const Neighbour& one : nearest) print("nearest", broadside::index(one.box));
   print("nearest in a new vector", index.nearest({}, 3) == nearest);
 }
 
@@ -200,9 +200,9 @@ void keep_world() {
   std::vector<HandlePair> joined;
   world.join(world, joined);
   print("joined", std::span(joined).first(5));
-  std::vector<HandleNeighbour<Real>> nearest;
+  std::vector<HandleNeighbour> nearest;
   world.nearest({}, 3, nearest);
-  for (const HandleNeighbour<Real>& one : nearest) print("nearest", one.handle.slot);
+  for (const HandleNeighbour& one : nearest) print("nearest", one.handle.slot);
   print("nearest in a new vector", world.nearest({}, 3) == nearest);
   std::vector<Handle> met;
   world.hits(Ray<D, Real>{{}, boxes[3].max}, [&](Handle handle, Real) { met.push_back(handle); });

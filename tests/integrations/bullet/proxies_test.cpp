@@ -140,7 +140,7 @@ TEST(BulletProxies, LeadsFromProxiesToTheWorldAndBack) {
   BulletBroadphase broadphase;
   btBroadphaseProxy* const a = cube(broadphase, 1, 3);
   cube(broadphase, 2, 7);
-  std::vector<HandleNeighbour<btScalar>> nearest;
+  std::vector<HandleNeighbour> nearest;
   broadphase.world().nearest({0, 0, 0}, 1, nearest);
   ASSERT_EQ(nearest.size(), 1U);
   EXPECT_EQ(nearest[0].handle, broadphase.handle(a));

@@ -38,7 +38,7 @@ Answers distances(std::span<const broadside::Point<D, Real>> points, std::span<c
   using Bits = std::conditional_t<sizeof(Real) == sizeof(float), std::uint32_t, std::uint64_t>;
   Answers answers;
   for (const auto [query, box] : found) {
-    const Real distance = distance_squared<D>(points[index(query)], boxes[index(box)]);
+    const auto distance = static_cast<Real>(distance_squared<D>(points[index(query)], boxes[index(box)]));
     answers.add(index(query), std::uint64_t{std::bit_cast<Bits>(distance)});
   }
   return answers;

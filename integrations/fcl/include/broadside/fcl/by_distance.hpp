@@ -56,10 +56,10 @@ S distance_beyond(const Box<3, S>& box, S reached, const BoxIndex<3, S>& index,
     centre[axis] = std::isfinite(middle) ? middle : 0;
   }
   S min_distance = std::numeric_limits<S>::infinity();
-  std::vector<Neighbour<S>> found;
+  std::vector<Neighbour> found;
   for (std::size_t count = first_count;; count *= first_count) {
     index.nearest(centre, count, found, {.except = except});
-    for (const Neighbour<S>& neighbour : found) {
+    for (const Neighbour& neighbour : found) {
       const S distance = distance_of(box, boxes[broadside::index(neighbour.box)]);
       if (distance > reached) min_distance = std::min(min_distance, distance);
     }

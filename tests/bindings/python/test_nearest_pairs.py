@@ -1,0 +1,63 @@
+"""nearest_pairs(): for each box the nearest ones, by the definition."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import broadside
+
+
+def by_definition(left, right, k, max_distance=np.inf):
+    half = left.shape[1] // 2
+    a, b = left.astype(np.float64), (left if right is None else right).astype(np.float64)
+    rows, squares = [], []
+    for i, box in enumerate(a):
+        gaps = np.maximum(np.maximum(b[:, :half] - box[half:], box[:half] - b[:, half:]), 0)
+        found = (gaps * gaps).sum(axis=1)
+        order = [j for j in np.argsort(found, kind="stable") if found[j] <= max_distance**2 and (right is not None or j != i)][:k]
+        rows.append(order + [2**32 - 1] * (k - len(order)))
+        squares.append(found[order].tolist() + [np.inf] * (k - len(order)))
+    return np.array(rows), np.array(squares)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_finds_the_nearest_of_each(dimension, dtype):
+    rng = np.random.default_rng(dimension)
+    sets = []
+    for _ in range(2):
+        minima = rng.integers(0, 9, (150, dimension)).astype(dtype)  # many are equally near
+        sets.append(np.hstack([minima, minima + rng.integers(0, 2, minima.shape).astype(dtype)]))
+    for right in (None, sets[1]):
+        for k in (1, 7, 150, 151):
+            for options in ({}, {"max_distance": 1}, {"max_distance": 0, "threads": 2}):
+                near = broadside.nearest_pairs(sets[0], right, k, **options)
+                boxes, squares = by_definition(sets[0], right, k, options.get("max_distance", np.inf))
+                np.testing.assert_array_equal(near.box, boxes)
+                np.testing.assert_array_equal(near.distance_squared, squares)
+
+
+def test_takes_points_and_widens_floats():
+    points = np.array([[0, 0], [3, 0], [3, 4]], np.float32)
+    assert broadside.nearest_pairs(points).box.tolist() == [[1], [0], [1]]
+    near = broadside.nearest_pairs(points, [[0, 5.5, 3, 6]], max_distance=1.5)
+    assert [one.tolist() for one in near.pairs()] == [[2], [0]]
+
+
+def test_refuses_what_has_no_answer():
+    boxes = np.array([[0, 0, 1, 1]] * 3, np.float64)
+    bad = boxes.copy()
+    bad[1, 2] = np.nan
+    with pytest.raises(broadside.InvalidBoxError, match="box 1"):
+        broadside.nearest_pairs(bad)
+    with pytest.raises(broadside.InvalidQueryError, match="query 1"):
+        broadside.nearest_pairs(bad, boxes)
+    with pytest.raises(ValueError, match="k is 0"):
+        broadside.nearest_pairs(boxes, k=0)
+    with pytest.raises(ValueError, match="max_distance is nan"):
+        broadside.nearest_pairs(boxes, max_distance=np.nan)
+    with pytest.raises(ValueError, match="other_filters are given without other boxes"):
+        broadside.nearest_pairs(boxes, other_filters=broadside.filters(3))
+    with pytest.raises(ValueError, match="boxes have 2 dimensions and other has 3"):
+        broadside.nearest_pairs(boxes, np.zeros((2, 6)))
