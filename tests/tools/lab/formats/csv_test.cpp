@@ -276,8 +276,7 @@ TEST_F(CsvTable, ReadsKittisLabels) {
 
 TEST_F(CsvTable, ReadsIntervals) {
   EXPECT_EQ(boxes_of("chrom,chromStart,chromEnd\n1,5,9\n"), (std::vector<DoubleBox2>{{{5, 0}, {9, 0}}}));
-  EXPECT_EQ(boxes_of("id,end,start\na,3000000001,5\n"),
-            (std::vector<DoubleBox2>{{{5, 0}, {3000000001, 0}}}));
+  EXPECT_EQ(boxes_of("id,end,start\na,3000000001,5\n"), (std::vector<DoubleBox2>{{{5, 0}, {3000000001, 0}}}));
   EXPECT_THAT(refusal_of("start,end,height\n1,5,9\n"), HasSubstr("'height' alone"));
   EXPECT_THAT(refusal_of("chrom,start\n1,5\n"), HasSubstr("no columns that give bounds on the x axis"));
   EXPECT_EQ(boxes_of("x,y,start,end\n1,2,5,9\n"), (std::vector<DoubleBox2>{{{1, 2}, {1, 2}}}))
