@@ -52,7 +52,7 @@ std::vector<DoubleBox2> boxes_of_ranges(const std::vector<Range>& ranges) {
   return boxes_of(ranges, [](Range range) { return interval(range.start, range.end); });
 }
 
-std::vector<Pair> sorted(std::vector<Pair> pairs) {
+std::vector<Pair> pairs_in_order(std::vector<Pair> pairs) {
   std::ranges::sort(pairs);
   return pairs;
 }
@@ -84,13 +84,14 @@ TEST(IntervalTest, PairsAreThoseOfTheDefinition) {
          {"auto", "grid", "bvh", "sweep_and_prune", "quadtree", "brute_force"}) {
       const std::string what = algorithm + ", seed " + std::to_string(seed);
       const Spec spec(algorithm);
-      EXPECT_EQ(sorted(find_pairs(boxes, {.algorithm = spec, .touching = touching})), all) << what;
-      EXPECT_EQ(sorted(find_pairs(boxes, {.algorithm = spec, .filters = filters, .touching = touching})),
-                same)
-          << what;
+      EXPECT_EQ(pairs_in_order(find_pairs(boxes, {.algorithm = spec, .touching = touching})), all) << what;
       EXPECT_EQ(
-          sorted(find_pairs(both.first(left), both.subspan(left), {.algorithm = spec, .touching = touching})),
-          between)
+          pairs_in_order(find_pairs(boxes, {.algorithm = spec, .filters = filters, .touching = touching})),
+          same)
+          << what;
+      EXPECT_EQ(pairs_in_order(find_pairs(both.first(left), both.subspan(left),
+                                          {.algorithm = spec, .touching = touching})),
+                between)
           << what;
     }
   }
@@ -155,7 +156,7 @@ TEST(IntervalTest, MoveInTrackersAndWorlds) {
     std::vector<Pair> of_world;
     for (const HandlePair& pair : world.pairs())
       of_world.push_back({BoxId(pair.first.slot), BoxId(pair.second.slot)});
-    EXPECT_EQ(sorted(of_world), now) << frame;
+    EXPECT_EQ(pairs_in_order(of_world), now) << frame;
   }
 }
 
