@@ -154,11 +154,13 @@ TEST_F(CWorld, FindsNothingFartherThanAGreatestDistance) {
   };
   ASSERT_EQ(ask(3), BROADSIDE_OK);
   EXPECT_EQ(count, 2U);
-  ASSERT_EQ(ask(0.1), BROADSIDE_OK) << "as a float it is the box's coordinate";
+  ASSERT_EQ(ask(0.1), BROADSIDE_OK) << "0.1F is more than 0.1";
+  EXPECT_EQ(count, 0U);
+  ASSERT_EQ(ask(0.1F), BROADSIDE_OK);
   EXPECT_EQ(count, 1U);
   EXPECT_EQ(handle_of(found[0].handle), handle_of(handles[1]));
   const broadside_query query = {nullptr, &handles[1], nullptr};
-  ASSERT_EQ(ask(0.1, &query), BROADSIDE_OK);
+  ASSERT_EQ(ask(0.1F, &query), BROADSIDE_OK);
   EXPECT_EQ(count, 0U);
   count = 77;
   EXPECT_EQ(ask(-1), BROADSIDE_INVALID_QUERY);
