@@ -110,17 +110,17 @@ broadside_status query_overlapping(bool is_world, void* address, const Filter* f
 BROADSIDE_EXPORT(query_nearest)
 broadside_status query_nearest(bool is_world, void* address, const Filter* filter, double except,
                                std::size_t k, double max_distance) {
-  return asked(
-      is_world, address, except, [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-        const Box<dimension> box{point_at(0), point_at(dimension)};
-        index.nearest(box, k, neighbours, {filter, left_out, max_distance});
-        distances.clear();
-        for (const Neighbour& neighbour : neighbours) {
-          ids.push_back(neighbour.box);
-          distances.push_back(std::sqrt(neighbour.distance_squared));
-        }
-        answer(std::span<const double>(distances), 1);
-      });
+  return asked(is_world, address, except,
+               [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
+                 const Box<dimension> box{point_at(0), point_at(dimension)};
+                 index.nearest(box, k, neighbours, {filter, left_out, max_distance});
+                 distances.clear();
+                 for (const Neighbour& neighbour : neighbours) {
+                   ids.push_back(neighbour.box);
+                   distances.push_back(std::sqrt(neighbour.distance_squared));
+                 }
+                 answer(std::span<const double>(distances), 1);
+               });
 }
 
 BROADSIDE_EXPORT(query_nearest_of_each)

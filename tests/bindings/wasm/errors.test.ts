@@ -82,7 +82,7 @@ test("arguments of the wrong kind", () => {
     [() => broadside.pairs([], { algorithm: 3 as unknown as string }), "algorithm is 3; expected a text such as 'auto'"],
     [() => broadside.pairs([], { sorted: 1 as unknown as boolean }), "sorted is 1; expected true or false"],
     [() => broadside.pairs([], { sortd: true } as object),
-      "unknown option 'sortd'; expected some of: dimension, algorithm, filters, same, different, touching, within, sorted, view"],
+      "unknown option 'sortd'; expected some of: dimension, algorithm, filters, same, different, touching, within, period, sorted, view"],
     [() => broadside.count([], { sorted: true } as object),
       "unknown option 'sorted'; expected some of: dimension, algorithm, filters, same, different, touching"],
     [() => broadside.pairs(overlapping, { filters: { category: [1] } }),

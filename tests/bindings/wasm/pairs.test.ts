@@ -233,6 +233,21 @@ test("finds what is within a distance or radii, and lists neighbours", () => {
   }
 });
 
+test("boxes pair around the edge of space that repeats", () => {
+  for (const { broadside } of builds) {
+    const boxes = [170, 0, 190, 1, -180, 0, -175, 1, 0, 0, 1, 1];
+    const period = [360, Infinity];
+    assert.deepEqual([...broadside.pairs(boxes, { period })], [0, 1]);
+    assert.deepEqual([...broadside.pairs(boxes)], []);
+    assert.deepEqual([...broadside.pairs(boxes, { period, within: 175 })], [0, 1, 0, 2, 1, 2]);
+    assert.deepEqual([...broadside.pairs(boxes, { period, within: [0, 0, 169] })], [0, 1, 0, 2]);
+    assert.equal(broadside.count(boxes, { period }), 1);
+    assert.deepEqual([...broadside.components(boxes, { period })], [0, 0, 2]);
+    assert.throws(() => broadside.pairs(boxes, { period: [360] }), /the length of period is 1; expected 2/);
+    assert.throws(() => broadside.pairs(boxes, { period: [360, 0] }), /the period of axis 1 is 0/);
+  }
+});
+
 test("components are the boxes that hang together", () => {
   for (const { broadside } of builds) {
     for (const count of [0, 1, 40, 700]) {

@@ -8,14 +8,14 @@ import { at, overlap, random, scenes } from "./support.ts";
 
 const broadside = await load();
 
-/** The square of a box's distance, as the library defines it: sums of floats. */
+/** The square of a box's distance, as the library defines it: sums of doubles. */
 function distanceSquared(point: ArrayLike<number>, boxes: Float32Array, i: number, dimension: Dimension): number {
   let sum = 0;
   for (let axis = 0; axis < dimension; ++axis) {
     const min = at(boxes, 2 * dimension * i + axis);
     const max = at(boxes, 2 * dimension * i + dimension + axis);
-    const outside = Math.max(Math.fround(min - at(point, axis)), Math.fround(at(point, axis) - max), 0);
-    sum = Math.fround(sum + Math.fround(outside * outside));
+    const outside = Math.max(min - at(point, axis), at(point, axis) - max, 0);
+    sum += outside * outside;
   }
   return sum;
 }

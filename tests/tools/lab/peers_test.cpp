@@ -228,9 +228,7 @@ void expect_the_answers_of_an_index() {
       if (!peer->has_nearest()) continue;
       std::vector<Pair> own;
       for (std::size_t i = 0; i < points.size(); ++i)
-        index.nearest(points[i], count, [&](Neighbour found) {
-          own.push_back({BoxId(i), found.box});
-        });
+        index.nearest(points[i], count, [&](Neighbour found) { own.push_back({BoxId(i), found.box}); });
       std::vector<Pair> found;
       peer->nearest(points, count, found);
       EXPECT_EQ(own.size(), std::min(count, boxes.size()) * points.size());
