@@ -367,8 +367,9 @@ struct broadside_batch_tracker : AnyKind<BatchTrackerImpl> {
 broadside_status broadside_batch_tracker_create(int api_version, broadside_kind kind,
                                                 const broadside_find_options* options,
                                                 broadside_batch_tracker** tracker, broadside_error* error) {
-  return create(api_version, tracker, error,
-                [&] { return new broadside_batch_tracker(kind, options_of(options, options_name)); });
+  return create(api_version, tracker, error, [&] {
+    return new broadside_batch_tracker(kind, options_without_reach(options, "a batch tracker"));
+  });
 }
 
 void broadside_batch_tracker_destroy(broadside_batch_tracker* tracker) { delete tracker; }

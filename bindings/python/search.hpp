@@ -72,7 +72,10 @@ struct Within {
     return within;
   }
 
-  Reach reach() const { return (has_radii ? Reach(radii, right_radii) : Reach(distance)).periodic(periods); }
+  Reach reach() const {
+    const Reach still = has_radii ? Reach(radii, right_radii) : Reach(distance);
+    return periods.empty() ? still : still.periodic(periods);
+  }
 
   bool has_radii = false;
   double distance = 0;

@@ -77,6 +77,7 @@ class Reach {
   ///     find_pairs_within(parcels, Reach(0).periodic({360.0, infinity}), ...)     // longitude and latitude
   [[nodiscard]] Reach periodic(std::span<const double> periods) const {
     Reach result = *this;
+    result.is_periodic_ = true;
     result.period_count_ = periods.size();
     for (std::size_t axis = 0; axis < periods_.size() && axis < periods.size(); ++axis)
       result.periods_[axis] = periods[axis];
@@ -92,7 +93,9 @@ class Reach {
   [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
   [[nodiscard]] std::span<const double> right_radii() const noexcept { return right_radii_; }
 
-  /// How many periods were given; 0 if space does not repeat.
+  [[nodiscard]] bool is_periodic() const noexcept { return is_periodic_; }
+
+  /// How many periods were given.
   [[nodiscard]] std::size_t period_count() const noexcept { return period_count_; }
 
   /// The periods of the first three axes.
@@ -105,6 +108,7 @@ class Reach {
   std::span<const double> radii_;
   std::span<const double> right_radii_;
   bool has_radii_ = false;
+  bool is_periodic_ = false;
   std::size_t period_count_ = 0;
   std::array<double, 3> periods_{};
 };
@@ -141,6 +145,9 @@ template <int D, typename Real>
 BROADSIDE_PUBLIC void set_distances(BoxView<D, Real> left, BoxView<D, Real> right,
                                     std::span<const Pair> pairs, std::span<const double> periods,
                                     std::span<double> distances);
+
+/// Throws InvalidFrame for more boxes than there are ids.
+BROADSIDE_PUBLIC void check_neighbour_count(std::size_t boxes);
 
 /// Fills the neighbour lists of sorted pairs.
 BROADSIDE_PUBLIC void set_neighbours(std::span<const Pair> sorted, bool is_full,
@@ -238,12 +245,18 @@ enum class NeighbourLists : std::uint8_t {
 ///     const Neighbours near = neighbours(find_pairs_within(atoms, cutoff), atoms.size(),
 ///     NeighbourLists::full);
 ///
-/// Throws InvalidFrame for an id that is out of range.
+/// Throws InvalidFrame for an id that is out of range, or for more than 2^32 - 1 boxes.
 [[nodiscard]] BROADSIDE_CALLERS_VECTOR inline Neighbours neighbours(std::vector<Pair> pairs,
                                                                     std::size_t boxes, NeighbourLists lists) {
+  detail::check_neighbour_count(boxes);
+  const bool is_full = lists == NeighbourLists::full;
+  if (is_full) {
+    for (Pair& pair : pairs) {
+      if (pair.second < pair.first) pair = {pair.second, pair.first};
+    }
+  }
   std::vector<Pair> scratch;
   sort_pairs(pairs, scratch);
-  const bool is_full = lists == NeighbourLists::full;
   Neighbours found;
   found.offsets.resize(boxes + 1);
   found.ids.resize(is_full ? 2 * pairs.size() : pairs.size());

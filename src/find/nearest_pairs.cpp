@@ -31,9 +31,12 @@ void detail::nearest_pairs(BoxView<D, Real> left, const BoxView<D, Real>* right,
   index.update({.boxes = sought, .filters = right == nullptr ? options.filters : options.right_filters});
   std::vector<BoxId> itself;
   for (std::size_t i = 0; right == nullptr && i < left.size(); ++i) itself.push_back(BoxId(i));
+  // Without filters, left boxes have the default one, which the right boxes' filters may reject.
+  std::vector<Filter> defaults;
+  if (options.filters.empty() && !options.right_filters.empty()) defaults.resize(left.size());
   index.nearest_of_each(left, k, boxes, distances_squared,
                         {options.max_distance,
-                         options.filters,
+                         defaults.empty() ? options.filters : std::span<const Filter>(defaults),
                          itself,
                          {.threads = options.threads, .executor = options.executor}});
 }

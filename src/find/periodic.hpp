@@ -40,10 +40,10 @@ Box<D, double> in_cell(const Box<D, Real>& box, const std::type_identity_t<Perio
     const double period = periods[axis];
     if (period == infinity) continue;
     const double length = max - min;
-    if (!(length < period)) {
+    if (length >= period) {
       min = -infinity;
       max = infinity;
-    } else if (min < 0 || min >= period) {
+    } else if ((min < 0 || min >= period) && std::isfinite(min)) {
       min = std::fmod(min, period);
       if (min < 0) min += period;
       max = min + length;

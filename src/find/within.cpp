@@ -162,7 +162,8 @@ void check_radii(std::span<const double> radii, std::size_t boxes, const char* s
 /// How far a box is enlarged on each side. Two boxes overlap if their gap on every axis is at most the reach,
 /// even after the gap, the sum of two radii and the square have been rounded: together by less than 2^-50.
 double enlargement(double radius) {
-  return radius == 0 ? 0 : radius * (1 + 0x1p-50) + std::numeric_limits<double>::denorm_min();
+  const double enlarged = radius * (1 + 0x1p-50) + std::numeric_limits<double>::denorm_min();
+  return radius == 0 ? 0 : std::min(enlarged, std::numeric_limits<double>::max());
 }
 
 /// A number of type Real that is less than the exact value of which `rounded` is the nearest double.
@@ -281,12 +282,10 @@ struct Set {
   core::LargeArray<BoxId> ids{};  // of sorted boxes
 };
 
-/// The periods; infinite if there are none. Throws InvalidQuery.
+/// The periods. Throws InvalidQuery.
 template <int D>
 find::Periods<D> checked_periods(std::span<const double> periods, std::size_t count) {
   find::Periods<D> checked;
-  checked.fill(infinite);
-  if (count == 0) return checked;
   if (count != D) {
     throw InvalidQuery(core::message({count, " periods for boxes of ", D, " dimensions; expected ", D,
                                       ", with infinity for an axis that does not repeat"}));
@@ -393,8 +392,9 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
     check_radii(reach.radii(), view.size(), is_between ? " left" : "");
     check_radii(reach.right_radii(), right_count, " right");
   }
-  const bool is_periodic = reach.period_count() > 0;
-  const find::Periods<D> periods = checked_periods<D>(reach.periods(), reach.period_count());
+  const bool is_periodic = reach.is_periodic();
+  find::Periods<D> periods{};
+  if (is_periodic) periods = checked_periods<D>(reach.periods(), reach.period_count());
 
   const Algorithm& algorithm = algorithm::require_algorithm(spec.name);
   find::Search<D, Real> search(find::searcher_of<D>(algorithm, algorithm::settings_of(algorithm, spec)),
@@ -447,8 +447,8 @@ void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::s
                            std::span<const double> periods, std::span<double> distances) {
   const core::DefaultEnvironment environment;
   check_ids(pairs, left.size(), right.size());
-  const find::Periods<D> checked = checked_periods<D>(periods, periods.size());
   if (!periods.empty()) {
+    const find::Periods<D> checked = checked_periods<D>(periods, periods.size());
     for (std::size_t i = 0; i < pairs.size(); ++i)
       distances[i] =
           distance_around<D, Real>(left[index(pairs[i].first)], right[index(pairs[i].second)], checked);
@@ -464,6 +464,13 @@ void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::s
     distances[i] = is_plain ? std::sqrt(distances[i])
                             : distance_of(lefts[index(pairs[i].first)], rights[index(pairs[i].second)]);
   }
+}
+
+void detail::check_neighbour_count(std::size_t boxes) {
+  if (boxes > std::numeric_limits<std::uint32_t>::max())
+    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected at most 4294967295"}));
+  if (boxes == std::numeric_limits<std::size_t>::max())  // where that is 32 bits
+    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected fewer"}));
 }
 
 void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::span<std::size_t> offsets,

@@ -33,7 +33,9 @@ NearestPairs expected_pairs(const std::vector<Box<D, Real>>& left, const std::ve
     for (std::size_t j = 0; j < others.size(); ++j) {
       if ((right == nullptr && i == j) || !is_present(left[i]) || !is_present(others[j])) continue;
       const Filter own = options.filters.empty() ? Filter{} : options.filters[i];
-      if (!options.filters.empty() && !accepts(own, filters.empty() ? Filter{} : filters[j])) continue;
+      if (!(options.filters.empty() && filters.empty()) &&
+          !accepts(own, filters.empty() ? Filter{} : filters[j]))
+        continue;
       const double squared = distance_squared(left[i], others[j]);
       if (squared <= options.max_distance * options.max_distance) row.push_back({BoxId(j), squared});
     }
@@ -91,10 +93,10 @@ TYPED_TEST(NearestPairsLaw, FindsWhatTheDefinitionSays) {
     std::vector<Filter> filters(left.size());
     std::vector<Filter> right_filters(right.size());
     for (Filter& filter : filters) filter.mask = rng.one_in(2) ? 1 : 2;
-    for (Filter& filter : right_filters) filter.category = rng.one_in(2) ? 1 : 2;
+    for (Filter& filter : right_filters) filter = {.category = rng.one_in(2) ? 1U : 2U, .mask = rng.below(4)};
     if (rng.one_in(3)) options.filters = filters;
     for (const bool is_self : {true, false}) {
-      if (!is_self && !options.filters.empty()) options.right_filters = right_filters;
+      if (!is_self) options.right_filters = right_filters;
       const auto expected = expected_pairs(left, is_self ? nullptr : &right, k, options);
       for (const std::size_t threads : {1, 2}) {
         options.threads = threads;

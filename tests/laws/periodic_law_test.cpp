@@ -202,6 +202,13 @@ TEST(Periodic, InfiniteBoxesAndThoseOfAPeriodOrMoreAreTheWholeAxis) {
   EXPECT_EQ(find_pairs_within(boxes, Reach(0).periodic({10.0, 10.0})).size(), 6U);
 }
 
+TEST(Periodic, APointAtInfinityMeetsOnlyWhatIsThere) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  const std::vector<Box2> boxes = {
+      {{infinite, 0}, {infinite, 1}}, {{1, 0}, {2, 1}}, {{infinite, 0}, {infinite, 1}}};
+  EXPECT_EQ(find_pairs_within(boxes, Reach(0).periodic({10.0, infinity})), (Pairs{{BoxId{0}, BoxId{2}}}));
+}
+
 std::string message_of(const Reach& reach) {
   try {
     static_cast<void>(find_pairs_within(std::vector<Box2>(2, Box2{{0, 0}, {1, 1}}), reach));
@@ -218,6 +225,9 @@ TEST(Periodic, RefusesOtherPeriods) {
   EXPECT_EQ(
       message_of(Reach(1).periodic({1.0, std::numeric_limits<double>::quiet_NaN()})),
       "the period of axis 1 is nan; expected a number above 0, or infinity for an axis that does not repeat");
+  EXPECT_EQ(
+      message_of(Reach(1).periodic(std::span<const double>())),
+      "0 periods for boxes of 2 dimensions; expected 2, with infinity for an axis that does not repeat");
   EXPECT_EQ(
       message_of(Reach(1).periodic({1.0, 1.0, 1.0, 1.0})),
       "4 periods for boxes of 2 dimensions; expected 2, with infinity for an axis that does not repeat");

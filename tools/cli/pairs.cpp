@@ -227,8 +227,8 @@ class PairsCommand {
   /// The pairs within a Euclidean distance, which may be 0, in space that may repeat.
   void search_around(PairSink& pairs, const PairFilters& filters) {
     const std::vector<double> periods = read_periods(arguments_.period);
-    const Reach reach =
-        Reach(arguments_.within.empty() ? 0 : read_distance(arguments_.within)).periodic(periods);
+    Reach reach = arguments_.within.empty() ? 0 : read_distance(arguments_.within);
+    if (!periods.empty()) reach = reach.periodic(periods);
     const FindOptions options{
         .algorithm = entry_.spec, .filters = filters.filters, .right_filters = filters.right_filters};
     std::visit(

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <ranges>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -106,8 +105,10 @@ double read_distance(const std::string& text) {
 std::vector<double> read_periods(const std::string& text) {
   std::vector<double> periods;
   if (text.empty()) return periods;
-  for (const auto part : std::views::split(text, ',')) {
-    const std::string_view one(std::ranges::data(part), std::ranges::size(part));
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view one = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
     double period = std::numeric_limits<double>::infinity();
     if (one != "-" && (!lab::readers::parse_number(one, period) || !(period > 0)))
       throw Unusable(

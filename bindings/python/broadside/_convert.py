@@ -70,7 +70,7 @@ def boxes_or_points(found: Any, name: str, columns: Columns | None) -> Rows:
     """Rows of boxes, as by boxes(); points become boxes with equal minima and maxima."""
     for dimension in (2, 3):
         if columns is None and not is_empty_sequence(found) and are_points(found, name, dimension):
-            points = rows_of(found, name, dimension, True) if np.asarray(found).dtype != np.float32 else np.asarray(found)
+            points = _with_float_rows(found, name, _Points(name, dimension))
             return np.concatenate((points, points), axis=1)
     return boxes(found, name, columns)
 

@@ -24,6 +24,8 @@ def periods(period: Any) -> NDArray[np.float64]:
         return np.empty(0)
     if np.ndim(period) == 0:
         raise TypeError(f"period is {period!r}; expected a number for each axis, or None for one that does not repeat")
+    if len(period) == 0:
+        raise ValueError("period is empty; expected a number for each axis, or None for one that does not repeat")
     return np.array([np.inf if one is None else _arguments.number(one, "period") for one in period], np.float64)
 
 

@@ -48,6 +48,8 @@ def test_refuses_what_is_no_period():
         broadside.pairs(boxes, period=(1, 0))
     with pytest.raises(broadside.InvalidQueryError, match="3 periods for boxes of 2 dimensions"):
         broadside.pairs(boxes, period=(1, 1, 1))
+    with pytest.raises(ValueError, match="period is empty"):
+        broadside.pairs(boxes, period=[])
     with pytest.raises(TypeError, match="period is 5; expected a number for each axis"):
         broadside.pairs(boxes, period=5)
     with pytest.raises(ValueError, match="touching is False with within or period"):
