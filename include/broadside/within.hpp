@@ -83,8 +83,8 @@ class Reach {
       result.periods_[axis] = periods[axis];
     return result;
   }
-  template <std::size_t axes>
-  [[nodiscard]] Reach periodic(const double (&periods)[axes]) const {
+  template <std::size_t Axes>
+  [[nodiscard]] Reach periodic(const double (&periods)[Axes]) const {
     return periodic(std::span<const double>(periods));
   }
 

@@ -84,7 +84,7 @@ test("arguments of the wrong kind", () => {
     [() => broadside.pairs([], { sortd: true } as object),
       "unknown option 'sortd'; expected some of: dimension, algorithm, filters, same, different, touching, within, period, sorted, view"],
     [() => broadside.count([], { sorted: true } as object),
-      "unknown option 'sorted'; expected some of: dimension, algorithm, filters, same, different, touching"],
+      "unknown option 'sorted'; expected some of: dimension, algorithm, filters, same, different, touching, within, period"],
     [() => broadside.pairs(overlapping, { filters: { category: [1] } }),
       "the length of filters.category is 1; expected 2, one for each box"],
     [() => broadside.pairs(overlapping, { filters: { kind: [1] } as object }),
