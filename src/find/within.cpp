@@ -292,9 +292,9 @@ find::Periods<D> checked_periods(std::span<const double> periods, std::size_t co
   }
   for (std::size_t axis = 0; axis < D; ++axis) {
     if (!(periods[axis] > 0)) {
-      throw InvalidQuery(core::message({"the period of axis ", axis, " is ", core::text_of(periods[axis]),
-                                        "; expected a number above 0, or infinity for an axis that does not "
-                                        "repeat"}));
+      throw InvalidQuery(
+          core::message({"the period of axis ", axis, " is ", core::text_of(periods[axis]),
+                         "; expected a number above 0, or infinity for an axis that does not repeat"}));
     }
     checked[axis] = periods[axis];
   }
@@ -329,8 +329,8 @@ std::optional<Statistics> find_periodic(const Set<D, Real>& left, const Set<D, R
     return are_within(a, b, limit(pair));
   };
   return core::search_through(
-      find::PeriodicSink<D, Real, decltype(is_within)>(left_places, is_between ? right_places : left_places,
-                                                       periods, ignored, is_within, pairs),
+      find::PeriodicSink<D, Real, std::remove_const_t<decltype(is_within)>>(
+          left_places, is_between ? right_places : left_places, periods, ignored, is_within, pairs),
       [&](PairSink& candidates) {
         return is_between
                    ? search.find_between(left_places.places(), right_places.places(), options, candidates)

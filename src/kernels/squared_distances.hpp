@@ -22,9 +22,9 @@ inline double gap(const Box<D, Real>& a, const Box<D, Real>& b, std::size_t axis
 /// The sum of the squared gaps in order of the axes. Squares may overflow or vanish.
 template <int D, typename Real>
 inline double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) {
-  return [&]<std::size_t... axis>(std::index_sequence<axis...>) {
+  return [&]<std::size_t... Axes>(std::index_sequence<Axes...>) {
     double sum = 0;
-    ((sum += gap(a, b, axis) * gap(a, b, axis)), ...);
+    ((sum += gap(a, b, Axes) * gap(a, b, Axes)), ...);
     return sum;
   }
   (std::make_index_sequence<D>());
