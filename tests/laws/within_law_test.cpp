@@ -273,8 +273,8 @@ TEST(Within, ListsNeighboursOnceOrTwice) {
   }
   EXPECT_EQ(neighbours({}, 0, NeighbourLists::full).offsets, (std::vector<std::size_t>{0}));
   EXPECT_EQ(neighbours({pair(0, 9)}, 2, NeighbourLists::half).offsets, (std::vector<std::size_t>{0, 1, 1}));
-  EXPECT_THROW(neighbours({pair(0, 2)}, 2, NeighbourLists::full), InvalidFrame);
-  EXPECT_THROW(neighbours({pair(2, 0)}, 2, NeighbourLists::half), InvalidFrame);
+  EXPECT_THROW(static_cast<void>(neighbours({pair(0, 2)}, 2, NeighbourLists::full)), InvalidFrame);
+  EXPECT_THROW(static_cast<void>(neighbours({pair(2, 0)}, 2, NeighbourLists::half)), InvalidFrame);
 }
 
 template <typename Error, typename Call>
