@@ -101,9 +101,9 @@ def choose(labels: Sequence[str], name: str, columns: str | list[str] | None) ->
 
 def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
     """The columns of points among those of a table: by known names, or all if there are `dimension`."""
-    problem, _, axes, _ = _core.resolve_columns(list(labels), False)
+    _, _, axes, _ = _core.resolve_columns(list(labels), False)
     places = [place for form, place, _ in axes if form == "point"]
-    if not problem and not axes:  # names without a meaning
+    if not axes:  # names without a meaning
         places = list(range(len(labels)))
     if len(places) != dimension:
         raise ValueError(f"{name} has the columns {', '.join(labels) or 'none'}; expected {', '.join('xyz'[:dimension])}")
