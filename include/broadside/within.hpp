@@ -146,7 +146,7 @@ BROADSIDE_PUBLIC void set_distances(BoxView<D, Real> left, BoxView<D, Real> righ
                                     std::span<const Pair> pairs, std::span<const double> periods,
                                     std::span<double> distances);
 
-/// Throws InvalidFrame for more boxes than there are ids.
+/// Throws InvalidFrame for more than 2^32 - 2 boxes.
 BROADSIDE_PUBLIC void check_neighbour_count(std::size_t boxes);
 
 /// Fills the neighbour lists of sorted pairs.
@@ -245,7 +245,7 @@ enum class NeighbourLists : std::uint8_t {
 ///     const Neighbours near = neighbours(find_pairs_within(atoms, cutoff), atoms.size(),
 ///     NeighbourLists::full);
 ///
-/// Throws InvalidFrame for an id that is out of range, or for more than 2^32 - 1 boxes.
+/// Throws InvalidFrame for an id that is out of range, or for more than 2^32 - 2 boxes.
 [[nodiscard]] BROADSIDE_CALLERS_VECTOR inline Neighbours neighbours(std::vector<Pair> pairs,
                                                                     std::size_t boxes, NeighbourLists lists) {
   detail::check_neighbour_count(boxes);

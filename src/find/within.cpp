@@ -467,10 +467,10 @@ void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::s
 }
 
 void detail::check_neighbour_count(std::size_t boxes) {
-  if (boxes > std::numeric_limits<std::uint32_t>::max())
-    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected at most 4294967295"}));
-  if (boxes == std::numeric_limits<std::size_t>::max())  // where that is 32 bits
-    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected fewer"}));
+  // One more offset than boxes must fit into 32 bits, where a std::size_t has so many.
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() - 1;
+  if (std::uint64_t{boxes} > most)
+    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected at most 4294967294"}));
 }
 
 void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::span<std::size_t> offsets,
