@@ -108,8 +108,8 @@ typedef struct broadside_boxes {
   size_t stride;
 } broadside_boxes;
 
-/** Writes `count` closed intervals as boxes of BROADSIDE_DOUBLE_2D, whose y is 0, and returns these boxes for all
- * functions. Interval i is from minima[i] to maxima[i], and `rows` has room for 4 * count doubles. One from
+/** Makes boxes of `count` closed intervals, from minima[i] to maxima[i], for all functions that take boxes. Writes
+ * them to `rows`, which has room for 4 * count doubles: boxes of BROADSIDE_DOUBLE_2D whose y is 0. An interval from
  * +infinity to -infinity is absent. Half-open intervals need `leaves_out_touching`. */
 BROADSIDE_EXPERIMENTAL broadside_boxes broadside_intervals(const double* minima, const double* maxima,
                                                            size_t count, double* rows);
@@ -223,10 +223,11 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_distances(const broadside_boxe
                                                             const broadside_pair* pairs, size_t count,
                                                             double* distances, broadside_error* error);
 
-/** Makes lists of neighbours of `count` pairs in any order: those of box i, ascending, are
- * neighbours[offsets[i]] up to neighbours[offsets[i + 1]]. If `is_full` is 0, the first box of a pair has the
- * second, and `neighbours` has room for `count`; also for pairs of two sets, of which the left one has `boxes`
- * boxes. Otherwise each has the other, and there is room for twice as many. There are `boxes` + 1 offsets. */
+/** Makes neighbour lists of `count` pairs in any order. The neighbours of box i, ascending, are
+ * neighbours[offsets[i]] up to neighbours[offsets[i + 1]]; there are `boxes` + 1 offsets. If `is_full` is 0, the
+ * first box of a pair has the second as a neighbour, and `neighbours` has room for `count`. Otherwise each box has
+ * the other, and `neighbours` has room for 2 * count. For pairs of two sets, `is_full` is 0 and `boxes` the size of
+ * the left set. */
 BROADSIDE_EXPERIMENTAL broadside_status broadside_neighbours(const broadside_pair* pairs, size_t count,
                                                              size_t boxes, int is_full, size_t* offsets,
                                                              uint32_t* neighbours, broadside_error* error);

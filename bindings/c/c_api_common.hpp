@@ -293,7 +293,7 @@ broadside_status first_hit(const Object* object, const void* box, const void* di
       });
 }
 
-/// The boxes nearest to a point or a box, whose address the caller gives, and null for the other one.
+/// Finds the boxes nearest to a point or a box. One of the two addresses is null.
 template <typename Object>
 broadside_status nearest(const Object* object, const void* point, const void* box, double max_distance,
                          const broadside_query* query, broadside_neighbour* neighbours, std::size_t room,
@@ -307,7 +307,7 @@ broadside_status nearest(const Object* object, const void* point, const void* bo
           from = value_of<Box<D, Real>>(box, "box");
         else
           from.min = from.max = value_of<Point<D, Real>>(point, "point or box");
-        index.nearest(from, room,
+        index.nearest(queried.as_kept(from), room,
                       [&](const Neighbour& one) {
                         buffer.add({queried.handle_of(one.box), one.distance_squared});
                       },

@@ -11,6 +11,7 @@ namespace {
 template <int D, typename Real>
 struct IndexImpl {
   const BoxIndex<D, Real>& index() const { return boxes; }
+  static Box<D, Real> as_kept(const Box<D, Real>& box) { return box; }
   static broadside_handle handle_of(BoxId id) { return {broadside::index(id), 0}; }
   static std::optional<BoxId> except(const broadside_query& query) {
     return query.except_place == nullptr ? std::nullopt : std::optional(BoxId{*query.except_place});

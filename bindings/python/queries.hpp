@@ -95,12 +95,14 @@ class Queries {
   nb::object nearest(nb::handle queries, bool are_points, std::size_t k, double max_distance,
                      nb::handle max_threads, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", are_points ? D : 2 * D, are_doubles);
-    std::vector<Box> memory;
+    std::vector<Box> boxes;
     if (are_points) {
       std::vector<Point> scratch;
-      for (const Point& point : rows.array(scratch)) memory.push_back({point, point});
+      for (const Point& point : rows.array(scratch)) boxes.push_back({point, point});
+    } else {
+      std::vector<Box> scratch;
+      for (const Box& box : rows.array(scratch)) boxes.push_back(asked_.as_kept(box));
     }
-    const BoxView<D, Real> boxes = are_points ? BoxView<D, Real>(memory) : rows.boxes<D, Real>();
     const std::size_t count = boxes.size();
     if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(count, 1))
       throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(count) +

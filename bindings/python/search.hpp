@@ -161,7 +161,7 @@ struct SearchArguments {
                               quarantine ? &quarantined : nullptr);
   }
 
-  /// Calls `find`, whose exceptions then name the arguments.
+  /// Calls `find`. If it throws InvalidInput, throws an exception that names the argument.
   template <int D, typename Real, typename Find>
   static void naming_sets(BoxView<D, Real> left, const Find& find) {
     try {

@@ -41,10 +41,10 @@ struct BatchEvents {
 ///     for (const Pair pair : events.begun.of(world)) ...
 ///
 /// Each update finds the pairs of every world anew, as find_pairs_batch() does, and compares them with those
-/// of the frame before. For worlds of up to about 1,000 boxes that costs less than a Tracker each. One thread
-/// at a time; within an update, several threads share the worlds. Memory: one copy of the boxes and of the
-/// filters, and 8 bytes for each pair of two frames. A tracker that was moved from may only be assigned to or
-/// destroyed.
+/// of the frame before. If all boxes move, that takes less than a Tracker for each world: see
+/// docs/benchmarking.md. One thread at a time; within an update, several threads share the worlds. Memory:
+/// one copy of the boxes and of the filters, and 8 bytes for each pair of two frames. A tracker that was
+/// moved from may only be assigned to or destroyed.
 template <int D, typename Real = float>
 class BROADSIDE_PUBLIC BatchTracker final {
   static_assert(detail::SupportedBox<D, Real>::value);

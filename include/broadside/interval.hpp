@@ -5,9 +5,9 @@
 
 namespace broadside {
 
-/// The box of the closed interval from `min` to `max`: a box on the x axis, whose y is 0. Intervals are boxes
-/// like any others: for find_pairs() and its options, trackers, worlds and queries. A point on the axis is
-/// {x, 0}. Whole numbers are exact up to 2^53.
+/// Makes a box of the closed interval from `min` to `max`: it lies on the x axis, and its y is 0.
+/// find_pairs(), trackers, worlds and queries take it as any other box. A point on the axis is {x, 0}. Whole
+/// numbers are exact up to 2^53.
 ///
 ///     find_pairs(boxes_of(genes, [](const Gene& gene) { return interval(gene.start, gene.end); }));
 ///

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "broadside/algorithm.hpp"
@@ -363,11 +364,17 @@ class BROADSIDE_PUBLIC World {
     const auto add = [&](const Neighbour& one) {
       found.push_back({handle_of(one.box), one.distance_squared});
     };
-    box_index().nearest(from, count, add, {options.filter, slot_of(options.except), options.max_distance});
+    const auto find = [&](const auto& kept) {
+      box_index().nearest(kept, count, add, {options.filter, slot_of(options.except), options.max_distance});
+    };
+    if constexpr (std::is_same_v<PointOrBox, Box<D, Real>>)
+      find(as_kept(from));
+    else
+      find(from);
   }
 
   /// The index that queries use, brought up to date; valid until the world changes. Its ids are slots:
-  /// handle_of() gives their handles. as_kept() gives the box that overlapping() asks it for: the box itself,
+  /// handle_of() gives their handles. as_kept() gives the box that queries ask it for: the box itself,
   /// or half_open(box) without WorldOptions::touching.
   [[nodiscard]] const BoxIndex<D, Real>& box_index() const;
   [[nodiscard]] Handle handle_of(BoxId slot) const noexcept;

@@ -1,4 +1,4 @@
-// BatchSearch: the pairs of many worlds whose boxes lie in one array, by a search for each.
+// BatchSearch searches many worlds, whose boxes lie in one array, one world at a time.
 #pragma once
 
 #include <cstddef>
@@ -74,7 +74,7 @@ class BatchSearch {
   std::size_t threads() const noexcept { return threads_; }
 
   /// Checks the boxes of worlds with valid offsets, and returns how many are not present. Throws
-  /// InvalidInput, whose message also names the world, unless bad boxes are quarantined.
+  /// InvalidInput unless bad boxes are quarantined. Its message also names the world.
   static std::size_t check(std::span<const Box<D, Real>> boxes, std::span<const std::size_t> offsets,
                            const Workers& workers, BadInput bad_input);
 

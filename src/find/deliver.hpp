@@ -43,6 +43,16 @@ inline void check_filters(const PairFilters& filters, std::size_t boxes,
   check_filters(filters.filters, boxes, "");
 }
 
+/// Throws InvalidFrame unless the first ids of all pairs are below `first`, and the second ones below
+/// `second`.
+inline void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t second) {
+  for (const Pair pair : pairs) {
+    if (index(pair.first) < first && index(pair.second) < second) continue;
+    throw InvalidFrame(core::message({"a pair of box ", index(pair.first), " and box ", index(pair.second),
+                                      "; expected ids below ", first, " and ", second}));
+  }
+}
+
 /// The boxes as an array: the caller's array, or a copy in `gathered`.
 template <int D, typename Real>
 std::span<const Box<D, Real>> array_of(BoxView<D, Real> boxes, std::vector<Box<D, Real>>& gathered) {

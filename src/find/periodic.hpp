@@ -19,6 +19,7 @@
 #include "broadside/pair.hpp"
 
 #include "core/filter_sink.hpp"
+#include "core/input_check.hpp"
 #include "core/pair_set.hpp"
 
 namespace broadside::find {
@@ -149,6 +150,7 @@ class PeriodicSet {
       for (std::size_t axis = 0; axis < D; ++axis) {
         if ((axes >> axis & 1U) != 0) move_back(image, axis, periods_[axis]);
       }
+      core::check_count(places_.size() + 1);
       places_.push_back(enlarge(image, by));
       images_.push_back({static_cast<BoxId>(box), axes});
     }

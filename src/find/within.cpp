@@ -17,17 +17,16 @@
 #include "broadside/error.hpp"
 
 #include "algorithms/registry.hpp"
-#include "core/cell_axis.hpp"
 #include "core/filter_sink.hpp"
 #include "core/input_check.hpp"
 #include "core/large_array.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
 #include "core/parallel.hpp"
-#include "core/radix_sort.hpp"
 #include "find/deliver.hpp"
 #include "find/periodic.hpp"
 #include "find/search.hpp"
+#include "find/spatial_order.hpp"
 #include "kernels/squared_distances.hpp"
 
 namespace broadside {
@@ -166,7 +165,7 @@ double enlargement(double radius) {
   return radius == 0 ? 0 : std::min(enlarged, std::numeric_limits<double>::max());
 }
 
-/// A number of type Real that is less than the exact value of which `rounded` is the nearest double.
+/// A Real below every number that rounds to the double `rounded`.
 template <typename Real>
 Real less_than(double rounded) {
   const auto number = static_cast<Real>(rounded);
@@ -188,47 +187,6 @@ Box<D, Real> enlarged_outwards(const Box<D, Given>& box, double by) {
 /// the pairs of neighbours one after the other, and each looks up two boxes.
 constexpr std::size_t min_sorted_boxes = std::size_t{1} << 15;
 
-/// Puts a zero, or two in 3D, between the bits of a number.
-template <int D>
-std::uint32_t spread(std::uint32_t number) {
-  std::uint32_t bits = 0;
-  for (int bit = 0; bit < 11; ++bit) bits |= (number >> bit & 1) << (D * bit);
-  return bits;
-}
-
-/// A box's place on a Z-order curve through cells: 2^11 of them on each axis in 2D, 2^7 in 3D, which two
-/// passes of a radix sort put in order.
-template <int D, typename Real>
-class Curve {
- public:
-  explicit Curve(std::span<const Box<D, Real>> boxes) : low_(boxes[0].min) {
-    Point<D, Real> high = low_;
-    for (const Box<D, Real>& box : boxes) {
-      for (std::size_t axis = 0; axis < D; ++axis) {
-        low_[axis] = std::min(low_[axis], box.min[axis]);
-        high[axis] = std::max(high[axis], box.min[axis]);
-      }
-    }
-    for (std::size_t axis = 0; axis < D; ++axis)
-      cells_[axis] = {0, cells_per_axis / static_cast<float>(high[axis] - low_[axis]), cells_per_axis - 1};
-    for (std::uint32_t cell = 0; cell < spread_.size(); ++cell) spread_[cell] = spread<D>(cell);
-  }
-
-  std::uint32_t operator()(const Box<D, Real>& box) const {
-    std::uint32_t key = 0;
-    for (std::size_t axis = 0; axis < D; ++axis)
-      key |= spread_[cells_[axis](static_cast<float>(box.min[axis] - low_[axis]))] << axis;
-    return key;
-  }
-
- private:
-  static constexpr float cells_per_axis = D == 2 ? 1 << 11 : 1 << 7;
-
-  Point<D, Real> low_;
-  std::array<core::CellAxis, D> cells_;
-  std::array<std::uint32_t, static_cast<std::size_t>(cells_per_axis)> spread_;
-};
-
 /// A set of boxes, in which some may be absent, and what is searched in their stead.
 template <int D, typename Real>
 struct Set {
@@ -237,14 +195,8 @@ struct Set {
 
   /// Sorts the boxes by place. None may be absent.
   void sort(bool has_radii, core::Parallel& parallel) {
-    const Curve<D, Real> curve(boxes);
-    core::RadixSort radix;
-    const std::span<core::KeyedPlace> places = radix.places(boxes.size());
-    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i)
-        places[i] = {curve(boxes[i]), static_cast<std::uint32_t>(i)};
-    });
-    const std::span<const core::KeyedPlace> order = radix.sort(parallel);
+    find::SpatialOrder<D, Real> curve;
+    const std::span<const core::KeyedPlace> order = curve.sort(boxes, parallel);
     core::renew(sorted, boxes.size());
     core::renew(ids, boxes.size());
     if (has_radii) core::renew(sorted_radii, boxes.size());
@@ -287,8 +239,9 @@ template <int D>
 find::Periods<D> checked_periods(std::span<const double> periods, std::size_t count) {
   find::Periods<D> checked;
   if (count != D) {
-    throw InvalidQuery(core::message({count, " periods for boxes of ", D, " dimensions; expected ", D,
-                                      ", with infinity for an axis that does not repeat"}));
+    throw InvalidQuery(
+        core::message({count, count == 1 ? " period" : " periods", " for boxes of ", D,
+                       " dimensions; expected ", D, ", with infinity for an axis that does not repeat"}));
   }
   for (std::size_t axis = 0; axis < D; ++axis) {
     if (!(periods[axis] > 0)) {
@@ -344,14 +297,6 @@ double distance_around(const Box<D, Real>& a, const Box<D, Real>& b, const find:
   Box<D, double> moved_b = find::in_cell(b, periods);
   find::move_to_nearest(moved_a, moved_b, periods);
   return distance_of(moved_a, moved_b);
-}
-
-void check_ids(std::span<const Pair> pairs, std::size_t first, std::size_t second) {
-  for (const Pair pair : pairs) {
-    if (index(pair.first) < first && index(pair.second) < second) continue;
-    throw InvalidFrame(core::message({"a pair of box ", index(pair.first), " and box ", index(pair.second),
-                                      "; expected ids below ", first, " and ", second}));
-  }
 }
 
 }  // namespace
@@ -446,7 +391,7 @@ template <int D, typename Real>
 void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::span<const Pair> pairs,
                            std::span<const double> periods, std::span<double> distances) {
   const core::DefaultEnvironment environment;
-  check_ids(pairs, left.size(), right.size());
+  find::check_ids(pairs, left.size(), right.size());
   if (!periods.empty()) {
     const find::Periods<D> checked = checked_periods<D>(periods, periods.size());
     for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -463,34 +408,6 @@ void detail::set_distances(BoxView<D, Real> left, BoxView<D, Real> right, std::s
     const bool is_plain = distances[i] >= 1e-190 && distances[i] <= 1e190;
     distances[i] = is_plain ? std::sqrt(distances[i])
                             : distance_of(lefts[index(pairs[i].first)], rights[index(pairs[i].second)]);
-  }
-}
-
-void detail::check_neighbour_count(std::size_t boxes) {
-  // One more offset than boxes must fit into 32 bits, where a std::size_t has so many.
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() - 1;
-  if (std::uint64_t{boxes} > most)
-    throw InvalidFrame(core::message({"neighbour lists of ", boxes, " boxes; expected at most 4294967294"}));
-}
-
-void detail::set_neighbours(std::span<const Pair> sorted, bool is_full, std::span<std::size_t> offsets,
-                            std::span<BoxId> neighbours) {
-  const std::size_t boxes = offsets.size() - 1;
-  check_ids(sorted, boxes, is_full ? boxes : std::numeric_limits<std::size_t>::max());
-  // offsets[i + 1] becomes the begin of box i, and, as its neighbours are written, its end.
-  std::fill(offsets.begin(), offsets.end(), 0);
-  const auto count = [&](BoxId box) {
-    if (index(box) + std::size_t{2} < offsets.size()) ++offsets[index(box) + std::size_t{2}];
-  };
-  for (const Pair pair : sorted) {
-    count(pair.first);
-    if (is_full) count(pair.second);
-  }
-  for (std::size_t i = 2; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-  // A box's lesser neighbours come before its greater ones, in the order of the pairs.
-  for (const Pair pair : sorted) {
-    neighbours[offsets[index(pair.first) + std::size_t{1}]++] = pair.second;
-    if (is_full) neighbours[offsets[index(pair.second) + std::size_t{1}]++] = pair.first;
   }
 }
 

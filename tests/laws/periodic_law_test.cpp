@@ -14,6 +14,7 @@
 #include "broadside/within.hpp"
 
 #include "law_case.hpp"
+#include "pair_reference.hpp"
 #include "tests/support/model.hpp"
 #include "tests/support/rng.hpp"
 
@@ -73,23 +74,6 @@ std::array<double, D> as_periods(const std::array<int, D>& periods) {
   std::array<double, D> result;
   for (int axis = 0; axis < D; ++axis) result[axis] = periods[axis] == 0 ? infinity : periods[axis];
   return result;
-}
-
-/// The pairs of one set, or of its first `left_count` boxes with the others, as places in the two.
-template <typename Within>
-Pairs reference(std::size_t count, std::size_t left_count, const Within& within) {
-  Pairs pairs;
-  for (std::size_t i = 0; i < (left_count == 0 ? count : left_count); ++i) {
-    for (std::size_t j = std::max(i + 1, left_count); j < count; ++j) {
-      if (within(i, j)) pairs.push_back({BoxId(i), BoxId(j - left_count)});
-    }
-  }
-  return pairs;
-}
-
-Pairs sorted(Pairs pairs) {
-  std::ranges::sort(pairs);
-  return pairs;
 }
 
 class PeriodicLaw : public Law {

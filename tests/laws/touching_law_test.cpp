@@ -157,6 +157,15 @@ TEST(Touching, StaysWhatItIsWhereAWorldIsShifted) {
   EXPECT_EQ(found, 2U);
 }
 
+TEST(Touching, CountsForTheNearestBoxesOfABox) {
+  World2 world({.touching = false});
+  world.add({{0, 0}, {1, 1}});
+  for (const Box2& box : {Box2{{1, 0}, {2, 1}}, Box2{{-1, 0}, {0, 1}}})
+    EXPECT_TRUE(world.nearest(box, 1, {.max_distance = 0}).empty()) << "as overlapping() finds none";
+  EXPECT_EQ(world.nearest(Box2{{0.5F, 0}, {2, 1}}, 1, {.max_distance = 0}).size(), 1U);
+  EXPECT_EQ(world.nearest({0, 0}, 1, {.max_distance = 0}).size(), 1U);
+}
+
 TEST(Touching, IsAnOptionOfFindPairsWhoseErrorsNameTheGivenBoxes) {
   const std::vector<Box2> tiles = {
       {{0, 0}, {1, 1}}, {{1, 0}, {2, 1}}, {{1, 0.5F}, {1, 0.5F}}, {{0.5F, 0}, {1.5F, 1}}};

@@ -19,6 +19,7 @@
 #include "broadside/world.hpp"
 
 #include "law_case.hpp"
+#include "pair_reference.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/drawn_boxes.hpp"
 #include "tests/support/model.hpp"
@@ -65,23 +66,6 @@ bool are_within(const std::array<int, 2 * D>& a, const std::array<int, 2 * D>& b
     square += gap * gap;
   }
   return square <= distance * distance;
-}
-
-/// The pairs of one set, or of its first `left_count` boxes with the others, as places in the two.
-template <typename Within>
-Pairs reference(std::size_t count, std::size_t left_count, const Within& within) {
-  Pairs pairs;
-  for (std::size_t i = 0; i < (left_count == 0 ? count : left_count); ++i) {
-    for (std::size_t j = std::max(i + 1, left_count); j < count; ++j) {
-      if (within(i, j)) pairs.push_back({BoxId(i), BoxId(j - left_count)});
-    }
-  }
-  return pairs;
-}
-
-Pairs sorted(Pairs pairs) {
-  std::ranges::sort(pairs);
-  return pairs;
 }
 
 /// The definition for any numbers: everything is scaled until the greatest number is about 1.

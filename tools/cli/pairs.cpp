@@ -155,10 +155,12 @@ class PairsCommand {
       separator = " with ";
     }
     return fmt::format(
-        "{} in {}D: {}{}{}, {}; read in {}, joined by {} in {}", sets, lab::dimension(sets_[0].boxes), found,
+        "{} in {}D: {}{}{}{}, {}; read in {}, joined by {} in {}", sets, lab::dimension(sets_[0].boxes),
+        found,
         arguments_.within.empty()
             ? ""
             : fmt::format(" within {}{}", arguments_.within, arguments_.is_euclidean ? " (Euclidean)" : ""),
+        arguments_.period.empty() ? "" : fmt::format(" with period {}", arguments_.period),
         arguments_.leaves_out_touching ? ", without pairs that only touch" : "", precision_text(),
         lab::duration(read_ms_ / 1e3), entry_.spec.text(), lab::duration(join_ms_ / 1e3));
   }

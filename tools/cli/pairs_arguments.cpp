@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "broadside/algorithm.hpp"
+
 #include "cli/applicability.hpp"
 #include "cli/message.hpp"
 #include "cli/out_of_core.hpp"
@@ -210,6 +212,10 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
     throw Unusable("--period and --within without --euclidean; expected it");
   if (!arguments.period.empty() && arguments.leaves_out_touching)
     throw Unusable("--no-touching with --period; expected one or the other");
+  if ((arguments.is_euclidean || !arguments.period.empty()) &&
+      find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)
+    throw Unusable(fmt::format("--algorithm is '{}' with {}; expected one of the library's own",
+                               arguments.algorithm, arguments.is_euclidean ? "--euclidean" : "--period"));
   if (arguments.is_euclidean && arguments.within.empty())
     throw Unusable("--euclidean without --within; expected a distance");
   if (!arguments.within.empty() && arguments.leaves_out_touching)

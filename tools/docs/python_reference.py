@@ -28,7 +28,8 @@ def text_of(documented: object) -> str:
 
 
 def members_of(kind: type) -> list[tuple[str, object]]:
-    own = [(name, member) for name, member in vars(kind).items() if not name.startswith("_")]
+    kinds = [one for one in reversed(kind.__mro__) if one is kind or one.__name__.startswith("_")]
+    own = [(name, member) for one in kinds for name, member in vars(one).items() if not name.startswith("_")]
     return [(name, member) for name, member in own if getattr(member, "__doc__", None)]
 
 

@@ -283,7 +283,48 @@ World.__doc__ = _world_options.filled(World.__doc__, own={"first_generation"})
 World.__signature__ = _world_options.signature(World)
 
 
-class Tracker:
+class _ArrayTracker:
+    """What Tracker and BatchTracker have in common."""
+
+    __slots__ = ("__weakref__", "_dimension", "_dtype", "_tracker")
+
+    _dimension: int
+    _dtype: np.dtype[Any]
+    _tracker: Any
+
+    def _set_kind(self, dimension: int, dtype: DTypeLike) -> tuple[int, bool]:
+        """Keeps the kind of boxes, and returns it as the extension module takes it."""
+        has_doubles = _has_doubles(dtype)
+        self._dimension = _checked_dimension(dimension)
+        self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
+        return self._dimension, has_doubles
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return self._dimension
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """float32 or float64."""
+        return self._dtype
+
+    @property
+    def nbytes(self) -> int:
+        """The bytes that the tracker holds."""
+        found: int = self._tracker.bytes()
+        return found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; {self._instead}")
+
+    def __repr__(self) -> str:
+        return f"broadside.{type(self).__name__}({self._dimension}D, {self._dtype})"
+
+    _instead: ClassVar[str]
+
+
+class Tracker(_ArrayTracker):
     """Follows an array of boxes from frame to frame, and tells which pairs of rows begin and end.
 
     Args:
@@ -297,7 +338,8 @@ class Tracker:
     Calls from several threads take turns. A tracker cannot be pickled or copied.
     """
 
-    __slots__ = ("__weakref__", "_dimension", "_dtype", "_tracker")
+    __slots__ = ()
+    _instead = "expected a World, which can, or a new Tracker"
 
     def __init__(
         self,
@@ -309,23 +351,10 @@ class Tracker:
         quarantine: bool = False,
         touching: bool = True,
     ) -> None:
-        has_doubles = _has_doubles(dtype)
-        self._dimension = _checked_dimension(dimension)
-        self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
         self._tracker = _core.make_tracker(
-            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(quarantine),
+            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, bool(quarantine),
             bool(touching),
         )
-
-    @property
-    def dimension(self) -> int:
-        """2 or 3."""
-        return self._dimension
-
-    @property
-    def dtype(self) -> np.dtype[Any]:
-        """float32 or float64."""
-        return self._dtype
 
     def update(
         self,
@@ -350,17 +379,6 @@ class Tracker:
         """
         return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
 
-    @property
-    def nbytes(self) -> int:
-        """The bytes that the tracker holds."""
-        return self._tracker.bytes()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError("a Tracker cannot be pickled or copied; expected a World, which can, or a new Tracker")
-
-    def __repr__(self) -> str:
-        return f"broadside.Tracker({self._dimension}D, {self._dtype})"
-
 
 class BatchEvents(NamedTuple):
     """What an update brought in each world."""
@@ -371,7 +389,7 @@ class BatchEvents(NamedTuple):
     """The pairs that held before and do not now."""
 
 
-class BatchTracker:
+class BatchTracker(_ArrayTracker):
     """Follows the boxes of many small worlds, such as the simulations in which a policy is trained.
 
     One call takes all boxes of a frame, and tells for each world which pairs of rows begin and end.
@@ -386,7 +404,8 @@ class BatchTracker:
     Calls from several threads take turns. A batch tracker cannot be pickled or copied.
     """
 
-    __slots__ = ("__weakref__", "_dimension", "_dtype", "_tracker")
+    __slots__ = ()
+    _instead = "expected a new BatchTracker"
 
     def __init__(
         self,
@@ -397,22 +416,9 @@ class BatchTracker:
         threads: int | None = None,
         touching: bool = True,
     ) -> None:
-        has_doubles = _has_doubles(dtype)
-        self._dimension = _checked_dimension(dimension)
-        self._dtype = np.dtype(np.float64 if has_doubles else np.float32)
         self._tracker = _core.make_batch_tracker(
-            self._dimension, has_doubles, _arguments.text(algorithm, "algorithm"), threads, bool(touching)
+            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, bool(touching)
         )
-
-    @property
-    def dimension(self) -> int:
-        """2 or 3."""
-        return self._dimension
-
-    @property
-    def dtype(self) -> np.dtype[Any]:
-        """float32 or float64."""
-        return self._dtype
 
     def update(
         self,
@@ -444,14 +450,3 @@ class BatchTracker:
         except InvalidBoxError as error:
             raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
         return BatchEvents(BatchPairs(*begun), BatchPairs(*ended))
-
-    @property
-    def nbytes(self) -> int:
-        """The bytes that the tracker holds."""
-        return self._tracker.bytes()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError("a BatchTracker cannot be pickled or copied; expected a new BatchTracker")
-
-    def __repr__(self) -> str:
-        return f"broadside.BatchTracker({self._dimension}D, {self._dtype})"

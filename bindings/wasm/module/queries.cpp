@@ -112,7 +112,8 @@ broadside_status query_nearest(bool is_world, void* address, const Filter* filte
                                std::size_t k, double max_distance) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 const Box<dimension> box{point_at(0), point_at(dimension)};
+                 Box<dimension> box{point_at(0), point_at(dimension)};
+                 if (is_world) box = static_cast<WasmWorld*>(address)->world().as_kept(box);
                  index.nearest(box, k, neighbours, {filter, left_out, max_distance});
                  distances.clear();
                  for (const Neighbour& neighbour : neighbours) {

@@ -54,8 +54,8 @@ export interface CountOptions {
    */
   readonly touching?: boolean;
   /**
-   * Find the boxes whose Euclidean distance is at most this number, instead of those that overlap. Or a radius for each
-   * box: two pair if their distance is at most the sum of their radii. Points are boxes of equal minima and maxima.
+   * A number finds the boxes whose Euclidean distance is at most that, instead of those that overlap. An array has a
+   * radius for each box: two boxes pair if their distance is at most the sum of their radii. Points are boxes of equal minima and maxima.
    */
   readonly within?: number | ArrayLike<number>;
   /**
@@ -223,7 +223,7 @@ export interface NearestOfEachOptions extends ResultOptions {
   readonly maxDistance?: number;
   /** For each query the id of a box that it does not find: to leave out the box itself, its place. */
   readonly except?: ArrayLike<number>;
-  /** A filter for each query, which then finds only boxes whose filters accept it. */
+  /** A filter for each query. The query finds only boxes whose filters accept it. */
   readonly filters?: Filters;
 }
 

@@ -258,8 +258,8 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // One box more than asked for, so that one left out may be among them; and another one, whose distance
-  // shows that no other is as near.
+  // The kernel finds two boxes more than asked for: one may be left out, and the farthest shows that no other
+  // box is as near.
   const bool in_groups = options.filters.empty() && count + 2 <= kernels::NearGroup<D>::max_count;
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {

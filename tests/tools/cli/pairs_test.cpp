@@ -347,12 +347,17 @@ TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
   EXPECT_EQ(run({"pairs", file, "--period", "360,360", "--within", "6", "--euclidean"}).output,
             "first,second\n0,1\n2,3\n");
   EXPECT_EQ(run({"pairs", file, file, "--period", "360,-", "--count"}).output, "6\n");
+  EXPECT_THAT(run({"pairs", file, "--period", "360,-"}).errors, HasSubstr("1 pair with period 360,-"));
+  const std::string across = folder.put("across.csv", "xmin,ymin,xmax,ymax\n170,0,-170,1\n");
   expect_refused("pairs", {
+                              {{across}, {"min (170, 0) and max (-170, 1)", "add 360 to the maximum"}},
                               {{file, "--period", "0,1"}, {"--period is '0,1'", "a number above 0"}},
                               {{file, "--period", "1,"}, {"--period is '1,'"}},
-                              {{file, "--period", "360"}, {"1 periods for boxes of 2 dimensions"}},
+                              {{file, "--period", "360"}, {"1 period for boxes of 2 dimensions"}},
                               {{file, "--period", "1,1", "--within", "1"}, {"without --euclidean"}},
                               {{file, "--period", "1,1", "--no-touching"}, {"--no-touching with --period"}},
+                              {{file, "--period", "1,1", "--algorithm", "karras_lbvh"},
+                               {"--algorithm is 'karras_lbvh' with --period", "the library's own"}},
                           });
 }
 

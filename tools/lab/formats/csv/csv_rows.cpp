@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include <fmt/format.h>
@@ -76,6 +77,16 @@ void CsvRows::check_count() const {
         fmt::format("the {} columns {}", expected, plainly(fmt::to_string(fmt::join(columns().names, ",")))));
 }
 
+namespace {
+
+/// Whether only the first axis descends, as longitude does from east to west of the date line.
+bool is_across_date_line(std::span<const double> min, std::span<const double> max) {
+  return min[0] > 0 && min[0] <= 180 && max[0] < 0 && max[0] >= -180 &&
+         std::equal(min.begin() + 1, min.end(), max.begin() + 1, std::less_equal<>());
+}
+
+}  // namespace
+
 DoubleBox3 CsvRows::checked_box() const {
   check_count();
   const RowBox row = columns().has_geometry ? RowBox{geometry_box()} : box_of(fields_, columns());
@@ -91,8 +102,11 @@ DoubleBox3 CsvRows::checked_box() const {
     table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
   table_.lines.refuse(
       fmt::format("min ({}) and max ({})", fmt::join(min, ", "), fmt::join(max, ", ")),
-      fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}",
-                  columns().is_computed() ? "that is, sizes of 0 or more, " : "", other_ways()));
+      fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}{}",
+                  columns().is_computed() ? "that is, sizes of 0 or more, " : "", other_ways(),
+                  is_across_date_line(min, max)
+                      ? "; add 360 to the maximum of a box across the date line, and see pairs --period"
+                      : ""));
 }
 
 DoubleBox3 CsvRows::geometry_box() const {
