@@ -4,7 +4,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -55,9 +54,11 @@ template <int D, typename Real>
 BROADSIDE_CALLERS_VECTOR NearestPairs nearest_pairs(BoxView<D, Real> left, const BoxView<D, Real>* right,
                                                     std::size_t k, const NearestPairsOptions& options) {
   NearestPairs found{.k = k, .boxes = {}, .distances_squared = {}};
-  if (left.size() > 0 && k > found.boxes.max_size() / left.size()) throw std::bad_alloc();
-  found.boxes.resize(left.size() * k);
-  found.distances_squared.resize(left.size() * k);
+  // Where the product overflows, resize() throws std::length_error.
+  const bool is_too_large = left.size() > 0 && k > found.boxes.max_size() / left.size();
+  const std::size_t count = is_too_large ? std::numeric_limits<std::size_t>::max() : left.size() * k;
+  found.boxes.resize(count);
+  found.distances_squared.resize(count);
   nearest_pairs(left, right, k, options, std::span(found.boxes), std::span(found.distances_squared));
   return found;
 }

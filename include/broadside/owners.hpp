@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "broadside/error.hpp"
+#include "broadside/export.hpp"
 #include "broadside/pair.hpp"
 
 namespace broadside {
@@ -29,6 +29,15 @@ struct OwnerEvents {
   std::span<const OwnerPair> begun;
   std::span<const OwnerPair> ended;
 };
+
+namespace detail {
+
+/// Both throw InvalidFrame. They are compiled into the library, so that programs without exceptions can
+/// include this header.
+[[noreturn]] BROADSIDE_PUBLIC void refuse_box_without_owner(BoxId box, std::size_t owners);
+[[noreturn]] BROADSIDE_PUBLIC void refuse_end(const OwnerPair& owners, std::int64_t pairs, std::int64_t ends);
+
+}  // namespace detail
 
 /// Tells which pairs of owners touch, from the pairs of boxes that begin and end: two owners touch while at
 /// least one box of each touches a box of the other. Boxes of one owner never count as a pair;
@@ -65,9 +74,7 @@ class OwnerPairs {
   OwnerEvents update(std::span<const Pair> begun, std::span<const Pair> ended,
                      std::span<const std::uint64_t> owners) {
     const auto owner_of = [owners](BoxId box) {
-      if (index(box) >= owners.size())
-        throw InvalidFrame("owners has " + std::to_string(owners.size()) + " elements, and box " +
-                           std::to_string(index(box)) + " is in a pair; expected one for each box");
+      if (index(box) >= owners.size()) detail::refuse_box_without_owner(box, owners.size());
       return owners[index(box)];
     };
     changes_.clear();
@@ -115,20 +122,14 @@ class OwnerPairs {
     for (const auto& [pair, by] : changes_) {
       const auto found = counts_.find(pair);
       const std::int64_t before = found == counts_.end() ? 0 : found->second;
-      if (before + by < 0)
-        throw InvalidFrame("boxes of the owners " + std::to_string(pair.first) + " and " +
-                           std::to_string(pair.second) + " have " + std::to_string(before) + " pairs, and " +
-                           std::to_string(-by) + " more end than begin; expected pairs that began");
+      if (before + by < 0) detail::refuse_end(pair, before, -by);
       if (before == 0 && by > 0) begun_.push_back(pair);
       if (before > 0 && before + by == 0) ended_.push_back(pair);
     }
-    std::size_t taken = 0;
-    try {
-      for (; taken < begun_.size(); ++taken) counts_.emplace(begun_[taken], 0);
-    } catch (...) {  // out of memory
-      for (std::size_t i = 0; i < taken; ++i) counts_.erase(begun_[i]);
-      throw;
-    }
+    // Memory may run out here, before anything has changed; merge() takes none.
+    std::map<OwnerPair, std::int64_t> added;
+    for (const OwnerPair& pair : begun_) added.emplace_hint(added.end(), pair, 0);
+    counts_.merge(added);
     for (const auto& [pair, by] : changes_) {
       if (by != 0) counts_.find(pair)->second += by;
     }

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -115,6 +114,9 @@ class Reach {
 
 namespace detail {
 
+/// Throws std::invalid_argument, for an option `touching` that is false.
+[[noreturn]] BROADSIDE_PUBLIC void refuse_touching();
+
 /// Writes the pairs of one set if `right` is null, otherwise of two, and flushes. Lists invalid boxes in
 /// `quarantined`; if that is null, throws InvalidInput for the first one.
 template <int D, typename Real>
@@ -127,8 +129,7 @@ template <int D, typename Real>
 BROADSIDE_CALLERS_VECTOR void find_pairs_within(BoxView<D, Real> boxes, const BoxView<D, Real>* right,
                                                 const Reach& reach, PairSink& pairs,
                                                 const FindOptions& options) {
-  if (!options.touching)
-    throw std::invalid_argument("touching is false for pairs within a distance; expected true");
+  if (!options.touching) refuse_touching();
   Workers workers = Finder<D, Real>(options.algorithm).workers();
   workers.executor = options.executor;
   std::vector<BoxId> places;

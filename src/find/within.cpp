@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -300,6 +301,10 @@ double distance_around(const Box<D, Real>& a, const Box<D, Real>& b, const find:
 }
 
 }  // namespace
+
+void detail::refuse_touching() {
+  throw std::invalid_argument("touching is false for pairs within a distance; expected true");
+}
 
 template <int D, typename Real>
 double distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {

@@ -316,11 +316,12 @@ class _ArrayTracker:
         return found
 
     def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; {self._instead}")
+        raise TypeError(f"a {self._name} cannot be pickled or copied; {self._instead}")
 
     def __repr__(self) -> str:
-        return f"broadside.{type(self).__name__}({self._dimension}D, {self._dtype})"
+        return f"broadside.{self._name}({self._dimension}D, {self._dtype})"
 
+    _name: ClassVar[str]
     _instead: ClassVar[str]
 
 
@@ -339,6 +340,7 @@ class Tracker(_ArrayTracker):
     """
 
     __slots__ = ()
+    _name = "Tracker"
     _instead = "expected a World, which can, or a new Tracker"
 
     def __init__(
@@ -405,6 +407,7 @@ class BatchTracker(_ArrayTracker):
     """
 
     __slots__ = ()
+    _name = "BatchTracker"
     _instead = "expected a new BatchTracker"
 
     def __init__(

@@ -1,6 +1,7 @@
 // Each public header, and what is inline in it, under the flags that engines compile with: see
 // CMakeLists.txt.
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,23 @@ struct Wall {
   Box2 box;
 };
 
+/// Likewise, of the questions beside overlap.
+std::size_t pairs_of_other_questions(const std::vector<Box2>& boxes) {
+  const std::vector<Pair> near =
+      find_pairs_within(boxes, Reach(2).periodic({8.0, 8.0}), {.algorithm = "grid"});
+  std::size_t found = distances(boxes, near).size() + nearest_pairs(boxes, 1).boxes.size();
+  found += neighbours(near, boxes.size(), NeighbourLists::full).ids.size();
+  const std::vector<std::uint64_t> owners(boxes.size());
+  OwnerPairs bodies;
+  found += bodies.update(near, {}, owners).begun.size();
+  const std::vector<std::size_t> offsets = {0, boxes.size()};
+  BatchTracker<2> worlds("grid");
+  found += worlds.update(boxes, offsets).begun.pairs.size();
+  found += find_pairs_batch(boxes, offsets, {.algorithm = "grid"}).pairs.size();
+  const std::vector<DoubleBox2> intervals = {interval(0, 2), interval(1, 3)};
+  return found + find_pairs(intervals, {.algorithm = "grid"}).size();
+}
+
 /// Calls the inline functions and templates, so that they are compiled.
 std::size_t all_calls(const std::vector<Box2>& boxes) {
   std::size_t found = 0;
@@ -27,6 +45,7 @@ std::size_t all_calls(const std::vector<Box2>& boxes) {
   const std::vector<Wall> walls(2);
   found += find_pairs(boxes_of(walls, &Wall::box), {.algorithm = GridOptions{.cell = 2}}).size();
 
+  found += pairs_of_other_questions(boxes);
   Finder<2> finder("grid");
   finder.find(boxes, count);
   Tracker<2> tracker("grid");
