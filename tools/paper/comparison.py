@@ -27,7 +27,9 @@ from .tables import Table
 WITH_ASSERTIONS = ("box2d", "embree", "fcl")
 KINDS = {"own": "ours", "paper": "the draft's", "literature": "the literature's", "peer": "a library's"}
 LIBRARIES = {"cgal": "CGAL", "boost": "Boost", "geos": "GEOS", "embree": "Embree", "bullet": "Bullet", "ode": "ODE",
-             "fcl": "FCL", "box2d": "Box2D", "chipmunk": "Chipmunk"}
+             "fcl": "FCL", "box2d": "Box2D 2.4", "chipmunk": "Chipmunk", "packed": "packed_spatial_index",
+             "geo": "geo-index", "rstar": "rstar", "parry": "parry", "rapier": "Rapier", "obvhs": "obvhs",
+             "box2d3": "Box2D 3", "box3d": "Box3D", "physx": "PhysX"}
 # The rivals of a lead, by kind and algorithm.
 RIVALS: dict[str, Callable[[str, str], bool]] = {
     "peer": lambda kind, algorithm: kind == "peer",

@@ -10,17 +10,22 @@ from .run import Measuring
 
 # The numbers and densities of uniform boxes. When the other is varied, there are 10,000 boxes that touch 4 others
 # each.
-NUMBERS = (100, 1_000, 10_000, 100_000, 1_000_000)
+NUMBERS = (100, 300, 1_000, 3_000, 10_000, 100_000, 1_000_000)
 DENSITIES = (0.25, 1, 4, 16, 64)
 # A million boxes are only for algorithms that take seconds at most.
 FAST = ("auto", "grid", "bvh", "sweep_and_prune", "literature", "embree_collide", "boost_rtree",
-        "fcl_dynamic_aabb_tree_array", "bullet_dbvt", "cgal_box_intersection")
+        "fcl_dynamic_aabb_tree_array", "bullet_dbvt", "cgal_box_intersection", "packed_spatial_index", "parry_bvh",
+        "obvhs_bvh")
+FAST_IN = {2: ("geo_index", "box2d3_tree"), 3: ("box3d_tree", "physx_abp")}
 
 GROUPS = {
-    "uniform": "uniform, at rest",
-    "rest_2d": "others in 2D, at rest",
-    "rest_3d": "others in 3D, at rest",
-    "real": "a mesh and two maps, at rest",
+    "few": "uniform, 100 to 3,000 boxes",
+    "uniform": "uniform, 10,000 boxes",
+    "many": "uniform, 100,000 and 1,000,000 boxes",
+    "spread": "spread otherwise, up to 10,000 boxes",
+    "real": "a mesh and two maps",
+    "joined": "two sets",
+    "filtered": "with filters",
     "moving": "moving by a rule",
     "recorded": "recorded from engines",
 }
@@ -41,15 +46,17 @@ class Compared(Case):
 
 
 def cases() -> list[Compared]:
-    return [*uniform(), *at_rest(), *moving()]
+    return [*uniform(), *spread_otherwise(), *real(), *joined(), *filtered(), *moving()]
 
 
 def uniform() -> Iterator[Compared]:
     for dimension in (2, 3):
         for number in NUMBERS:
+            most = number == NUMBERS[-1]
             yield Compared(f"uniform, {dimension}D, {number:,} boxes", "uniform:neighbours=4",
-                           FAST if number == NUMBERS[-1] else ("all",), number, dimension, group="uniform",
-                           effort=EFFORT_OF_A_MILLION if number == NUMBERS[-1] else {}, number=number,
+                           (*FAST, *FAST_IN[dimension]) if most else ("all",), number, dimension,
+                           group="few" if number < 10_000 else "uniform" if number == 10_000 else "many",
+                           effort=EFFORT_OF_A_MILLION if most else {}, number=number,
                            density=4 if number == 10_000 else None)
         for density in DENSITIES:
             if density != 4:
@@ -58,7 +65,7 @@ def uniform() -> Iterator[Compared]:
                                density=density)
 
 
-def at_rest() -> Iterator[Compared]:
+def spread_otherwise() -> Iterator[Compared]:
     for scene, words in {"power_law": "sizes by a power law", "mixed": "one in a hundred huge",
                          "clustered": "clustered", "one_line": "all on one line", "lattice": "touching on a lattice",
                          "thin": "long and thin", "terdiman": "Terdiman's scene",
@@ -66,7 +73,10 @@ def at_rest() -> Iterator[Compared]:
         boxes = 2_000 if scene == "one_point" else 10_000
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
-                           group=f"rest_{dimension}d")
+                           group="spread")
+
+
+def real() -> Iterator[Compared]:
     for scene, words, dimension in (
             ("bunny", "triangles of a mesh, seen from one side", 2), ("bunny", "triangles of a mesh", 3),
             ("counties", "counties", 2), ("counties:boxes=segments", "segments of counties", 2),
@@ -74,8 +84,25 @@ def at_rest() -> Iterator[Compared]:
         yield Compared(f"{words}, {dimension}D", scene, ("all",), None, dimension, group="real")
 
 
+def joined() -> Iterator[Compared]:
+    for dimension in (2, 3):
+        for number in (1_000, 10_000, 100_000):
+            yield Compared(f"uniform halves, {dimension}D, {number:,} boxes", "uniform", ("all",), number, dimension,
+                           left=0.5, group="joined")
+    for scene, words, dimension in (("counties", "counties", 2), ("bunny", "triangles of a mesh", 3)):
+        yield Compared(f"a tenth of {words} with the others, {dimension}D", scene, ("all",), None, dimension, left=0.1,
+                       group="joined")
+
+
+def filtered() -> Iterator[Compared]:
+    for dimension in (2, 3):
+        for number in (1_000, 10_000):
+            yield Compared(f"uniform with filters, {dimension}D, {number:,} boxes", "uniform", ("all",), number,
+                           dimension, filtered=True, group="filtered")
+
+
 def moving() -> Iterator[Compared]:
-    for boxes, share, frames in ((10_000, 0.01, 10), (10_000, 1, 10), (100_000, 0.1, 5)):
+    for boxes, share, frames in ((1_000, 1, 20), (10_000, 0.01, 10), (10_000, 1, 10), (100_000, 0.1, 5)):
         for dimension in (2, 3):
             yield Compared(f"uniform, {dimension}D, {boxes:,} boxes, {share:.0%} moving".replace("%", " %"),
                            "uniform", ("all",), boxes, dimension, frames=frames, moving=share, group="moving")
@@ -84,8 +111,10 @@ def moving() -> Iterator[Compared]:
         for dimension in (2, 3):
             yield Compared(f"{words}, {dimension}D, {boxes:,} boxes", scene, ("all",), boxes, dimension,
                            frames=frames, group="moving")
-    for scene, words, dimension in (("box2d_rain", "rain in Box2D", 2), ("box2d_pyramid", "a pyramid in Box2D", 2),
-                                    ("bullet_free_fall", "free fall in Bullet", 3)):
+    for scene, words, dimension in (("box2d_rain", "rain in Box2D", 2), ("box2d_tumbler", "a tumbler in Box2D", 2),
+                                    ("box2d_pyramid", "a pyramid in Box2D", 2),
+                                    ("bullet_free_fall", "free fall in Bullet", 3),
+                                    ("bullet_moving_gravity", "moving gravity in Bullet", 3)):
         yield Compared(f"{words}, {dimension}D, 1,000 boxes", scene, ("all",), 1_000, dimension, frames=30,
                        group="recorded")
 

@@ -64,6 +64,8 @@ class Case:
     moving: float | None = None
     drift: float | None = None
     teleport: float | None = None
+    left: float | None = None
+    filtered: bool | None = None
     take: Sequence[str] = ("time",)
     made_anew: bool = False
     effort: Mapping[str, float] = field(default_factory=dict)
@@ -83,6 +85,8 @@ class Case:
             "moving": self.moving,
             "drift": self.drift,
             "teleport": self.teleport,
+            "left": self.left,
+            "filtered": self.filtered,
             "take": list(self.take),
             "made_anew": self.made_anew,
             "effort": dict(self.effort),

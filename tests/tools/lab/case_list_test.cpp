@@ -44,6 +44,21 @@ CaseResult measured(const nlohmann::json& changes) {
   return std::move(all.cases.at(0));
 }
 
+TEST(CaseList, JoinsTwoSetsAndTakesFilters) {
+  const auto pairs = [](const nlohmann::json& changes) {
+    return measured(changes).measurements.at(0).counters.pairs;
+  };
+  const nlohmann::json grid = {{"specs", {"grid"}}, {"seeds", 1}};
+  nlohmann::json joined = grid;
+  joined["left"] = 0.5;
+  nlohmann::json filtered = grid;
+  filtered["filtered"] = true;
+  EXPECT_LT(pairs(joined), pairs(grid));
+  EXPECT_LT(pairs(filtered), pairs(grid));
+  EXPECT_GT(pairs(joined), 0u);
+  EXPECT_GT(pairs(filtered), 0u);
+}
+
 TEST(CaseList, GivesEachCaseItsBoxesAlgorithmsAndEffort) {
   const std::vector<ListedCase> cases = read({listed(), listed({{"name", "moving"},
                                                                 {"dimension", 3},
@@ -98,6 +113,10 @@ TEST(CaseList, RefusesABadCaseByItsNameWhatItSaysAndWhatWasExpected) {
       {{{"moving", 0.5}}, {"moving is '0.5'", "frames as well"}},
       {{{"moving", 2}, {"frames", 3}}, {"moving is '2'", "from 0 to 1"}},
       {{{"frames", 3}}, {"frames is '3'", "moving"}},
+      {{{"left", 2}}, {"left is '2'", "from 0 to 1"}},
+      {{{"left", 0.5}, {"frames", 3}, {"moving", 1}}, {"left is '0.5'", "none where boxes move"}},
+      {{{"scene", "churn"}, {"filtered", true}}, {"filtered is 'true'", "none where boxes move"}},
+      {{{"left", 0.5}, {"filtered", true}}, {"filtered is 'true'", "two sets"}},
       {{{"scene", "churn"}, {"frames", 3}, {"moving", 0.5}}, {"moving is '0.5'", "'churn' moves by itself"}},
       {{{"scene", "integers"}, {"seeds", 0}}, {"seeds is '0'", "from 1"}},
       {{{"take", {"colour"}}}, {"take 1 is '\"colour\"'", "time, counts, memory or phases"}},

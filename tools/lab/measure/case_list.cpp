@@ -151,6 +151,12 @@ void read_boxes(const JsonPlace& place, ListedCase& listed) {
     place.at("frames").refuse("the fraction that is moving as well, above 0");
   if (listed.measure_options.made_anew && request.frames > 0)
     place.at("made_anew").refuse("false where boxes move: a tracker keeps its structure");
+  if (place.has("left")) request.left = fraction_from(place.at("left"));
+  if (place.has("filtered")) request.filtered = place.at("filtered").truth();
+  for (const char* const name : {"left", "filtered"}) {
+    if (place.has(name) && (moves || request.frames > 0)) place.at(name).refuse("none where boxes move");
+  }
+  if (request.left > 0 && request.filtered) place.at("filtered").refuse("false where two sets are joined");
 
   const JsonPlace files = place.at("scene");
   if (files.json().is_array()) listed.seeds = files.json().size();
@@ -211,8 +217,9 @@ class HeldToInstructionSet {
 
 ListedCase read_listed_case(const JsonPlace& place, const Effort& effort, const Catalogue& catalogue,
                             const FindScene& find) {
-  place.check_fields({"name", "scene", "dimension", "boxes", "seed", "seeds", "moving", "frames", "drift",
-                      "teleport", "specs", "take", "made_anew", "instruction_set", "effort"});
+  place.check_fields({"name", "scene", "dimension", "boxes", "left", "filtered", "seed", "seeds", "moving",
+                      "frames", "drift", "teleport", "specs", "take", "made_anew", "instruction_set",
+                      "effort"});
   ListedCase listed;
   listed.name = place.at("name").text();
   if (listed.name.empty()) place.at("name").refuse("a name");
