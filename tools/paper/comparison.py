@@ -5,6 +5,7 @@ A lead is a rival's time over ours, in the same rounds; its interval is between 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -27,14 +28,13 @@ from .tables import Table
 WITH_ASSERTIONS = ("box2d", "embree", "fcl")
 KINDS = {"own": "ours", "paper": "the draft's", "literature": "the literature's", "peer": "a library's"}
 LIBRARIES = {"cgal": "CGAL", "boost": "Boost", "geos": "GEOS", "embree": "Embree", "bullet": "Bullet", "ode": "ODE",
-             "fcl": "FCL", "box2d": "Box2D 2.4", "chipmunk": "Chipmunk", "packed": "packed_spatial_index",
+             "fcl": "FCL", "box2d": "Box2D 2.4", "chipmunk": "Chipmunk", "packed": "packed spatial index",
              "geo": "geo-index", "rstar": "rstar", "parry": "parry", "rapier": "Rapier", "obvhs": "obvhs",
              "box2d3": "Box2D 3", "box3d": "Box3D", "physx": "PhysX"}
 # The rivals of a lead, by kind and algorithm.
 RIVALS: dict[str, Callable[[str, str], bool]] = {
     "peer": lambda kind, algorithm: kind == "peer",
     "literature": lambda kind, algorithm: kind == "literature",
-    "released": lambda kind, algorithm: kind == "peer" and library_of(algorithm) not in WITH_ASSERTIONS,
 }
 OURS = ("auto", "best")  # what users call; the fastest of our others, chosen after timing
 
@@ -140,20 +140,21 @@ class Times:
     def those(self, leads: Iterable[Lead | None]) -> Leads:
         return Leads([lead for lead in leads if lead is not None], self.level, self.confidence)
 
+    def mean_over_fastest(self, timed: Sequence[tuple[str, str]]) -> Estimate:
+        """The geometric mean, over cases each with an algorithm, of its time over that of the case's fastest."""
+        return between_runs(numpy.exp(numpy.mean([
+            numpy.log(self._ratio[case, algorithm] / self._ratio[case, self._ranked[case][0]])
+            for case, algorithm in timed], axis=0)), self.confidence)
+
     def standings(self, cases: Sequence[Compared]) -> list[tuple[str, Estimate, int, int]]:
         """For each algorithm, the geometric mean of its time over that of each case's fastest, the number of cases in
         which it has a time, and in how many it is the fastest; the best first."""
-        ratios: dict[str, list[numpy.ndarray]] = {}
-        wins: dict[str, int] = {}
+        by_algorithm: dict[str, list[tuple[str, str]]] = {}
         for case in cases:
-            ranked = self.timed(case.name)
-            for algorithm in ranked:
-                ratios.setdefault(algorithm, []).append(
-                    numpy.log(self._ratio[case.name, algorithm] / self._ratio[case.name, ranked[0]]))
-            if ranked:
-                wins[ranked[0]] = wins.get(ranked[0], 0) + 1
-        found = [(name, between_runs(numpy.exp(numpy.mean(logs, axis=0)), self.confidence), len(logs),
-                  wins.get(name, 0)) for name, logs in ratios.items()]
+            for algorithm in self.timed(case.name):
+                by_algorithm.setdefault(algorithm, []).append((case.name, algorithm))
+        wins = Counter(self.timed(case.name)[0] for case in cases if self.timed(case.name))
+        found = [(name, self.mean_over_fastest(timed), len(timed), wins[name]) for name, timed in by_algorithm.items()]
         return sorted(found, key=lambda standing: standing[1].value)
 
 
@@ -184,9 +185,7 @@ def load(folder: Path) -> Comparison:
     leads = {(group, which, rival): times.leads(those, which, rival)
              for group, those in groups.items() for which in OURS for rival in RIVALS}
     tables = {
-        "groups": groups_table(leads, "peer"),
-        "literature": groups_table(leads, "literature"),
-        "released": groups_table(leads, "released"),
+        "groups": groups_table(leads),
         "numbers": curve_table(times, cases, "number", NUMBERS, "boxes:"),
         "densities": curve_table(times, cases, "density", DENSITIES, "neighbours:"),
         "rest": cases_table(times, [case for case in cases if not case.frames]),
@@ -280,14 +279,15 @@ def leads_over_peers(times: Times, cases: Sequence[Compared], kind: str) -> dict
     return {name: times.those(leads) for name, leads in found.items()}
 
 
-def groups_table(leads: Mapping[tuple, Leads], rival: str) -> Table:
-    """The leads of auto and of our best, a line for each group of cases."""
+def groups_table(leads: Mapping[tuple, Leads]) -> Table:
+    """The leads of auto over the fastest peer and the literature's fastest, a line for each group of cases."""
     def cells(those: Leads) -> list[str]:
         return [those.mean.text(), those.least.ratio.text(),
                 f"{len(those.lost)} / {len(those.level)} / {len(those.open)}"] if those.all else ["-"] * 3
-    rows = [[GROUPS.get(group, group), str(len(leads[group, "auto", rival].all)), *cells(leads[group, "auto", rival]),
-             *cells(leads[group, "best", rival])] for group in [*GROUPS, "all"] if leads[group, "auto", rival].all]
-    heads = [f"{whose}, {what}:" for whose in ("`auto`", "best of ours")
+    rows = [[words, str(len(leads[group, "auto", "peer"].all)), *cells(leads[group, "auto", "peer"]),
+             *cells(leads[group, "auto", "literature"])]
+            for group, words in {**GROUPS, "all": "all"}.items() if leads[group, "auto", "peer"].all]
+    heads = [f"{whose}, {what}:" for whose in ("library", "literature")
              for what in ("mean", "least", "lost / level / open")]
     return Table(["cases", "how many:", *heads], rows)
 
@@ -412,7 +412,7 @@ def mean_leads_figure(leads: Mapping[tuple, Leads]) -> Figure:
 
 def leads_figures(leads: Mapping[tuple, Leads]) -> Iterable[Figure]:
     for name, words, is_shown in (("rest", "Boxes at rest, but for uniform ones",
-                                   lambda case: not case.frames and case.group != "uniform"),
+                                   lambda case: not case.frames and case.group not in ("few", "uniform", "many")),
                                   ("moving", "Boxes that move", lambda case: bool(case.frames))):
         series = {whom: {lead.case.name: lead.ratio for lead in leads["all", "auto", rival].all if is_shown(lead.case)}
                   for rival, whom in (("peer", "over the fastest library"),
@@ -442,17 +442,33 @@ def curves_figure(times: Times, cases: Sequence[Compared]) -> Figure:
 
 
 def libraries_figure(times: Times, cases: Sequence[Compared]) -> Figure:
-    """Auto, and the best algorithm of each library and of the literature."""
-    best: dict[str, Estimate] = {}
-    for name, ratio, _, _ in times.standings(cases):
-        words = {"own": "our own choice" if name == "auto" else None, "literature": "the literature's best",
-                 "peer": LIBRARIES.get(library_of(name), library_of(name))}.get(times.kinds[name])
-        if words:
-            best.setdefault(words, ratio)
-    return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's: our own choice, and "
-                        "the best algorithm of each library, as a geometric mean of the cases that each does. Bars: "
-                        "95% intervals between processes.",
-                        {"": best}, list(best), "times the time of the fastest")
+    """Auto, and the fastest algorithm of each library and of the literature in each case: for a dimension, all over the
+    same cases. A library that does fewer than half of a dimension's cases is left out there."""
+    def words(kind: str, algorithm: str) -> str | None:
+        return {"own": "our own choice" if algorithm == "auto" else None, "literature": "the literature's fastest",
+                "peer": LIBRARIES.get(library_of(algorithm), library_of(algorithm))}.get(kind)
+
+    series: dict[str, dict[str, Estimate]] = {}
+    for dimension in (2, 3):
+        fastest = {case.name: {} for case in cases if case.dimension == dimension and times.timed(case.name)}
+        for case, found in fastest.items():
+            for algorithm in times.timed(case):
+                if whose := words(times.kinds[algorithm], algorithm):
+                    found.setdefault(whose, algorithm)
+        count = Counter(whose for found in fastest.values() for whose in found)
+        shown = [whose for whose, number in count.items() if number >= len(fastest) / 2]
+        shared = {case: found for case, found in fastest.items() if all(whose in found for whose in shown)}
+        if shared:
+            series[f"{dimension}D, {len(shared)} cases"] = {
+                whose: times.mean_over_fastest([(case, found[whose]) for case, found in shared.items()])
+                for whose in shown}
+    least = {whose: min(means[whose].value for means in series.values() if whose in means)
+             for means in series.values() for whose in means}
+    return lines_figure("comparison_libraries", "Time as a multiple of the fastest algorithm's in each case: our own "
+                        "choice, and the fastest algorithm of each library. Geometric means, of a dimension all over "
+                        "the same cases: those that all libraries shown there do within their budget. Bars: 95% "
+                        "intervals between processes.", series, sorted(least, key=least.get),
+                        "times the time of the fastest")
 
 
 def disagreements(first: Path, second: Path) -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy
 from matplotlib import pyplot
+from matplotlib.text import Text
 
 from tools.paper import comparison, figures
 from tools.paper.archive import Archive
@@ -77,13 +78,13 @@ class TheComparison(unittest.TestCase):
 
     def test_says_where_a_peer_wins_where_it_is_level_and_how_far_ahead_ours_are(self):
         facts = self.load().facts
-        self.assertEqual((facts["moving.auto.peer.lost"], facts["moving.auto.peer.cases"]), ("1", "10"))
+        self.assertEqual((facts["moving.auto.peer.lost"], facts["moving.auto.peer.cases"]), ("1", "12"))
         self.assertRegex(facts["moving.auto.peer.lost_named"], f"^{PILE}: 0.4[678].* against `box2d_tree`$")
-        self.assertEqual((facts["rest_2d.best.peer.level"], facts["rest_2d.best.peer.lost"]), ("1", "0"))
-        self.assertRegex(facts["rest_2d.best.peer.level_named"], f"^{LATTICE}: 1.0[345]")
+        self.assertEqual((facts["spread.best.peer.level"], facts["spread.best.peer.lost"]), ("1", "0"))
+        self.assertRegex(facts["spread.best.peer.level_named"], f"^{LATTICE}: 1.0[345]")
         self.assertRegex(facts["uniform.best.peer.mean"], r"^(5.0\d|4.9\d) \([45]\..* to 5\..*\)$")
-        self.assertRegex(facts["rest_3d.auto.literature.mean"], r"^1.[89]")
-        self.assertEqual(facts["real.auto.released.least_rival"], "boost_rtree")
+        self.assertRegex(facts["recorded.auto.literature.mean"], r"^1.[89]")
+        self.assertEqual(facts["real.auto.peer.least_rival"], "boost_rtree")
         self.assertRegex(facts["choice.mean"], "^1.0[456]")
         self.assertEqual((facts["rival"], facts["busy"], facts["processes"]), ("terdiman_box_pruning", "1", "4"))
         self.assertEqual(facts["checked.least_structures"], "3")
@@ -116,6 +117,11 @@ class TheComparison(unittest.TestCase):
         self.assertIn("(busy)", made.tables["processes"].rows[1][3])
         for figure in made.figures:
             figures.save(figure, self.folder / "figures")
+        libraries = next(figure for figure in made.figures if figure.name == "comparison_libraries")
+        words = {text.get_text() for text in libraries.drawing.findobj(Text)}
+        for dimension in (2, 3):
+            count = sum(case.dimension == dimension for case in COMPARISON.cases())
+            self.assertIn(f"{dimension}D, {count} cases", words)
 
     def test_refuses_processes_that_do_not_go_together_or_are_wrong(self):
         self.write(1, results_of(1))
