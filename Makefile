@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -16,6 +16,7 @@ help: ## List the targets
 
 compare: program ## Build the program and run the quick comparison, or that of COMPARE_ARGS
 	build/release/broadside compare $(COMPARE_ARGS)
+compare: program_target := broadside
 
 paper: setup ## Print the paper (Markdown, PDF, HTML) and README's figures from the committed results
 	$(debian_python) -m tools.paper print --to docs/paper
@@ -53,6 +54,20 @@ abi: setup-ci ## Update the ABI dump that tests compare the C interface with
 	mkdir -p build/abi
 	cmake -D HEADER=$(CURDIR)/bindings/c/broadside.h -D COMPILER=cc -D FOLDER=$(CURDIR)/build/abi \
 	  -D DUMP=$(CURDIR)/bindings/c/abi/broadside.abi -P bindings/c/abi/dump.cmake
+
+release_files := build/release_files
+release: build/static/build.ninja ## Build what a release carries (wheel, npm package, playground, static program): build/release_files/
+	$(MAKE) python
+	$(MAKE) wasm
+	$(MAKE) playground
+	@test -f $< || cmake --preset static
+	cmake --build --preset static --target broadside
+	rm -rf $(release_files)
+	mkdir $(release_files)
+	cp $(python_folder)/wheels/*.whl $(release_files)
+	cp build/playground/index.html $(release_files)/broadside-playground.html
+	strip -o $(release_files)/broadside-linux-$$(uname -m) build/static/broadside
+	cd $(release_files) && npm pack --silent $(CURDIR)/$(wasm_folder)/package && sha256sum * >SHA256SUMS
 
 # CMake's build folder and two virtual environments are kept: one builds the wheel, the other tests it.
 python_folder := build/python
@@ -168,11 +183,11 @@ setup-ci: | setup
 
 # The build must be configured again after setup has installed packages: setup then removes build.ninja, but make has
 # already seen it.
-# Builds everything that `cmake --install build/release` copies.
-program: build/release/build.ninja
+program_target := broadside_installed  # everything that `cmake --install build/release` copies
+program: build/release/build.ninja ## Build the program and all that is installed with it: build/release/broadside
 	@test -f $< || cmake --preset release
 	$(if $(RUST_PEERS),cmake --preset release -D BROADSIDE_RUST_PEERS=$(RUST_PEERS))
-	cmake --build --preset release --target broadside_installed
+	cmake --build --preset release --target $(program_target)
 
 # Builds everything with one preset and runs its tests.
 tests-%: build/%/build.ninja
