@@ -16,7 +16,6 @@ help: ## List the targets
 
 compare: program ## Build the program and run the quick comparison, or that of COMPARE_ARGS
 	build/release/broadside compare $(COMPARE_ARGS)
-compare: program_target := broadside
 
 paper: setup ## Print the paper (Markdown, PDF, HTML) and README's figures from the committed results
 	$(debian_python) -m tools.paper print --to docs/paper
@@ -183,11 +182,11 @@ setup-ci: | setup
 
 # The build must be configured again after setup has installed packages: setup then removes build.ninja, but make has
 # already seen it.
-program_target := broadside_installed  # everything that `cmake --install build/release` copies
+# Builds everything that `cmake --install build/release` copies.
 program: build/release/build.ninja ## Build the program and all that is installed with it: build/release/broadside
 	@test -f $< || cmake --preset release
 	$(if $(RUST_PEERS),cmake --preset release -D BROADSIDE_RUST_PEERS=$(RUST_PEERS))
-	cmake --build --preset release --target $(program_target)
+	cmake --build --preset release --target broadside_installed
 
 # Builds everything with one preset and runs its tests.
 tests-%: build/%/build.ninja
