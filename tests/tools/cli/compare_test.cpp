@@ -107,8 +107,8 @@ TEST(CompareVerb, GivesBoxesFilters) {
 }
 
 TEST(CompareVerb, MeasuresWithColdCaches) {
-  const Ended ended = run({"compare", "uniform", "--dimension", "3", "-n", "100", "--moving", "0,1",
-                           "--algorithms", "grid,quadtree", "--cold"});
+  const Ended ended = run({"compare", "uniform", "--dimension", "3", "-n", "30k", "--moving", "0,1",
+                           "--frames", "2", "--algorithms", "grid", "--cold"});
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("measurements, all verified\n"));
 }
