@@ -1,0 +1,97 @@
+"""Builds the documentation as a site: site.py FOLDER, by the Python that has requirements.txt.
+
+Lays out README.md, what it links to and what these pages link to, as in the repository, so that relative links hold in
+both; adds the C++ API by Doxygen; and runs MkDocs on them. A page that links to what is missing fails the build.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+LINK = re.compile(r"(\]\()([^)#\s:]+)")
+LARGEST = 1 << 20  # bytes of a linked file that is copied
+
+DOXYFILE = """
+PROJECT_NAME = Broadside
+INPUT = include/broadside
+RECURSIVE = YES
+STRIP_FROM_PATH = include
+STRIP_FROM_INC_PATH = include
+OUTPUT_DIRECTORY = "{folder}"
+HTML_OUTPUT = cpp
+HTML_EXTRA_STYLESHEET = tools/docs/doxygen.css
+HTML_TIMESTAMP = NO
+GENERATE_LATEX = NO
+JAVADOC_AUTOBRIEF = YES
+EXTRACT_ALL = YES
+EXTRACT_STATIC = YES
+EXCLUDE_SYMBOLS = broadside::detail std std::hash
+ENABLE_PREPROCESSING = YES
+MACRO_EXPANSION = YES
+EXPAND_ONLY_PREDEF = YES
+PREDEFINED = BROADSIDE_PUBLIC= BROADSIDE_HIDDEN= BROADSIDE_CALLERS_VECTOR= "BROADSIDE_EXPORTS(x)="
+SORT_MEMBER_DOCS = NO
+SHOW_USED_FILES = NO
+HAVE_DOT = NO
+QUIET = YES
+WARNINGS = NO
+"""
+
+
+def lay_out(start: list[str], pages: Path) -> None:
+    """Copies files of the repository, and those they link to, into `pages`; a folder becomes a list of its files."""
+    waiting, seen = list(start), set()
+    while waiting:
+        path = waiting.pop()
+        if path in seen:
+            continue
+        seen.add(path)
+        source = ROOT / path
+        if source.suffix != ".md":
+            if source.stat().st_size <= LARGEST:
+                (pages / path).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(source, pages / path)
+            continue
+
+        def linked(match: re.Match, folder: str = os.path.dirname(path)) -> str:
+            target = os.path.normpath(os.path.join(folder, match[2]))
+            if not (ROOT / target).exists():
+                return match[0]
+            if (ROOT / target).is_file():
+                waiting.append(target)
+                return match[0]
+            waiting.append(target + "/README.md")
+            return match[1] + match[2].rstrip("/") + "/README.md"
+
+        (pages / path).parent.mkdir(parents=True, exist_ok=True)
+        text = source.read_text() if source.exists() else listing(os.path.dirname(path))
+        (pages / path).write_text(LINK.sub(linked, text))
+
+
+def listing(folder: str) -> str:
+    """A page that links to the files of a folder of the repository."""
+    names = subprocess.run(["git", "-C", ROOT / folder, "ls-files"], check=True, capture_output=True, text=True).stdout
+    lines = [f"- [{name}]({name})" if (ROOT / folder / name).stat().st_size <= LARGEST else f"- {name}"
+             for name in names.splitlines()]
+    return "\n".join([f"# {folder}", "", *lines, ""])
+
+
+def build(folder: Path) -> None:
+    pages, site = folder / "pages", folder / "site"
+    shutil.rmtree(pages, ignore_errors=True)
+    documents = [str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")]
+    lay_out(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", *documents], pages)
+    subprocess.run(["doxygen", "-"], cwd=ROOT, check=True, text=True, input=DOXYFILE.format(folder=pages / "docs"))
+    # Material's note about MkDocs 2 does not concern a pinned version.
+    environment = os.environ | {"PAGES": str(pages), "SITE": str(site), "NO_MKDOCS_2_WARNING": "1"}
+    subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet", "--strict", "--clean",
+                    "--config-file", ROOT / "tools/docs/mkdocs.yml"], env=environment, check=True)
+    print(site / "index.html")
+
+
+if __name__ == "__main__":
+    build(Path(sys.argv[1]).resolve())
