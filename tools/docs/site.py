@@ -15,12 +15,21 @@ ROOT = Path(__file__).parents[2]
 LINK = re.compile(r"(\]\()([^)#\s:]+)")
 LARGEST = 1 << 20  # bytes of a linked file that is copied
 
+API = """# The C++ API
+
+By Doxygen, from the comments of the headers:
+
+- [Functions and types of namespace `broadside`](cpp/namespacebroadside.html)
+- [Classes](cpp/annotated.html)
+- [Headers](cpp/files.html), that of the [C interface](cpp/broadside_8h.html) among them
+"""
+
 DOXYFILE = """
 PROJECT_NAME = Broadside
-INPUT = include/broadside
+INPUT = include/broadside bindings/c/broadside.h
 RECURSIVE = YES
-STRIP_FROM_PATH = include
-STRIP_FROM_INC_PATH = include
+STRIP_FROM_PATH = include bindings/c
+STRIP_FROM_INC_PATH = include bindings/c
 OUTPUT_DIRECTORY = "{folder}"
 HTML_OUTPUT = cpp
 HTML_EXTRA_STYLESHEET = tools/docs/doxygen.css
@@ -33,7 +42,7 @@ EXCLUDE_SYMBOLS = broadside::detail std std::hash
 ENABLE_PREPROCESSING = YES
 MACRO_EXPANSION = YES
 EXPAND_ONLY_PREDEF = YES
-PREDEFINED = BROADSIDE_PUBLIC= BROADSIDE_HIDDEN= BROADSIDE_CALLERS_VECTOR= "BROADSIDE_EXPORTS(x)="
+PREDEFINED = BROADSIDE_PUBLIC= BROADSIDE_HIDDEN= BROADSIDE_CALLERS_VECTOR= BROADSIDE_RECORDER_ABI= BROADSIDE_API= BROADSIDE_EXPERIMENTAL=
 SORT_MEMBER_DOCS = NO
 SHOW_USED_FILES = NO
 HAVE_DOT = NO
@@ -85,6 +94,7 @@ def build(folder: Path) -> None:
     shutil.rmtree(pages, ignore_errors=True)
     documents = [str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")]
     lay_out(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", *documents], pages)
+    (pages / "docs/cpp-api.md").write_text(API)
     subprocess.run(["doxygen", "-"], cwd=ROOT, check=True, text=True, input=DOXYFILE.format(folder=pages / "docs"))
     # Material's note about MkDocs 2 does not concern a pinned version.
     environment = os.environ | {"PAGES": str(pages), "SITE": str(site), "NO_MKDOCS_2_WARNING": "1"}
