@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 LINK = re.compile(r"(\]\()([^)#\s:]+)")
-LARGEST = 1 << 20  # bytes of a linked file that is copied
+MANY = 100  # files of a linked folder that are too many to be copied
 
 API = """# The C++ API
 
@@ -24,9 +24,16 @@ By Doxygen, from the comments of the headers:
 - [Headers](cpp/files.html), that of the [C interface](cpp/broadside_8h.html) among them
 """
 
+API_HOME = """# C++ API
+
+[Documentation](../../index.html) · [functions and types](namespacebroadside.html) · [classes](annotated.html) ·
+[headers](files.html)
+"""
+
 DOXYFILE = """
 PROJECT_NAME = Broadside
-INPUT = include/broadside bindings/c/broadside.h
+INPUT = include/broadside bindings/c/broadside.h "{folder}/cpp-home.md"
+USE_MDFILE_AS_MAINPAGE = "{folder}/cpp-home.md"
 RECURSIVE = YES
 STRIP_FROM_PATH = include bindings/c
 STRIP_FROM_INC_PATH = include bindings/c
@@ -61,9 +68,8 @@ def lay_out(start: list[str], pages: Path) -> None:
         seen.add(path)
         source = ROOT / path
         if source.suffix != ".md":
-            if source.stat().st_size <= LARGEST:
-                (pages / path).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(source, pages / path)
+            (pages / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, pages / path)
             continue
 
         def linked(match: re.Match, folder: str = os.path.dirname(path)) -> str:
@@ -82,10 +88,13 @@ def lay_out(start: list[str], pages: Path) -> None:
 
 
 def listing(folder: str) -> str:
-    """A page that links to the files of a folder of the repository."""
-    names = subprocess.run(["git", "-C", ROOT / folder, "ls-files"], check=True, capture_output=True, text=True).stdout
-    lines = [f"- [{name}]({name})" if (ROOT / folder / name).stat().st_size <= LARGEST else f"- {name}"
-             for name in names.splitlines()]
+    """A page that links to the files of a folder of the repository, or names its parts if they are many."""
+    command = ["git", "-C", ROOT / folder, "ls-files"]
+    names = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    if len(names) > MANY:
+        lines = sorted({f"- {name.split('/')[0]}" for name in names})
+    else:
+        lines = [f"- [{name}]({name})" for name in names]
     return "\n".join([f"# {folder}", "", *lines, ""])
 
 
@@ -95,7 +104,10 @@ def build(folder: Path) -> None:
     documents = [str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")]
     lay_out(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", *documents], pages)
     (pages / "docs/cpp-api.md").write_text(API)
+    (pages / "docs/cpp-home.md").write_text(API_HOME)
+    shutil.copy(ROOT / "tools/docs/iframe-worker.js", pages)
     subprocess.run(["doxygen", "-"], cwd=ROOT, check=True, text=True, input=DOXYFILE.format(folder=pages / "docs"))
+    (pages / "docs/cpp-home.md").unlink()
     # Material's note about MkDocs 2 does not concern a pinned version.
     environment = os.environ | {"PAGES": str(pages), "SITE": str(site), "NO_MKDOCS_2_WARNING": "1"}
     subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet", "--strict", "--clean",
