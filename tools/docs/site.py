@@ -105,7 +105,8 @@ def build(folder: Path) -> None:
     lay_out(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", *documents], pages)
     (pages / "docs/cpp-api.md").write_text(API)
     (pages / "docs/cpp-home.md").write_text(API_HOME)
-    shutil.copy(ROOT / "tools/docs/iframe-worker.js", pages)
+    for name in ("iframe-worker.js", "wide.css"):
+        shutil.copy(ROOT / "tools/docs" / name, pages)
     subprocess.run(["doxygen", "-"], cwd=ROOT, check=True, text=True, input=DOXYFILE.format(folder=pages / "docs"))
     (pages / "docs/cpp-home.md").unlink()
     # Material's note about MkDocs 2 does not concern a pinned version.
