@@ -19,16 +19,11 @@ API = """# The C++ API
 
 By Doxygen, from the comments of the headers:
 
-- [Functions and types of namespace `broadside`](cpp/namespacebroadside.html)
-- [Classes](cpp/annotated.html)
-- [Headers](cpp/files.html), that of the [C interface](cpp/broadside_8h.html) among them
+- [Functions and types of namespace `broadside`]({0}namespacebroadside.html)
+- [Classes]({0}annotated.html)
+- [Headers]({0}files.html), that of the [C interface]({0}broadside_8h.html) among them
 """
-
-API_HOME = """# C++ API
-
-[Documentation](../../index.html) · [functions and types](namespacebroadside.html) · [classes](annotated.html) ·
-[headers](files.html)
-"""
+HOME = "- [The other pages of the documentation](../../index.html)\n"
 
 DOXYFILE = """
 PROJECT_NAME = Broadside
@@ -103,8 +98,8 @@ def build(folder: Path) -> None:
     shutil.rmtree(pages, ignore_errors=True)
     documents = [str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md")]
     lay_out(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", *documents], pages)
-    (pages / "docs/cpp-api.md").write_text(API)
-    (pages / "docs/cpp-home.md").write_text(API_HOME)
+    (pages / "docs/cpp-api.md").write_text(API.format("cpp/"))
+    (pages / "docs/cpp-home.md").write_text(API.format("") + HOME)
     for name in ("iframe-worker.js", "wide.css"):
         shutil.copy(ROOT / "tools/docs" / name, pages)
     subprocess.run(["doxygen", "-"], cwd=ROOT, check=True, text=True, input=DOXYFILE.format(folder=pages / "docs"))
