@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -42,6 +42,14 @@ bench: program ## Run the long comparison (also written to build/bench.json), th
 
 pictures: program ## Redraw the pictures of docs/algorithms.md
 	tools/docs/pictures build/release/broadside docs/pictures
+
+docs: build/docs/ready ## Build the documentation as a site: build/docs/site/index.html
+	build/docs/venv/bin/python tools/docs/site.py build/docs
+
+build/docs/ready: tools/docs/requirements.txt | setup
+	python3 -m venv --clear build/docs/venv
+	build/docs/venv/bin/python -m pip install --quiet --requirement $<
+	touch $@
 
 deb: build/deb/build.ninja ## Make Debian packages of library, headers and program: build/deb/packages
 	@test -f $< || cmake --preset deb
@@ -169,6 +177,8 @@ paper experiments: setup_options := --paper
 published: setup_options := --peers --paper
 
 deb: setup_options := --deb
+
+docs: setup_options := --docs
 
 systems windows: setup_options := --systems
 python test-python: setup_options := --python

@@ -18,6 +18,13 @@ def test_the_guide_runs():
         exec(compile(block, "docs/python.md", "exec"), namespace)
 
 
+def test_the_tutorial_prints_what_it_shows(capsys):
+    page = (ROOT / "docs/tutorials/python-data.md").read_text()
+    code, shown = re.search(r"^```python\n(.*?)^```.*^```\n(.*?)^```", page, re.M | re.S).groups()
+    exec(compile(code, "docs/tutorials/python-data.md", "exec"), {})
+    assert capsys.readouterr().out == shown
+
+
 def test_the_notebook_runs():
     notebook = json.loads((ROOT / "docs/python.ipynb").read_text())
     code = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

@@ -83,6 +83,15 @@ test("the README's examples run", async () => {
   assert.match(printed, /boxes 0 and 1 overlap/);
 });
 
+test("the tutorial prints what its page shows", () => {
+  const page = readFileSync(join(web, "../../docs/tutorials/javascript.md"), "utf8");
+  const [, code, shown] = page.match(/```js\n([\s\S]*?)```[\s\S]*\n```\n([\s\S]*?)```/) as string[];
+  const folder = join(work, "tutorial");
+  install(folder);
+  writeFileSync(join(folder, "drift.mjs"), code as string);
+  assert.equal(execFileSync(process.execPath, ["drift.mjs"], { cwd: folder, encoding: "utf8" }), shown);
+});
+
 let packed: string | undefined;
 
 /** Installs the packed package in an empty project. */
