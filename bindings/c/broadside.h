@@ -506,6 +506,17 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_world_first_hit(const broadsid
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);
 
+/** As broadside_world_hits() and broadside_world_first_hit(), but only boxes that it enters: not those that it is in
+ * or rests on at its start. See enters() in queries.hpp. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_entered(const broadside_world* world, const void* box,
+                                                       const void* direction, double t_max,
+                                                       const broadside_query* query, broadside_hit* hits,
+                                                       size_t room, size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_first_entered(const broadside_world* world, const void* box,
+                                                             const void* direction, double t_max,
+                                                             const broadside_query* query, broadside_hit* hit,
+                                                             int* found, broadside_error* error);
+
 /** The `room` boxes nearest to `point`, or all if there are fewer, the nearest first. */
 BROADSIDE_API broadside_status broadside_world_nearest(const broadside_world* world, const void* point,
                                                        const broadside_query* query,
@@ -551,6 +562,14 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_index_first_hit(const broadsid
                                                          const void* direction, double t_max,
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_entered(const broadside_index* index, const void* box,
+                                                       const void* direction, double t_max,
+                                                       const broadside_query* query, broadside_hit* hits,
+                                                       size_t room, size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_first_entered(const broadside_index* index, const void* box,
+                                                             const void* direction, double t_max,
+                                                             const broadside_query* query, broadside_hit* hit,
+                                                             int* found, broadside_error* error);
 BROADSIDE_API broadside_status broadside_index_nearest(const broadside_index* index, const void* point,
                                                        const broadside_query* query,
                                                        broadside_neighbour* neighbours, size_t room,

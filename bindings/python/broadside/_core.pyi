@@ -28,10 +28,22 @@ class _Queried:
     def overlapping(self, queries: object, filters: object | None, exclude: object | None) -> tuple[Any, Any]: ...
     def containing(self, points: object, filters: object | None, exclude: object | None) -> tuple[Any, Any]: ...
     def hits(
-        self, origins: object, directions: object, t_max: float, filters: object | None, exclude: object | None
+        self,
+        origins: object,
+        directions: object,
+        t_max: float,
+        entering: bool,
+        filters: object | None,
+        exclude: object | None,
     ) -> tuple[Any, Any, Any]: ...
     def first_hit(
-        self, origins: object, directions: object, t_max: float, filters: object | None, exclude: object | None
+        self,
+        origins: object,
+        directions: object,
+        t_max: float,
+        entering: bool,
+        filters: object | None,
+        exclude: object | None,
     ) -> tuple[Any, Any]: ...
     def nearest(
         self,

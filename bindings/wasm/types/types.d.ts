@@ -232,6 +232,8 @@ export interface RayOptions extends QueryOptions {
   readonly tMax?: number;
   /** Half the extent, on each axis, of a box that is moved instead of the point. */
   readonly halfExtent?: ArrayLike<number>;
+  /** Whether to leave out boxes that the ray, or the moving box, is in or rests on at its start and does not enter. */
+  readonly entering?: boolean;
 }
 
 /** A box that a ray hits, at `origin + t * direction`. */
