@@ -51,9 +51,10 @@ enum class ResultForm { array, table, count, components };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
-                nb::handle quarantine, nb::handle touching, nb::handle within, nb::handle to) {
+                nb::handle quarantine, nb::handle touching, nb::handle within, nb::handle to,
+                nb::handle different) {
   const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
-                               ignored, truth(quarantine), truth(touching), within, to);
+                               ignored, truth(quarantine), truth(touching), within, to, different);
   const bool sorts = truth(sort);
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   if (static_cast<ResultForm>(result) == ResultForm::components) return components(search);
@@ -184,7 +185,7 @@ void add_pairs(nb::module_& module) {
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
              nb::arg("quarantine").none(), nb::arg("touching").none(), nb::arg("within").none(),
-             nb::arg("to").none());
+             nb::arg("to").none(), nb::arg("different").none());
   module.def("distances", &distances_of, nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("pairs"),
              nb::arg("period"));
   module.def("overlap_times", &overlap_times_of, nb::arg("boxes").none(), nb::arg("to"),

@@ -13,6 +13,7 @@
 #include <nanobind/ndarray.h>
 
 #include "broadside/finder.hpp"
+#include "broadside/keys.hpp"
 #include "broadside/moving.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/within.hpp"
@@ -49,11 +50,13 @@ inline void sort_for(WithoutGil& released, std::vector<Pair>& pairs) {
   sort_pairs(pairs, checkpoint);
 }
 
-/// Doubles of an array that broadside._within has made.
-inline std::vector<double> doubles_of(nb::handle object) {
-  const auto array = nb::cast<nb::ndarray<const double, nb::ndim<1>, nb::c_contig>>(object);
+/// The numbers of an array of this type that one of the modules beside has made.
+template <typename Number>
+std::vector<Number> numbers_of(nb::handle object) {
+  const auto array = nb::cast<nb::ndarray<const Number, nb::ndim<1>, nb::c_contig>>(object);
   return {array.data(), array.data() + array.shape(0)};
 }
+inline std::vector<double> doubles_of(nb::handle object) { return numbers_of<double>(object); }
 
 /// The arguments `within`, a distance, or the radii of one set or of two, and `period`.
 struct Within {
@@ -99,6 +102,7 @@ struct SearchArguments {
   std::optional<Within> within{};
   std::optional<Rows> to{};  ///< where moving boxes end
   std::optional<Rows> other_to{};
+  std::vector<std::vector<std::int64_t>> different{};  ///< keys of each set, if filters are of other keys
 
   /// For boxes that are of the same kind.
   SearchArguments(Rows first, std::optional<Rows> second, std::string spec, nb::handle max_threads)
@@ -110,7 +114,7 @@ struct SearchArguments {
   SearchArguments(nb::handle first, nb::handle second, std::string spec, nb::handle max_threads,
                   nb::handle first_filters, nb::handle second_filters, nb::handle ignored_pairs,
                   bool quarantines, bool counts_touching, nb::handle distance = nb::none(),
-                  nb::handle ends = nb::none())
+                  nb::handle ends = nb::none(), nb::handle different_keys = nb::none())
       : boxes(Rows::of_boxes_or_empty(first, "boxes")),
         algorithm(std::move(spec)),
         threads(threads_of(max_threads, algorithm)),
@@ -120,6 +124,7 @@ struct SearchArguments {
         within(Within::of(distance)) {
     if (!second.is_none()) take_other(first, second, second_filters);
     if (!ends.is_none()) take_ends(ends);
+    if (!different_keys.is_none()) take_different(different_keys);
     if (other && !ignored_pairs.is_none())
       throw std::invalid_argument("ignored pairs are given with two sets; expected them with one set alone");
     if (!other && !second_filters.is_none())
@@ -133,6 +138,13 @@ struct SearchArguments {
 
   /// Call it without the GIL.
   void run(PairSink& pairs, WithoutGil& released) const {
+    if (different.empty()) return search(pairs, released);
+    auto sink = only_different(different.front(), different.back(), pairs);
+    search(sink, released);
+  }
+
+ private:
+  void search(PairSink& pairs, WithoutGil& released) const {
     with_kind(boxes.kind(), [&]<int D, typename Real>() {
       Finder<D, Real> finder(algorithm);
       std::optional<ScopedWorkers<Finder<D, Real>>> use;
@@ -157,7 +169,6 @@ struct SearchArguments {
     });
   }
 
- private:
   template <int D, typename Real>
   void find_within(const Finder<D, Real>& finder, BoxView<D, Real> left, const BoxView<D, Real>* right,
                    PairSink& pairs, const PairFilters& which) const {
@@ -201,6 +212,17 @@ struct SearchArguments {
       const std::string_view message = error.what();
       throw InvalidBoxOf(argument, error.index(),
                          std::string(argument) + ": " + std::string(message.substr(message.find("box "))));
+    }
+  }
+
+  void take_different(nb::handle keys) {
+    for (const Rows* const set : {&boxes, other ? &*other : nullptr}) {
+      if (set == nullptr) continue;
+      different.push_back(numbers_of<std::int64_t>(keys[different.size()]));
+      if (different.back().size() != set->size())
+        throw std::invalid_argument("different has " + std::to_string(different.back().size()) +
+                                    " keys for " + std::to_string(set->size()) +
+                                    " boxes; expected one for each box");
     }
   }
 

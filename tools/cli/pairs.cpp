@@ -40,8 +40,9 @@
 namespace broadside::cli {
 namespace {
 
-/// The column or property that --same or --different names; empty without them.
-const std::string& key_column(const PairsArguments& arguments) {
+/// The column or property that read() takes from a file: the ids to write or else keys; empty without both.
+const std::string& labels_column(const PairsArguments& arguments, std::size_t file) {
+  if (!arguments.ids.empty()) return arguments.ids[std::min(file, arguments.ids.size() - 1)];
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
@@ -51,8 +52,7 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   // Frames are counted from 0.
   const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
-  options.ids = key_column(arguments);
-  if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
+  options.ids = labels_column(arguments, file);
   // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
@@ -64,13 +64,13 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   return read;
 }
 
-/// The keys of the boxes that read() gave. Throws FileError if a box has none.
-std::vector<std::string> keys_of(const PairsArguments& arguments, std::size_t file,
+/// The keys in a column of the boxes that read() gave. Throws FileError if a box has none.
+std::vector<std::string> keys_of(const PairsArguments& arguments, const std::string& column, std::size_t file,
                                  const lab::FrameOfFile& boxes) {
   std::shared_ptr<const lab::BoxLabels> labels = boxes.labels;
-  if (!arguments.ids.empty()) {
+  if (column != labels_column(arguments, file)) {
     lab::ReadOptions options = read_options(arguments.input, arguments.files[file]);
-    options.ids = key_column(arguments);
+    options.ids = column;
     const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
     labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame).labels;
   }
@@ -79,7 +79,7 @@ std::vector<std::string> keys_of(const PairsArguments& arguments, std::size_t fi
   const auto missing = std::ranges::find(keys, std::string());
   if (missing != keys.end())
     throw lab::FileError(fmt::format("{}: box {} has no '{}'; expected a key for each box", boxes.name,
-                                     missing - keys.begin(), key_column(arguments)));
+                                     missing - keys.begin(), column));
   return keys;
 }
 
@@ -95,7 +95,7 @@ class PairsCommand {
       for (std::size_t file = 0; file < arguments.files.size(); ++file)
         sets_.push_back(read(arguments, file, rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
-      if (!key_column(arguments).empty()) take_keys();
+      take_keys();
     }
     // Not before both sets have the same precision: the next lower float is not the next lower double.
     if (arguments.leaves_out_touching) {
@@ -131,7 +131,10 @@ class PairsCommand {
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
     const lab::Stopwatch watch;
-    if (elements_.empty()) {
+    if (!different_.empty()) {
+      auto different = only_different(different_.front(), different_.back(), pairs);
+      search(different);
+    } else if (elements_.empty()) {
       search(pairs);
     } else {
       lab::ApartPairs apart(elements_.front(), elements_.back(), pairs);
@@ -183,12 +186,22 @@ class PairsCommand {
   }
 
   void take_keys() {
-    const KeyRule rule = arguments_.same.empty() ? KeyRule::different : KeyRule::same;
-    const std::vector<std::string> left = keys_of(arguments_, 0, sets_[0]);
-    if (is_between())
-      std::tie(filters_, right_filters_) = filters_of_keys(rule, left, keys_of(arguments_, 1, sets_[1]));
-    else
-      filters_ = filters_of_keys(rule, left);
+    const auto keys = [this](const std::string& column, std::size_t file) {
+      return keys_of(arguments_, column, file, sets_[file]);
+    };
+    const bool are_same = !arguments_.same.empty();
+    const bool are_different = !arguments_.different.empty();
+    if (are_same || are_different) {
+      const KeyRule rule = are_same ? KeyRule::same : KeyRule::different;
+      const std::string& column = are_same ? arguments_.same : arguments_.different;
+      const std::vector<std::string> left = keys(column, 0);
+      if (is_between())
+        std::tie(filters_, right_filters_) = filters_of_keys(rule, left, keys(column, 1));
+      else
+        filters_ = filters_of_keys(rule, left);
+    }
+    for (std::size_t file = 0; are_same && are_different && file < sets_.size(); ++file)
+      different_.push_back(keys(arguments_.different, file));
   }
 
   /// The precision in which the pairs are exact, or how many coordinates were rounded.
@@ -250,6 +263,7 @@ class PairsCommand {
   std::vector<lab::MeshElements> elements_;  // of each set, if pairs with a shared vertex are left out
   std::vector<Filter> filters_;              // of keys
   std::vector<Filter> right_filters_;
+  std::vector<std::vector<std::string>> different_;  // keys of each set, if the filters are of other keys
   lab::Rounding rounding_;
   ProgressLine progress_;
   std::uint64_t shown_pairs_ = 0;
@@ -378,8 +392,9 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Find only pairs of boxes with the same key, such as an image or a class: a table's column, or "
           "a map's property")
       ->type_name("NAME");
-  verb->add_option("--different", arguments->different,
-                   "Find only pairs of boxes with different keys, likewise")
+  verb->add_option(
+          "--different", arguments->different,
+          "Find only pairs of boxes with different keys, likewise; with --same as well, both must hold")
       ->type_name("NAME");
   verb->add_flag(
       "--components", arguments->finds_components,

@@ -81,12 +81,15 @@ void check_keys(const CLI::App& verb, const PairsArguments& arguments) {
       std::error_code fault;
       const auto kind = std::filesystem::status(file, fault).type();
       const bool is_read_once = file == "-" || kind == std::filesystem::file_type::fifo;
-      if (!arguments.ids.empty() && is_read_once)
-        throw Unusable(fmt::format("{} and --ids with '{}', which can be read only once; expected a file",
-                                   option, file));
+      const bool has_both_keys = !arguments.same.empty() && !arguments.different.empty();
+      if (is_read_once && (!arguments.ids.empty() || has_both_keys))
+        throw Unusable(fmt::format("{} and {} with '{}', which can be read only once; expected a file",
+                                   option, has_both_keys ? "--different" : "--ids", file));
     }
   }
-  check_alone(verb, "--same", {"--different"}, "which contradict each other");
+  if (!arguments.same.empty() && arguments.same == arguments.different)
+    throw Unusable(fmt::format("--same and --different are both '{}'; expected two columns or properties",
+                               arguments.same));
 }
 
 void check_components(const CLI::App& verb, const PairsArguments& arguments) {

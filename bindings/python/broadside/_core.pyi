@@ -121,6 +121,7 @@ def find(
     touching: object,
     within: float | tuple[NDArray[np.float64], NDArray[np.float64]] | None,
     to: tuple[object, ...] | None,
+    different: tuple[NDArray[np.int64], ...] | None,
 ) -> Any: ...
 def overlap_times(
     boxes: object, to: tuple[object, ...], other: object | None, pairs: object

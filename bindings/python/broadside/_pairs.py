@@ -140,7 +140,8 @@ def pairs(
         same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Integers, strings
             or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
             Filters may only say which boxes are static.
-        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out.
+        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out. With
+            `same` as well, both must hold, such as the same image and different classes.
         within: Find the boxes whose Euclidean distance is at most this number (a cutoff), instead of those that
             overlap; or a radius for each box, shape (n,): two pair if their distance is at most the sum of their radii;
             of two sets, the radii of both as a tuple. The sets may then be points as well: arrays of shape (n, 2) or
@@ -169,13 +170,13 @@ def pairs(
     within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
     milliseconds. Any number of threads may call it at once.
     """
-    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
     if within is not None or period is not None:
         boxes, other, within = _reaching(boxes, other, within, period)
     moving = ends(to, other is not None, columns, other_columns)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
     try:
         if output == "numpy":
             return _find(_ARRAY, boxes, other, algorithm, sort, *which)
@@ -271,12 +272,12 @@ def count(
     to: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
-    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns)
     if within is not None or period is not None:
         boxes, other, within = _reaching(boxes, other, within, period)
     moving = ends(to, other is not None, columns, other_columns)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
     found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
     return found
 
@@ -354,12 +355,12 @@ def components(
         uint32 of shape (n,): for each box the least row of the boxes in its component. A box without pairs, an absent
         one for example, has its own row.
     """
-    filters, _ = with_keys(filters, None, same, different, False)
+    filters, _, keys = with_keys(filters, None, same, different, False)
     boxes, _ = _sets(boxes, None, columns, None)
     if within is not None or period is not None:
         boxes, _, within = _reaching(boxes, None, within, period)
     moving = ends(to, False, columns, None)
-    which = (threads, filters, None, ignored, quarantine, touching, within, moving)
+    which = (threads, filters, None, ignored, quarantine, touching, within, moving, keys)
     found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
     return found
 

@@ -46,7 +46,7 @@ export interface CountOptions {
   readonly filters?: Filters;
   /** Only boxes with the same key pair. Instead of filters. */
   readonly same?: Keys;
-  /** Only boxes with different keys pair. Instead of filters. */
+  /** Only boxes with different keys pair. Instead of filters. With `same` as well, both must hold. */
   readonly different?: Keys;
   /**
    * Whether boxes that only touch overlap: true by default. If false, boxes are half-open (min <= p < max), except

@@ -57,11 +57,11 @@ TEST(PairsVerb, WritesAnArrayIntoAPipe) {
 }
 
 const std::string keyed_boxes =
-    "name,image,min_x,min_y,max_x,max_y\n"
-    "a,left,0,0,2,2\n"
-    "b,right,1,1,3,3\n"
-    "c,left,2,2,4,4\n"
-    "d,right,9,9,9,9\n";
+    "name,image,class,min_x,min_y,max_x,max_y\n"
+    "a,left,cat,0,0,2,2\n"
+    "b,right,cat,1,1,3,3\n"
+    "c,left,dog,2,2,4,4\n"
+    "d,right,dog,9,9,9,9\n";
 
 TEST(PairsVerb, FindsOnlyPairsOfTheSameOrOfDifferentKeys) {
   const TemporaryFolder folder;
@@ -71,6 +71,12 @@ TEST(PairsVerb, FindsOnlyPairsOfTheSameOrOfDifferentKeys) {
   EXPECT_EQ(run({"pairs", file, file, "--same", "image", "--count"}).output, "6\n");
   EXPECT_EQ(run({"pairs", file, "--same", "image", "--within", "6", "--count"}).output, "2\n");
   EXPECT_EQ(shell("cat " + file + " | $BROADSIDE pairs - --same image --count").output, "1\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "image", "--different", "class"}).output, "first,second\n0,2\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "class", "--different", "image", "--ids", "name"}).output,
+            "first,second\na,b\n");
+  EXPECT_EQ(run({"pairs", file, file, "--same", "image", "--different", "class", "--count"}).output, "2\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "image", "--different", "name", "--components"}).output,
+            "box,component\n0,0\n1,1\n2,0\n3,3\n");
 }
 
 TEST(PairsVerb, WritesTheComponentOfEachBox) {
@@ -87,14 +93,16 @@ TEST(PairsVerb, RefusesKeysAndComponentsThatItCannotUse) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", keyed_boxes);
   const std::string no_key = folder.put("no.csv", "image,min_x,min_y,max_x,max_y\na,0,0,1,1\n,1,1,2,2\n");
-  expect_refused("pairs", {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
-                           {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
-                           {{no_key, "--same", "image"},
-                            {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
-                           {{file, "--different", ""}, {"--different is ''"}},
-                           {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
-                           {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
-                           {{file, "--components", "--count"}, {"--components", "--count"}}});
+  expect_refused(
+      "pairs",
+      {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
+       {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
+       {{no_key, "--same", "image"}, {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
+       {{file, "--different", ""}, {"--different is ''"}},
+       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
+       {{"-", "--same", "image", "--different", "class"}, {"--different with '-'", "only once"}},
+       {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
+       {{file, "--components", "--count"}, {"--components", "--count"}}});
 }
 
 std::string many_boxes(int count) {
