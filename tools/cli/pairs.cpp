@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/batch.hpp"
 #include "broadside/components.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/keys.hpp"
@@ -40,23 +41,29 @@
 namespace broadside::cli {
 namespace {
 
+/// The frame to read, counted from 0.
+std::size_t frame_of(const PairsArguments& arguments) {
+  return arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
+}
+
 /// The column or property that read() takes from a file: the ids to write or else keys; empty without both.
 const std::string& labels_column(const PairsArguments& arguments, std::size_t file) {
   if (!arguments.ids.empty()) return arguments.ids[std::min(file, arguments.ids.size() - 1)];
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
-/// Reads one frame of a file, with its ids or, without --ids, its keys.
+/// Reads one frame of a file, with its ids or, without --ids, its keys; or all frames.
 lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
   const std::string& path = arguments.files[file];
-  // Frames are counted from 0.
-  const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
   options.ids = labels_column(arguments, file);
   // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
-  lab::FrameOfFile read = lab::read_frame(lab::open_file(path, options), frame);
+  lab::BoxFile opened = lab::open_file(path, options);
+  lab::FrameOfFile read = takes_all_frames(arguments)
+                              ? lab::read_all_frames(std::move(opened))
+                              : lab::read_frame(std::move(opened), frame_of(arguments));
   say_lines(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
@@ -71,8 +78,7 @@ std::vector<std::string> keys_of(const PairsArguments& arguments, const std::str
   if (column != labels_column(arguments, file)) {
     lab::ReadOptions options = read_options(arguments.input, arguments.files[file]);
     options.ids = column;
-    const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
-    labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame).labels;
+    labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame_of(arguments)).labels;
   }
   std::vector<std::string> keys = labels->ids;
   keys.resize(lab::size(boxes.boxes));
@@ -145,6 +151,18 @@ class PairsCommand {
     progress_.clear();
   }
 
+  /// The pairs of every frame, those of each in the order in which they are found.
+  BatchPairs find_in_frames() {
+    const lab::Stopwatch watch;
+    BatchPairs found = std::visit(
+        [this](const auto& boxes) {
+          return find_pairs_batch(boxes, sets_[0].offsets, {.algorithm = entry_.spec});
+        },
+        sets_[0].boxes);
+    join_ms_ = watch.milliseconds();
+    return found;
+  }
+
   /// Summary of the join: inputs, algorithm and time.
   std::string text(const std::string& found) const {
     std::string sets;
@@ -152,9 +170,10 @@ class PairsCommand {
     std::string_view separator;
     for (const lab::FrameOfFile& set : sets_) {
       const std::size_t absent = lab::absent_count(set.boxes);
-      sets +=
-          fmt::format("{}{} ({}{})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"),
-                      absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
+      sets += fmt::format(
+          "{}{} ({}{}{})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"),
+          set.offsets.empty() ? "" : " in " + lab::counted(set.offsets.size() - 1, "frame", "frames"),
+          absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
     return fmt::format(
@@ -303,15 +322,45 @@ void write_components(PairsCommand& join, const PairsArguments& arguments) {
   say(join.text(lab::counted(count, "component", "components")));
 }
 
+/// Writes a line for each pair of each frame, with the frame's number.
+void write_pairs_of_frames(PairsCommand& join, const PairsArguments& arguments) {
+  BatchPairs found = join.find_in_frames();
+  const std::size_t frames = found.offsets.size() - 1;
+  if (arguments.order == "sorted") {
+    for (std::size_t frame = 0; frame < frames; ++frame)
+      std::sort(found.pairs.data() + found.offsets[frame], found.pairs.data() + found.offsets[frame + 1]);
+  }
+  if (arguments.counts) {
+    print(fmt::format("{}\n", found.pairs.size()));
+    flush_output();
+  } else {
+    lab::write_file(arguments.output, [&](std::ostream& stream) {
+      lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), false, {}, false,
+                         "frame,first,second\n", 3);
+      for (std::size_t frame = 0; frame < frames; ++frame) file.write(frame, found.of(frame));
+      file.finish();
+    });
+  }
+  say(join.text(counted_pairs(found.pairs.size())));
+}
+
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check_keys(verb, arguments);
   check_components(verb, arguments);
+  if (takes_all_frames(arguments))
+    check_alone(verb, "--frame",
+                {"--ids", "--same", "--different", "--components", "--within", "--period", "--memory"},
+                "which only finds the overlapping boxes of each frame");
   check(arguments, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   PairsCommand join(arguments, catalogue);
   if (arguments.finds_components) {
     write_components(join, arguments);
+    return Exit::success;
+  }
+  if (takes_all_frames(arguments)) {
+    write_pairs_of_frames(join, arguments);
     return Exit::success;
   }
   if (arguments.counts) {
@@ -407,7 +456,8 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Threads to search with (0: as many as the machine has; default: the spec's, or 1); they "
                    "affect the time alone");
   verb->add_option("--frame", arguments->frame,
-                   "The frame of a file whose boxes move, counted from 0 (default: the first)");
+                   "The frame of a file whose boxes move, counted from 0 (default: the first); all: every "
+                   "frame, with the frame's number before each pair. All frames are held in memory");
   verb->add_option("-o,--output", arguments->output,
                    "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
                    "as CSV unless --to says otherwise")

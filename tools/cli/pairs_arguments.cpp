@@ -215,10 +215,15 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
     throw Unusable("--period and --within without --euclidean; expected it");
   if (!arguments.period.empty() && arguments.leaves_out_touching)
     throw Unusable("--no-touching with --period; expected one or the other");
-  if ((arguments.is_euclidean || !arguments.period.empty()) &&
-      find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)
+  if (takes_all_frames(arguments) && arguments.files.size() != 1)
+    throw Unusable(fmt::format("--frame all with {} files; expected one", arguments.files.size()));
+  const char* const of_library = arguments.is_euclidean        ? "--euclidean"
+                                 : !arguments.period.empty()   ? "--period"
+                                 : takes_all_frames(arguments) ? "--frame all"
+                                                               : nullptr;
+  if (of_library != nullptr && find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)
     throw Unusable(fmt::format("--algorithm is '{}' with {}; expected one of the library's own",
-                               arguments.algorithm, arguments.is_euclidean ? "--euclidean" : "--period"));
+                               arguments.algorithm, of_library));
   if (arguments.is_euclidean && arguments.within.empty())
     throw Unusable("--euclidean without --within; expected a distance");
   if (!arguments.within.empty() && arguments.leaves_out_touching)

@@ -41,6 +41,9 @@ struct PairsArguments {
   bool excludes_shared = false;
 };
 
+/// Whether the pairs of every frame of a file are found.
+inline bool takes_all_frames(const PairsArguments& arguments) { return arguments.frame == "all"; }
+
 /// The part of a mesh that `text` names. Throws Unusable, naming `option`, if there is no such part.
 lab::MeshPart read_part(const std::string& option, const std::string& text);
 

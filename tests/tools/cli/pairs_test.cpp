@@ -517,6 +517,34 @@ TEST(PairsVerb, TakesAFrameOfAFileThatMoves) {
   EXPECT_THAT(beyond.errors, HasSubstr("--frame is 2; expected 0 to 1, as the file has 2 frames"));
 }
 
+TEST(PairsVerb, TakesAllFramesOfAFileThatMoves) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv",
+                                      "frame,box,min_x,min_y,max_x,max_y\n"
+                                      "0,0,0,0,1,1\n"
+                                      "0,1,5,5,6,6\n"
+                                      "0,2,6,6,7,7\n"
+                                      "1,0,4,4,8,8\n"
+                                      "3,1,,,,\n");
+  const std::string expected = "frame,first,second\n0,1,2\n1,0,1\n1,0,2\n1,1,2\n2,0,1\n2,0,2\n2,1,2\n3,0,2\n";
+  const Ended all = run({"pairs", file, "--frame", "all"});
+  EXPECT_EQ(all.output, expected);
+  EXPECT_THAT(all.errors,
+              HasSubstr("(12 boxes in 4 frames, 1 of them absent) in 2D: 8 pairs, exact in double"));
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--count"}).output, "8\n");
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--no-touching", "--count"}).output, "5\n");
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--precision", "float", "--algorithm", "grid"}).output,
+            expected);
+  ASSERT_EQ(run({"pairs", file, "--frame", "all", "-o", folder.file("pairs.npy")}).status, 0);
+  EXPECT_THAT(text_of(folder.file("pairs.npy")), HasSubstr("(8, 3)"));
+  expect_refused("pairs", {{{file, file, "--frame", "all"}, {"--frame all with 2 files", "expected one"}},
+                           {{file, "--frame", "all", "--within", "1"}, {"--frame", "--within"}},
+                           {{file, "--frame", "all", "--ids", "box"}, {"--frame", "--ids"}},
+                           {{file, "--frame", "all", "--algorithm", "paper_grid"},
+                            {"--algorithm is 'paper_grid' with --frame all", "one of the library's own"}},
+                           {{file, "--frame", "every"}, {"--frame is 'every'"}}});
+}
+
 /// Two triangles with an edge in common, and one far above them that comes down onto them later.
 std::string mesh_with_height(int height) {
   return "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
