@@ -52,11 +52,23 @@ const std::string& labels_column(const PairsArguments& arguments, std::size_t fi
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
+/// Which rows of tables may be boxes across the date line: with --longitude, and by the names of columns if
+/// space can repeat.
+lab::DateLine date_line_of(const PairsArguments& arguments, const lab::Entry& entry) {
+  if (arguments.is_longitude) return lab::DateLine::always;
+  const bool can_repeat = find_algorithm(entry.spec.name) != nullptr && !takes_all_frames(arguments) &&
+                          (arguments.within.empty() || arguments.is_euclidean) &&
+                          !arguments.leaves_out_touching;
+  return can_repeat ? lab::DateLine::by_names : lab::DateLine::none;
+}
+
 /// Reads one frame of a file, with its ids or, without --ids, its keys; or all frames.
-lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
+lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::DateLine date_line,
+                      lab::Rounding& rounding) {
   const std::string& path = arguments.files[file];
   lab::ReadOptions options = read_options(arguments.input, path);
   options.ids = labels_column(arguments, file);
+  options.date_line = date_line;
   // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
@@ -78,6 +90,7 @@ std::vector<std::string> keys_of(const PairsArguments& arguments, const std::str
   if (column != labels_column(arguments, file)) {
     lab::ReadOptions options = read_options(arguments.input, arguments.files[file]);
     options.ids = column;
+    options.date_line = lab::DateLine::always;  // read() has refused what is invalid
     labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame_of(arguments)).labels;
   }
   std::vector<std::string> keys = labels->ids;
@@ -99,7 +112,8 @@ class PairsCommand {
       sweep();
     } else {
       for (std::size_t file = 0; file < arguments.files.size(); ++file)
-        sets_.push_back(read(arguments, file, rounding_));
+        sets_.push_back(read(arguments, file, date_line_of(arguments, entry_), rounding_));
+      take_longitude();
       if (is_between()) lab::match(sets_[0], sets_[1]);
       take_keys();
     }
@@ -182,7 +196,7 @@ class PairsCommand {
         arguments_.within.empty()
             ? ""
             : fmt::format(" within {}{}", arguments_.within, arguments_.is_euclidean ? " (Euclidean)" : ""),
-        arguments_.period.empty() ? "" : fmt::format(" with period {}", arguments_.period),
+        period_.empty() ? "" : fmt::format(" with period {}", period_),
         arguments_.leaves_out_touching ? ", without pairs that only touch" : "", precision_text(),
         lab::duration(read_ms_ / 1e3), entry_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
@@ -202,6 +216,20 @@ class PairsCommand {
     };
     add(arguments_.left);
     if (arguments_.right != arguments_.left) add(arguments_.right);
+  }
+
+  /// Longitude repeats if the user says so, or if a table has boxes across the date line.
+  void take_longitude() {
+    if (!period_.empty()) return;
+    const std::string period = lab::dimension(sets_[0].boxes) == 2 ? "360,-" : "360,-,-";
+    if (arguments_.is_longitude) period_ = period;
+    for (const lab::FrameOfFile& set : sets_) {
+      const std::size_t across = set.labels == nullptr ? 0 : set.labels->across_date_line;
+      if (across == 0 || arguments_.is_longitude) continue;
+      period_ = period;
+      say(fmt::format("{}: {} across the date line, so longitude repeats, as with --longitude", set.name,
+                      lab::counted(across, "box is", "boxes are")));
+    }
   }
 
   void take_keys() {
@@ -243,7 +271,7 @@ class PairsCommand {
 
   void search(PairSink& pairs) {
     const PairFilters filters{filters_, right_filters_};
-    if (arguments_.is_euclidean || !arguments_.period.empty()) return search_around(pairs, filters);
+    if (arguments_.is_euclidean || !period_.empty()) return search_around(pairs, filters);
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
       if (is_between())
@@ -260,7 +288,7 @@ class PairsCommand {
 
   /// The pairs within a Euclidean distance, which may be 0, in space that may repeat.
   void search_around(PairSink& pairs, const PairFilters& filters) {
-    const std::vector<double> periods = read_periods(arguments_.period);
+    const std::vector<double> periods = read_periods(period_);
     Reach reach = arguments_.within.empty() ? 0 : read_distance(arguments_.within);
     if (!periods.empty()) reach = reach.periodic(periods);
     const FindOptions options{
@@ -278,6 +306,7 @@ class PairsCommand {
 
   const PairsArguments& arguments_;
   lab::Entry entry_;
+  std::string period_ = arguments_.period;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, if pairs with a shared vertex are left out
   std::vector<Filter> filters_;              // of keys
@@ -432,6 +461,11 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "360,- for longitude and latitude. Boxes also pair around the edge; --within is then "
           "measured in a straight line and needs --euclidean")
       ->type_name("LENGTHS");
+  verb->add_flag(
+      "--longitude", arguments->is_longitude,
+      "The first axis is in degrees of longitude: it repeats after 360, and a row of a table from 170 to "
+      "-170 is a box across the date line. Rows like that need no such option if the columns' names say "
+      "lon");
   verb->add_flag(
       "--no-touching", arguments->leaves_out_touching,
       "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "

@@ -164,8 +164,8 @@ void check_memory(const PairsArguments& arguments) {
         "when the program was built");
   for (const auto& [is_given, option] :
        {std::pair(arguments.is_swept, "--swept"), std::pair(!arguments.within.empty(), "--within"),
-        std::pair(!arguments.period.empty(), "--period"), std::pair(!arguments.ids.empty(), "--ids"),
-        std::pair(!arguments.frame.empty(), "--frame")})
+        std::pair(!arguments.period.empty(), "--period"), std::pair(arguments.is_longitude, "--longitude"),
+        std::pair(!arguments.ids.empty(), "--ids"), std::pair(!arguments.frame.empty(), "--frame")})
     if (is_given) throw Unusable(fmt::format("{} with --memory; expected one or the other", option));
 }
 
@@ -211,14 +211,18 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
   read_periods(arguments.period);
-  if (!arguments.period.empty() && !arguments.within.empty() && !arguments.is_euclidean)
-    throw Unusable("--period and --within without --euclidean; expected it");
-  if (!arguments.period.empty() && arguments.leaves_out_touching)
-    throw Unusable("--no-touching with --period; expected one or the other");
+  if (arguments.is_longitude && !arguments.period.empty())
+    throw Unusable("--longitude with --period, whose first number it is; expected one or the other");
+  const bool repeats = arguments.is_longitude || !arguments.period.empty();
+  const char* const repeating = arguments.is_longitude ? "--longitude" : "--period";
+  if (repeats && !arguments.within.empty() && !arguments.is_euclidean)
+    throw Unusable(fmt::format("{} and --within without --euclidean; expected it", repeating));
+  if (repeats && arguments.leaves_out_touching)
+    throw Unusable(fmt::format("--no-touching with {}; expected one or the other", repeating));
   if (takes_all_frames(arguments) && arguments.files.size() != 1)
     throw Unusable(fmt::format("--frame all with {} files; expected one", arguments.files.size()));
   const char* const of_library = arguments.is_euclidean        ? "--euclidean"
-                                 : !arguments.period.empty()   ? "--period"
+                                 : repeats                     ? repeating
                                  : takes_all_frames(arguments) ? "--frame all"
                                                                : nullptr;
   if (of_library != nullptr && find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)

@@ -21,6 +21,7 @@ struct PairsArguments {
   std::vector<std::string> ids;  // one for both files, or one for each
   std::string within;
   std::string period;
+  bool is_longitude = false;  // whether the first axis is in degrees around the earth
   bool is_euclidean = false;  // how the distance of --within is measured
   bool leaves_out_touching = false;
   std::string algorithm{default_algorithm};

@@ -358,7 +358,7 @@ TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
   EXPECT_THAT(run({"pairs", file, "--period", "360,-"}).errors, HasSubstr("1 pair with period 360,-"));
   const std::string across = folder.put("across.csv", "xmin,ymin,xmax,ymax\n170,0,-170,1\n");
   expect_refused("pairs", {
-                              {{across}, {"min (170, 0) and max (-170, 1)", "add 360 to the maximum"}},
+                              {{across}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
                               {{file, "--period", "0,1"}, {"--period is '0,1'", "a number above 0"}},
                               {{file, "--period", "1,"}, {"--period is '1,'"}},
                               {{file, "--period", "360"}, {"1 period for boxes of 2 dimensions"}},
@@ -367,6 +367,30 @@ TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
                               {{file, "--period", "1,1", "--algorithm", "karras_lbvh"},
                                {"--algorithm is 'karras_lbvh' with --period", "the library's own"}},
                           });
+}
+
+TEST(PairsVerb, TakesRowsFromEastToWestAsAcrossTheDateLine) {
+  const TemporaryFolder folder;
+  const std::string rows = "170,0,-170,1\n-175,0,-174,1\n179,1,180,2\n-180,2,-179,3\n0,0,1,1\n";
+  const std::string plain = folder.put("plain.csv", "west,south,east,north\n" + rows);
+  const std::string expected = "first,second\n0,1\n0,2\n2,3\n";
+  EXPECT_EQ(run({"pairs", plain, "--longitude"}).output, expected);
+  EXPECT_EQ(run({"pairs", plain, plain, "--longitude", "--count"}).output, "11\n");
+  const std::string named = folder.put("named.csv", "min_lon,min_lat,max_lon,max_lat\n" + rows);
+  const Ended ended = run({"pairs", named});
+  EXPECT_EQ(ended.output, expected);
+  EXPECT_THAT(ended.errors, HasSubstr("named.csv: 1 box is across the date line, so longitude repeats"));
+  EXPECT_THAT(ended.errors, HasSubstr("3 pairs with period 360,-"));
+  const std::string none =
+      folder.put("none.csv", "min_lon,min_lat,max_lon,max_lat\n179,0,180,1\n-180,0,-179,1\n");
+  EXPECT_EQ(run({"pairs", none, "--count"}).output, "0\n") << "no box is across";
+  EXPECT_EQ(run({"pairs", none, "--longitude", "--count"}).output, "1\n");
+  EXPECT_EQ(run({"pairs", named, "--within", "1", "--euclidean", "--count"}).output, "4\n");
+  expect_refused("pairs", {{{plain}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
+                           {{named, "--no-touching"}, {"min (170, 0) and max (-170, 1)"}},
+                           {{named, "--longitude", "--no-touching"}, {"--no-touching with --longitude"}},
+                           {{named, "--longitude", "--period", "360,-"}, {"--longitude with --period"}},
+                           {{named, "--longitude", "--within", "1"}, {"--longitude and --within without"}}});
 }
 
 TEST(PairsVerb, LeavesOutWhatOnlyTouches) {

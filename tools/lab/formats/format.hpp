@@ -1,6 +1,7 @@
 // The list of file formats, and how to read and write files of boxes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -24,6 +25,14 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Which rows of a table with minimum > maximum on the first axis are boxes across the date line (from 170 to
+/// -170 degrees), whose maximum then becomes 360 more. Others are invalid.
+enum class DateLine : std::uint8_t {
+  none,
+  by_names,  ///< those whose columns have names of longitudes, in a table without frames
+  always     ///< all whose bounds are in [-180, 360]
+};
+
 /// Options of reading a file. The file and its format supply what is left empty.
 struct ReadOptions {
   std::string format{};    ///< the name of a format; empty: found from the file's content and name
@@ -35,6 +44,7 @@ struct ReadOptions {
   bool finds_ids = false;  ///< with empty `ids`: reads them if a table has a column `id`
   int dimension = 0;       ///< 2 or 3; in 2D, a file in 3D is projected along the z axis
   std::optional<Precision> precision{};
+  DateLine date_line = DateLine::none;
   /// If set, invalid boxes are left out (replaced by absent boxes in formats that have these), and this is
   /// called for the first few. Otherwise a file with an invalid box is refused.
   std::function<void(std::string_view why)> say_invalid{};
