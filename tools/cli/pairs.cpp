@@ -57,7 +57,7 @@ const std::string& labels_column(const PairsArguments& arguments, std::size_t fi
 lab::DateLine date_line_of(const PairsArguments& arguments, const lab::Entry& entry) {
   if (arguments.is_longitude) return lab::DateLine::always;
   const bool can_repeat = find_algorithm(entry.spec.name) != nullptr && !takes_all_frames(arguments) &&
-                          (arguments.within.empty() || arguments.is_euclidean) &&
+                          arguments.period.empty() && (arguments.within.empty() || arguments.is_euclidean) &&
                           !arguments.leaves_out_touching;
   return can_repeat ? lab::DateLine::by_names : lab::DateLine::none;
 }
@@ -113,10 +113,10 @@ class PairsCommand {
     } else {
       for (std::size_t file = 0; file < arguments.files.size(); ++file)
         sets_.push_back(read(arguments, file, date_line_of(arguments, entry_), rounding_));
-      take_longitude();
       if (is_between()) lab::match(sets_[0], sets_[1]);
       take_keys();
     }
+    take_longitude();
     // Not before both sets have the same precision: the next lower float is not the next lower double.
     if (arguments.leaves_out_touching) {
       for (lab::FrameOfFile& set : sets_)
@@ -378,9 +378,10 @@ Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catal
   check_keys(verb, arguments);
   check_components(verb, arguments);
   if (takes_all_frames(arguments))
-    check_alone(verb, "--frame",
-                {"--ids", "--same", "--different", "--components", "--within", "--period", "--memory"},
-                "which only finds the overlapping boxes of each frame");
+    check_alone(
+        verb, "--frame",
+        {"--ids", "--same", "--different", "--components", "--within", "--period", "--longitude", "--memory"},
+        "which only finds the overlapping boxes of each frame");
   check(arguments, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   PairsCommand join(arguments, catalogue);
