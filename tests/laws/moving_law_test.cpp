@@ -180,8 +180,8 @@ TEST(OverlapTime, TakesABoundThatIsInfiniteAtOneTimeAsSoAllTheTime) {
 }
 
 TEST(FindPairsMoving, LeavesOutWhatPassesOneAfterTheOther) {
-  const std::vector<Box2> from = {{{0, 0}, {1, 1}}, {{8, 3}, {9, 4}}, {{9, 0}, {10, 1}}, absent_box<2>()};
-  const std::vector<Box2> to = {{{9, 0}, {10, 1}}, {{8, -30}, {9, -29}}, {{0, 0}, {1, 1}}, {{0, 0}, {9, 9}}};
+  const std::vector<Box2> from = {{{0, 0}, {1, 1}}, {{4, 3}, {5, 4}}, {{9, 0}, {10, 1}}, absent_box<2>()};
+  const std::vector<Box2> to = {{{9, 0}, {10, 1}}, {{4, -30}, {5, -29}}, {{0, 0}, {1, 1}}, {{0, 0}, {9, 9}}};
   EXPECT_EQ(find_pairs_moving(from, to), (std::vector<Pair>{{BoxId(0), BoxId(2)}}));
   EXPECT_EQ(overlap_times(from, to, std::vector<Pair>{{BoxId(0), BoxId(2)}, {BoxId(0), BoxId(3)}}),
             (std::vector<OverlapTime>{{4 / 9.0, 5 / 9.0}, {infinity, -infinity}}));
