@@ -69,7 +69,7 @@ std::optional<OverlapTime> time_of(const Box<D, Real>& from_a, const Box<D, Real
 }
 
 template <int D, typename Real>
-void check_lengths(const detail::MovingBoxes<D, Real>& boxes) {
+void check_ends(const detail::MovingBoxes<D, Real>& boxes) {
   if (boxes.from.size() == boxes.to.size()) return;
   throw InvalidFrame(core::message({boxes.to.size(), " boxes at the end of a step that begins with ",
                                     boxes.from.size(), "; expected as many"}));
@@ -78,7 +78,7 @@ void check_lengths(const detail::MovingBoxes<D, Real>& boxes) {
 /// The boxes that contain each box all the time. Of a box that is invalid at one time, that.
 template <int D, typename Real>
 std::vector<Box<D, Real>> swept_boxes(const detail::MovingBoxes<D, Real>& boxes) {
-  check_lengths(boxes);
+  check_ends(boxes);
   std::vector<Box<D, Real>> swept(boxes.from.size());
   for (std::size_t i = 0; i < swept.size(); ++i) {
     const Box<D, Real> from = boxes.from[i];
@@ -137,18 +137,18 @@ void detail::find_pairs_moving(const MovingBoxes<D, Real>& boxes, const MovingBo
 template <int D, typename Real>
 void detail::set_overlap_times(const MovingBoxes<D, Real>& left, const MovingBoxes<D, Real>& right,
                                std::span<const Pair> pairs, std::span<OverlapTime> times) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
+  constexpr OverlapTime never{std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity()};
   const core::DefaultEnvironment environment;
-  check_lengths(left);
-  check_lengths(right);
+  check_ends(left);
+  check_ends(right);
   find::check_ids(pairs, left.from.size(), right.from.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::size_t a = index(pairs[i].first);
     const std::size_t b = index(pairs[i].second);
     const std::array<Box<D, Real>, 4> ends = {left.from[a], left.to[a], right.from[b], right.to[b]};
     const bool are_present = std::all_of(ends.begin(), ends.end(), is_present<D, Real>);
-    times[i] = (are_present ? time_of(ends[0], ends[1], ends[2], ends[3]) : std::nullopt)
-                   .value_or(OverlapTime{infinite, -infinite});
+    times[i] = (are_present ? time_of(ends[0], ends[1], ends[2], ends[3]) : std::nullopt).value_or(never);
   }
 }
 
