@@ -44,11 +44,11 @@ struct ReadOptions {
   bool finds_ids = false;  ///< with empty `ids`: reads them if a table has a column `id`
   int dimension = 0;       ///< 2 or 3; in 2D, a file in 3D is projected along the z axis
   std::optional<Precision> precision{};
-  DateLine date_line = DateLine::none;
   /// If set, invalid boxes are left out (replaced by absent boxes in formats that have these), and this is
   /// called for the first few. Otherwise a file with an invalid box is refused.
   std::function<void(std::string_view why)> say_invalid{};
   Progress progress{};
+  DateLine date_line = DateLine::none;
 };
 
 /// A kind of element that a file's boxes can be made of, such as "triangles".
