@@ -219,6 +219,7 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
     throw Unusable(fmt::format("{} and --within without --euclidean; expected it", repeating));
   if (repeats && arguments.leaves_out_touching)
     throw Unusable(fmt::format("--no-touching with {}; expected one or the other", repeating));
+  if (!arguments.frame.empty() && !takes_all_frames(arguments)) read_index("--frame", arguments.frame);
   if (takes_all_frames(arguments) && arguments.files.size() != 1)
     throw Unusable(fmt::format("--frame all with {} files; expected one", arguments.files.size()));
   const char* const of_library = arguments.is_euclidean        ? "--euclidean"
