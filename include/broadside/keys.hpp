@@ -137,14 +137,20 @@ requires std::same_as<std::ranges::range_value_t<Left>, std::ranges::range_value
 ///     find_pairs(boxes, different, {.filters = filters_of_keys(KeyRule::same, images)});
 template <typename Left, typename Right>
 [[nodiscard]] auto only_different(const Left& left, const Right& right, PairSink& target) {
-  return PairFunction(
-      [&left, &right, &target, kept = std::vector<Pair>()](std::span<const Pair> pairs) mutable {
-        kept.clear();
-        for (const Pair pair : pairs) {
-          if (left[index(pair.first)] != right[index(pair.second)]) kept.push_back(pair);
-        }
-        target.put(kept);
-      });
+  return PairFunction([&left, &right, &target](std::span<const Pair> pairs) {
+    while (!pairs.empty()) {
+      const std::size_t count = pairs.size() < PairSink::max_room ? pairs.size() : PairSink::max_room;
+      Pair* const out = target.room(count);
+      std::size_t passed = 0;
+      for (const Pair pair : pairs.first(count)) {
+        out[passed] = pair;
+        passed += left[index(pair.first)] != right[index(pair.second)] ? 1U : 0U;
+      }
+      target.commit(passed);
+      pairs = pairs.subspan(count);
+    }
+    target.flush();  // because a search flushes this sink alone
+  });
 }
 
 }  // namespace broadside
