@@ -167,6 +167,11 @@ typedef struct broadside_find_options {
    * pair around the edge if they overlap, or within the distance: see Reach::periodic() in within.hpp. For the
    * same calls as `distance`. */
   const double* periods;
+
+  /** If not null, boxes move through a step: these are the same boxes at its end. Two pair if they overlap at some
+   * time of the step: see moving.hpp. For the same calls as `distance`, which is then 0. */
+  const broadside_boxes* to;
+  const broadside_boxes* right_to; /**< for two sets that move: the boxes of the right one at the end */
 } broadside_find_options;
 
 BROADSIDE_API void broadside_find_options_init(broadside_find_options* options);
@@ -222,6 +227,21 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_distances(const broadside_boxe
                                                             const broadside_boxes* right,
                                                             const broadside_pair* pairs, size_t count,
                                                             double* distances, broadside_error* error);
+
+/** The times between which two boxes overlap in a step from 0 to 1. */
+typedef struct broadside_overlap_time {
+  double enter;
+  double leave;
+} broadside_overlap_time;
+
+/** Sets times[i] to when the boxes of pairs[i] overlap, while they move from `boxes` to `to`: the second one, if
+ * `right` is not null, from `right` to `right_to`. Infinity and -infinity for two that never overlap. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_overlap_times(const broadside_boxes* boxes, const broadside_boxes* to,
+                                                                const broadside_boxes* right,
+                                                                const broadside_boxes* right_to,
+                                                                const broadside_pair* pairs, size_t count,
+                                                                broadside_overlap_time* times,
+                                                                broadside_error* error);
 
 /** Makes neighbour lists of `count` pairs in any order. The neighbours of box i, ascending, are
  * neighbours[offsets[i]] up to neighbours[offsets[i + 1]]; there are `boxes` + 1 offsets. If `is_full` is 0, the
@@ -506,6 +526,17 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_world_first_hit(const broadsid
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);
 
+/** As broadside_world_hits() and broadside_world_first_hit(), but only boxes that it enters: not those that it is in
+ * or rests on at its start. See enters() in queries.hpp. */
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_entered(const broadside_world* world, const void* box,
+                                                       const void* direction, double t_max,
+                                                       const broadside_query* query, broadside_hit* hits,
+                                                       size_t room, size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_world_first_entered(const broadside_world* world, const void* box,
+                                                             const void* direction, double t_max,
+                                                             const broadside_query* query, broadside_hit* hit,
+                                                             int* found, broadside_error* error);
+
 /** The `room` boxes nearest to `point`, or all if there are fewer, the nearest first. */
 BROADSIDE_API broadside_status broadside_world_nearest(const broadside_world* world, const void* point,
                                                        const broadside_query* query,
@@ -551,6 +582,14 @@ BROADSIDE_EXPERIMENTAL broadside_status broadside_index_first_hit(const broadsid
                                                          const void* direction, double t_max,
                                                          const broadside_query* query, broadside_hit* hit,
                                                          int* found, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_entered(const broadside_index* index, const void* box,
+                                                       const void* direction, double t_max,
+                                                       const broadside_query* query, broadside_hit* hits,
+                                                       size_t room, size_t* count, broadside_error* error);
+BROADSIDE_EXPERIMENTAL broadside_status broadside_index_first_entered(const broadside_index* index, const void* box,
+                                                             const void* direction, double t_max,
+                                                             const broadside_query* query, broadside_hit* hit,
+                                                             int* found, broadside_error* error);
 BROADSIDE_API broadside_status broadside_index_nearest(const broadside_index* index, const void* point,
                                                        const broadside_query* query,
                                                        broadside_neighbour* neighbours, size_t room,

@@ -240,9 +240,9 @@ class Buffer {
 
 /// A cast of the caller's box.
 template <int D, typename Real>
-BoxCast<D, Real> cast_of(const void* box, const void* direction, double t_max) {
+BoxCast<D, Real> cast_of(const void* box, const void* direction, double t_max, bool entering) {
   return {value_of<Box<D, Real>>(box, "box"), value_of<Point<D, Real>>(direction, "direction"),
-          static_cast<Real>(t_max)};
+          static_cast<Real>(t_max), entering};
 }
 
 // The queries that worlds and indexes share. The class behind such an object has index(), the BoxIndex to
@@ -262,14 +262,14 @@ broadside_status ask_index(const Object* object, const broadside_query* query, b
 
 template <typename Object>
 broadside_status hits(const Object* object, const void* box, const void* direction, double t_max,
-                      const broadside_query* query, broadside_hit* hits, std::size_t room, std::size_t* count,
-                      broadside_error* error) noexcept {
+                      bool entering, const broadside_query* query, broadside_hit* hits, std::size_t room,
+                      std::size_t* count, broadside_error* error) noexcept {
   return ask_index(
       object, query, error,
       [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
         Buffer<broadside_hit> buffer(hits, room, count, "hits");
         index.hits(
-            cast_of<D, Real>(box, direction, t_max),
+            cast_of<D, Real>(box, direction, t_max, entering),
             [&](const Hit<Real>& hit) {
               buffer.add({queried.handle_of(hit.box), hit.t_enter});
             },
@@ -280,14 +280,14 @@ broadside_status hits(const Object* object, const void* box, const void* directi
 
 template <typename Object>
 broadside_status first_hit(const Object* object, const void* box, const void* direction, double t_max,
-                           const broadside_query* query, broadside_hit* hit, int* found,
+                           bool entering, const broadside_query* query, broadside_hit* hit, int* found,
                            broadside_error* error) noexcept {
   return ask_index(
       object, query, error,
       [&]<int D, typename Real>(const BoxIndex<D, Real>& index, const auto& options, const auto& queried) {
         required(hit, "hit");
         required(found, "found");
-        const auto first = index.first_hit(cast_of<D, Real>(box, direction, t_max), options);
+        const auto first = index.first_hit(cast_of<D, Real>(box, direction, t_max, entering), options);
         *found = first ? 1 : 0;
         if (first) *hit = {queried.handle_of(first->box), first->t_enter};
       });

@@ -86,13 +86,26 @@ broadside_status broadside_index_overlapping(const broadside_index* index, const
 broadside_status broadside_index_hits(const broadside_index* index, const void* box, const void* direction,
                                       double t_max, const broadside_query* query, broadside_hit* hits,
                                       size_t room, size_t* count, broadside_error* error) {
-  return c::hits(index, box, direction, t_max, query, hits, room, count, error);
+  return c::hits(index, box, direction, t_max, false, query, hits, room, count, error);
 }
 
 broadside_status broadside_index_first_hit(const broadside_index* index, const void* box,
                                            const void* direction, double t_max, const broadside_query* query,
                                            broadside_hit* hit, int* found, broadside_error* error) {
-  return c::first_hit(index, box, direction, t_max, query, hit, found, error);
+  return c::first_hit(index, box, direction, t_max, false, query, hit, found, error);
+}
+
+broadside_status broadside_index_entered(const broadside_index* index, const void* box, const void* direction,
+                                         double t_max, const broadside_query* query, broadside_hit* hits,
+                                         size_t room, size_t* count, broadside_error* error) {
+  return c::hits(index, box, direction, t_max, true, query, hits, room, count, error);
+}
+
+broadside_status broadside_index_first_entered(const broadside_index* index, const void* box,
+                                               const void* direction, double t_max,
+                                               const broadside_query* query, broadside_hit* hit, int* found,
+                                               broadside_error* error) {
+  return c::first_hit(index, box, direction, t_max, true, query, hit, found, error);
 }
 
 broadside_status broadside_index_nearest(const broadside_index* index, const void* point,

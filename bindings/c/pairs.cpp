@@ -26,17 +26,23 @@ IgnoredPairs ignored_of(const broadside_find_options& options) {
   return ignored;
 }
 
+bool are_moving(const broadside_find_options& options) {
+  return options.to != nullptr || options.right_to != nullptr;
+}
+
 bool has_reach(const broadside_find_options& options) {
   return !(options.distance == 0) || options.radii != nullptr || options.right_radii != nullptr ||
          options.periods != nullptr;
 }
 
-/// The options of `what`, which refuses a distance and radii.
+/// The options of `what`, which refuses a distance, radii and boxes that move.
 broadside_find_options options_without_reach(const broadside_find_options* given, const char* what) {
   const broadside_find_options options = options_of(given, options_name);
   if (has_reach(options))
     throw std::invalid_argument("distance, radii, right_radii or periods are given for " + std::string(what) +
                                 "; expected 0 and null");
+  if (are_moving(options))
+    throw std::invalid_argument("to or right_to are given for " + std::string(what) + "; expected null");
   return options;
 }
 
@@ -74,16 +80,17 @@ struct FinderImpl {
       throw std::invalid_argument("right_filters are given and right is null; expected both or neither");
     if (right != nullptr) take_filters(options.right_filters, right->count, right_filters);
     const PairFilters filters{left_filters, right_filters, ignored.empty() ? nullptr : &ignored};
-    if (has_reach(options))
-      find_within(view_of<D, Real>(boxes), right, options, found, filters);
+    if (has_reach(options) || are_moving(options))
+      find_otherwise(view_of<D, Real>(boxes), right, options, found, filters);
     else if (right == nullptr)
       finder.find(view_of<D, Real>(boxes), found, filters);
     else
       finder.find_between(view_of<D, Real>(boxes), view_of<D, Real>(*right), found, filters);
   }
 
-  void find_within(BoxView<D, Real> boxes, const broadside_boxes* right,
-                   const broadside_find_options& options, PairSink& found, const PairFilters& filters) {
+  /// The pairs within a distance, or of boxes that move.
+  void find_otherwise(BoxView<D, Real> boxes, const broadside_boxes* right,
+                      const broadside_find_options& options, PairSink& found, const PairFilters& filters) {
     std::vector<BoxId> quarantined;
     const FindOptions which{.algorithm = spec_of(options.algorithm),
                             .filters = filters.filters,
@@ -92,12 +99,27 @@ struct FinderImpl {
                             .executor = executor.get(),
                             .touching = options.leaves_out_touching == 0,
                             .quarantined = options.quarantines != 0 ? &quarantined : nullptr};
+    if (are_moving(options)) return find_moving(boxes, right, options, found, which);
     Reach reach = reach_of(options, boxes.size(), right);
     if (options.periods != nullptr) reach = reach.periodic(std::span<const double>(options.periods, D));
     if (right == nullptr)
       find_pairs_within(boxes, reach, found, which);
     else
       find_pairs_within(boxes, view_of<D, Real>(*right), reach, found, which);
+  }
+
+  static void find_moving(BoxView<D, Real> boxes, const broadside_boxes* right,
+                          const broadside_find_options& options, PairSink& found, const FindOptions& which) {
+    if (has_reach(options))
+      throw std::invalid_argument("distance, radii or periods are given with to; expected 0 and null");
+    if (options.to == nullptr || (right == nullptr) != (options.right_to == nullptr))
+      throw std::invalid_argument("expected to and, for two sets alone, right_to");
+    const BoxView<D, Real> to = view_of<D, Real>(*options.to);
+    if (right == nullptr)
+      find_pairs_moving(boxes, to, found, which);
+    else
+      find_pairs_moving(boxes, to, view_of<D, Real>(*right), view_of<D, Real>(*options.right_to), found,
+                        which);
   }
 
   std::unique_ptr<Executor> executor;
@@ -227,6 +249,27 @@ broadside_status broadside_distances(const broadside_boxes* boxes, const broadsi
       return distances(view_of<D, Real>(*boxes), view_of<D, Real>(right == nullptr ? *boxes : *right), which);
     });
     copy_as(std::span(all), found);
+  });
+}
+
+broadside_status broadside_overlap_times(const broadside_boxes* boxes, const broadside_boxes* to,
+                                         const broadside_boxes* right, const broadside_boxes* right_to,
+                                         const broadside_pair* pairs, size_t count,
+                                         broadside_overlap_time* times, broadside_error* error) {
+  return guarded(error, [&] {
+    array_of(times, count, "times");
+    if ((right == nullptr) != (right_to == nullptr))
+      throw std::invalid_argument("expected right and right_to, or neither");
+    std::vector<Pair> which;
+    copy_as(array_of(pairs, count, "pairs"), which);
+    const std::vector<OverlapTime> found =
+        with_kind(required(boxes, "boxes").kind, [&]<int D, typename Real>() {
+          const BoxView<D, Real> from = view_of<D, Real>(*boxes);
+          const BoxView<D, Real> end = view_of<D, Real>(required(to, "to"));
+          if (right == nullptr) return overlap_times(from, end, which);
+          return overlap_times(from, end, view_of<D, Real>(*right), view_of<D, Real>(*right_to), which);
+        });
+    for (std::size_t i = 0; i < count; ++i) times[i] = {found[i].enter, found[i].leave};
   });
 }
 

@@ -242,13 +242,26 @@ broadside_status broadside_world_overlapping(const broadside_world* world, const
 broadside_status broadside_world_hits(const broadside_world* world, const void* box, const void* direction,
                                       double t_max, const broadside_query* query, broadside_hit* hits,
                                       size_t room, size_t* count, broadside_error* error) {
-  return c::hits(world, box, direction, t_max, query, hits, room, count, error);
+  return c::hits(world, box, direction, t_max, false, query, hits, room, count, error);
 }
 
 broadside_status broadside_world_first_hit(const broadside_world* world, const void* box,
                                            const void* direction, double t_max, const broadside_query* query,
                                            broadside_hit* hit, int* found, broadside_error* error) {
-  return c::first_hit(world, box, direction, t_max, query, hit, found, error);
+  return c::first_hit(world, box, direction, t_max, false, query, hit, found, error);
+}
+
+broadside_status broadside_world_entered(const broadside_world* world, const void* box, const void* direction,
+                                         double t_max, const broadside_query* query, broadside_hit* hits,
+                                         size_t room, size_t* count, broadside_error* error) {
+  return c::hits(world, box, direction, t_max, true, query, hits, room, count, error);
+}
+
+broadside_status broadside_world_first_entered(const broadside_world* world, const void* box,
+                                               const void* direction, double t_max,
+                                               const broadside_query* query, broadside_hit* hit, int* found,
+                                               broadside_error* error) {
+  return c::first_hit(world, box, direction, t_max, true, query, hit, found, error);
 }
 
 broadside_status broadside_world_nearest(const broadside_world* world, const void* point,

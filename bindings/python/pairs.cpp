@@ -51,9 +51,10 @@ enum class ResultForm { array, table, count, components };
 
 nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algorithm, nb::handle sort,
                 nb::handle threads, nb::handle filters, nb::handle other_filters, nb::handle ignored,
-                nb::handle quarantine, nb::handle touching, nb::handle within) {
+                nb::handle quarantine, nb::handle touching, nb::handle within, nb::handle to,
+                nb::handle different) {
   const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
-                               ignored, truth(quarantine), truth(touching), within);
+                               ignored, truth(quarantine), truth(touching), within, to, different);
   const bool sorts = truth(sort);
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   if (static_cast<ResultForm>(result) == ResultForm::components) return components(search);
@@ -124,6 +125,29 @@ nb::object distances_of(nb::handle boxes, nb::handle other, nb::handle pairs, nb
   });
 }
 
+/// The times between which the boxes of each pair overlap.
+nb::object overlap_times_of(nb::handle boxes, nb::handle to, nb::handle other, nb::handle pairs) {
+  const SearchArguments sets(boxes, other, "auto", nb::none(), nb::none(), nb::none(), nb::none(), false,
+                             true, nb::none(), to);
+  const std::vector<Pair> which =
+      pairs_of(pairs, sets.boxes.size(), sets.other ? sets.other->size() : sets.boxes.size());
+  std::vector<double> numbers = with_kind(sets.boxes.kind(), [&]<int D, typename Real>() {
+    return without_gil([&](WithoutGil&) {
+      const BoxView<D, Real> from = sets.boxes.boxes<D, Real>();
+      const BoxView<D, Real> end = sets.to->boxes<D, Real>();
+      const std::vector<OverlapTime> times =
+          sets.other
+              ? overlap_times(from, end, sets.other->boxes<D, Real>(), sets.other_to->boxes<D, Real>(), which)
+              : overlap_times(from, end, which);
+      std::vector<double> rows;
+      rows.reserve(2 * times.size());
+      for (const OverlapTime& time : times) rows.insert(rows.end(), {time.enter, time.leave});
+      return rows;
+    });
+  });
+  return array_of<double>(std::move(numbers), {which.size(), 2});
+}
+
 /// The offsets and ids of neighbour lists.
 nb::tuple neighbours_of(nb::handle pairs, std::size_t boxes, bool full) {
   std::vector<Pair> which = pairs_of(pairs, boxes, full ? boxes : std::numeric_limits<std::uint32_t>::max());
@@ -160,9 +184,12 @@ void add_pairs(nb::module_& module) {
   module.def("find", &find, nb::arg("result"), nb::arg("boxes").none(), nb::arg("other").none(),
              nb::arg("algorithm").none(), nb::arg("sort").none(), nb::arg("threads").none(),
              nb::arg("filters").none(), nb::arg("other_filters").none(), nb::arg("ignored").none(),
-             nb::arg("quarantine").none(), nb::arg("touching").none(), nb::arg("within").none());
+             nb::arg("quarantine").none(), nb::arg("touching").none(), nb::arg("within").none(),
+             nb::arg("to").none(), nb::arg("different").none());
   module.def("distances", &distances_of, nb::arg("boxes").none(), nb::arg("other").none(), nb::arg("pairs"),
              nb::arg("period"));
+  module.def("overlap_times", &overlap_times_of, nb::arg("boxes").none(), nb::arg("to"),
+             nb::arg("other").none(), nb::arg("pairs"));
   module.def("neighbours", &neighbours_of, nb::arg("pairs"), nb::arg("boxes"), nb::arg("full"));
   module.def("find_batch", &find_batch, nb::arg("boxes").none(), nb::arg("offsets"),
              nb::arg("algorithm").none(), nb::arg("threads").none(), nb::arg("filters").none(),

@@ -57,11 +57,12 @@ class Queries {
     return overlapped(rows.array(memory), choice, [](const Point& point) { return Box{point, point}; });
   }
 
-  nb::object hits(nb::handle origins, nb::handle directions, double t_max, const QueryChoice& choice) const {
+  nb::object hits(nb::handle origins, nb::handle directions, double t_max, bool entering,
+                  const QueryChoice& choice) const {
     std::vector<std::uint32_t> queries;
     std::vector<Number> boxes;
     std::vector<Real> enters;
-    const Rays rays(origins, directions, t_max);
+    const Rays rays(origins, directions, t_max, entering);
     ask_each(rays.size(), choice,
              [&](const auto& index, const auto& number_of, std::size_t i, const QueryOptions& options) {
                index.hits(
@@ -77,9 +78,9 @@ class Queries {
                           array_of(std::move(enters)));
   }
 
-  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max,
+  nb::object first_hit(nb::handle origins, nb::handle directions, double t_max, bool entering,
                        const QueryChoice& choice) const {
-    const Rays rays(origins, directions, t_max);
+    const Rays rays(origins, directions, t_max, entering);
     std::vector<Number> boxes(rays.size(), none);
     std::vector<Real> enters(rays.size(), std::numeric_limits<Real>::infinity());
     ask_each(rays.size(), choice,
@@ -149,12 +150,13 @@ class Queries {
   /// Rays, each a row of two arrays.
   class Rays {
    public:
-    Rays(nb::handle origins, nb::handle directions, double t_max)
+    Rays(nb::handle origins, nb::handle directions, double t_max, bool entering)
         : origin_rows_(Rows::of(origins, "origins", D, are_doubles)),
           direction_rows_(Rows::of(directions, "directions", D, are_doubles)),
           origins_(origin_rows_.array(origin_memory_)),
           directions_(direction_rows_.array(direction_memory_)),
-          t_max_(rounded_down(t_max)) {
+          t_max_(rounded_down(t_max)),
+          entering_(entering) {
       if (origins_.size() != directions_.size())
         throw std::invalid_argument("there are " + std::to_string(origins_.size()) + " origins and " +
                                     std::to_string(directions_.size()) +
@@ -162,7 +164,7 @@ class Queries {
     }
 
     std::size_t size() const noexcept { return origins_.size(); }
-    Ray<D, Real> operator[](std::size_t i) const { return {origins_[i], directions_[i], t_max_}; }
+    Ray<D, Real> operator[](std::size_t i) const { return {origins_[i], directions_[i], t_max_, entering_}; }
 
    private:
     Rows origin_rows_;
@@ -172,6 +174,7 @@ class Queries {
     std::span<const Point> origins_;
     std::span<const Point> directions_;
     Real t_max_;
+    bool entering_;
   };
 
   /// The boxes that `count` queries do not find: a filter and a number for each query, or none.
@@ -258,20 +261,22 @@ void add_queries(nb::class_<Any>& type) {
       nb::arg("points").none());
   add(
       "hits",
-      [](Any& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+      [](Any& self, handle origins, handle directions, double t_max, bool entering, handle filters,
+         handle exclude) {
         return self.visit([&](auto& asked) {
-          return Queries(asked).hits(origins, directions, t_max, {filters, exclude});
+          return Queries(asked).hits(origins, directions, t_max, entering, {filters, exclude});
         });
       },
-      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"));
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("entering"));
   add(
       "first_hit",
-      [](Any& self, handle origins, handle directions, double t_max, handle filters, handle exclude) {
+      [](Any& self, handle origins, handle directions, double t_max, bool entering, handle filters,
+         handle exclude) {
         return self.visit([&](auto& asked) {
-          return Queries(asked).first_hit(origins, directions, t_max, {filters, exclude});
+          return Queries(asked).first_hit(origins, directions, t_max, entering, {filters, exclude});
         });
       },
-      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"));
+      nb::arg("origins").none(), nb::arg("directions").none(), nb::arg("t_max"), nb::arg("entering"));
   add(
       "nearest",
       [](Any& self, handle queries, bool are_points, std::size_t k, double max_distance, handle threads,

@@ -18,6 +18,7 @@
 #include "broadside/index.hpp"
 #include "broadside/interval.hpp"
 #include "broadside/keys.hpp"
+#include "broadside/moving.hpp"
 #include "broadside/nearest_pairs.hpp"
 #include "broadside/owners.hpp"
 #include "broadside/pair.hpp"

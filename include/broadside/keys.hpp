@@ -1,4 +1,5 @@
-// filters_of_keys(): filters that let boxes pair only if their keys are equal, or only if they differ.
+// filters_of_keys(): filters that let boxes pair only if their keys are equal, or only if they differ. Both
+// at once, of two kinds of keys: only_different().
 #pragma once
 
 #include <concepts>
@@ -16,6 +17,8 @@
 
 #include "broadside/error.hpp"
 #include "broadside/filter.hpp"
+#include "broadside/pair.hpp"
+#include "broadside/sinks.hpp"
 
 namespace broadside {
 
@@ -123,6 +126,31 @@ requires std::same_as<std::ranges::range_value_t<Left>, std::ranges::range_value
   detail::KeyFilters<std::ranges::range_value_t<Left>> of_both(rule);
   std::vector<Filter> left_made = of_both.filters(left, filters);
   return {std::move(left_made), of_both.filters(right, right_filters)};
+}
+
+/// A sink that passes on to `target` the pairs whose boxes have different keys: left[pair.first] and
+/// right[pair.second], which are the same array for pairs of one set. Together with filters of other keys,
+/// it finds for example pairs in the same image of different classes. All must outlive the sink.
+///
+///     PairCollector found(pairs);
+///     auto different = only_different(classes, classes, found);
+///     find_pairs(boxes, different, {.filters = filters_of_keys(KeyRule::same, images)});
+template <typename Left, typename Right>
+[[nodiscard]] auto only_different(const Left& left, const Right& right, PairSink& target) {
+  return PairFunction([&left, &right, &target](std::span<const Pair> pairs) {
+    while (!pairs.empty()) {
+      const std::size_t count = pairs.size() < PairSink::max_room ? pairs.size() : PairSink::max_room;
+      Pair* const out = target.room(count);
+      std::size_t passed = 0;
+      for (const Pair pair : pairs.first(count)) {
+        out[passed] = pair;
+        passed += left[index(pair.first)] != right[index(pair.second)] ? 1U : 0U;
+      }
+      target.commit(passed);
+      pairs = pairs.subspan(count);
+    }
+    target.flush();  // because a search flushes this sink alone
+  });
 }
 
 }  // namespace broadside

@@ -22,6 +22,7 @@ struct Ray {
   Point<D, Real> origin;     ///< finite
   Point<D, Real> direction;  ///< finite
   Real t_max = std::numeric_limits<Real>::infinity();
+  bool entering = false;  ///< whether it hits only boxes that it enters: see enters()
 };
 
 /// A box that moves along a direction: at t it is `box` + t * direction, with 0 <= t <= t_max.
@@ -30,10 +31,31 @@ struct BoxCast {
   Box<D, Real> box;          ///< finite, min <= max
   Point<D, Real> direction;  ///< finite
   Real t_max = std::numeric_limits<Real>::infinity();
+  bool entering = false;  ///< as in Ray
 };
 
+/// Whether a cast that touches the box at some t >= 0 enters it: at the start it is outside, or touches the
+/// box and moves into it. A cast that starts inside the box, moves along a face that it touches, or leaves it
+/// does not. If nothing stopped it, it would touch the box from some t >= 0 to a t > 0.
+///
+/// Exact, since it compares coordinates alone: on some axis the leading side of the cast box is at the near
+/// side of the other one or before it, and on no axis has it reached the far side with its trailing side.
+template <int D, typename Real>
+[[nodiscard]] constexpr bool enters(const BoxCast<D, Real>& cast, const Box<D, Real>& box) noexcept {
+  bool is_outside = false;
+  for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
+    const Real direction = cast.direction[axis];
+    const bool is_before = cast.box.max[axis] <= box.min[axis];
+    const bool is_behind = cast.box.min[axis] >= box.max[axis];
+    if (direction == 0) continue;
+    if (direction > 0 ? is_behind : is_before) return false;
+    is_outside |= direction > 0 ? is_before : is_behind;
+  }
+  return is_outside;
+}
+
 /// The least t at which the cast box touches a present box: 0 if they touch at the start, nothing if they do
-/// not touch up to `t_max`.
+/// not touch up to `t_max`. With `cast.entering`, nothing if the cast does not enter the box.
 ///
 /// Boxes are closed. The t of each bound is (bound - position) / direction, rounded twice. If the differences
 /// of coordinates are exact, as with whole numbers, a cast that grazes a face, an edge or a corner hits it. A
@@ -41,6 +63,7 @@ struct BoxCast {
 template <int D, typename Real>
 [[nodiscard]] constexpr std::optional<Real> t_enter(const BoxCast<D, Real>& cast,
                                                     const Box<D, Real>& box) noexcept {
+  if (cast.entering && !enters(cast, box)) return std::nullopt;
   Real enter = 0;
   Real leave = cast.t_max;
   for (std::size_t axis = 0; axis < box.min.size(); ++axis) {
@@ -63,7 +86,7 @@ template <int D, typename Real>
 /// The ray as a cast of a point.
 template <int D, typename Real>
 [[nodiscard]] constexpr BoxCast<D, Real> as_cast(const Ray<D, Real>& ray) noexcept {
-  return {{ray.origin, ray.origin}, ray.direction, ray.t_max};
+  return {{ray.origin, ray.origin}, ray.direction, ray.t_max, ray.entering};
 }
 
 /// The least t at which the ray touches a present box, as above.

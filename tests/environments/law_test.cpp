@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "broadside/debug/outline.hpp"
+#include "broadside/moving.hpp"
 #include "broadside/queries.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/world.hpp"
@@ -82,6 +83,21 @@ TEST_P(EnvironmentLaw, FindsTheSamePairsInTheSameOrder) {
           }
         });
   });
+}
+
+TEST(MovingBoxesLaw, OverlapAtTheSameTimes) {
+  for_hard_inputs<3>(Algorithm{},
+                     []<typename Real>(const std::string& name, const std::vector<Box<3, Real>>& from) {
+                       std::vector<Box<3, Real>> to = from;
+                       std::ranges::reverse(to);
+                       const std::vector<Pair> pairs = find_pairs_moving(from, to);
+                       const std::vector<OverlapTime> times = overlap_times(from, to, pairs);
+                       for (const Environment& environment : environments()) {
+                         const InEnvironment in(environment);
+                         EXPECT_EQ(find_pairs_moving(from, to), pairs) << name << ", " << environment.name;
+                         EXPECT_EQ(overlap_times(from, to, pairs), times) << name << ", " << environment.name;
+                       }
+                     });
 }
 
 /// Frames made of one input: all boxes in other places, a few of them back, some gone, the first frame again.

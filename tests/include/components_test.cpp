@@ -127,6 +127,27 @@ TEST(KeysTest, MayBeTextsAndMeanTheSameInTwoSets) {
             (std::vector{Pair{BoxId(1), BoxId(0)}}));
 }
 
+TEST(KeysTest, OfTwoKindsPairWhereBothRulesHold) {
+  Rng rng(4);
+  const std::vector<Box2> boxes = any_boxes(rng, 300, 12);
+  std::vector<int> images(boxes.size());
+  std::vector<std::string> classes(boxes.size());
+  for (int& image : images) image = rng.whole(0, 3);
+  for (std::string& one : classes) one = rng.one_in(2) ? "cat" : "dog";
+  std::vector<Pair> expected = find_pairs(boxes);
+  std::erase_if(expected, [&](Pair pair) {
+    return images[pair.first] != images[pair.second] || classes[pair.first] == classes[pair.second];
+  });
+  std::ranges::sort(expected);
+  std::vector<Pair> found;
+  PairCollector collector(found);
+  auto different = only_different(classes, classes, collector);
+  find_pairs(boxes, different, {.filters = filters_of_keys(KeyRule::same, images)});
+  std::ranges::sort(found);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(found.size(), 9U);
+}
+
 TEST(KeysTest, ApplyFiltersAsWellOrRefuseThem) {
   const std::vector<int> keys{1, 2};
   const std::vector<Filter> statics(2, Filter{.is_static = true});

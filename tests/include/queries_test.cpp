@@ -1,5 +1,6 @@
 // Queries: what they promise beyond agreeing with the definitions.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -99,6 +100,67 @@ TEST(BoxCastEntry, IsWhereTheMovedBoxFirstTouches) {
   EXPECT_EQ(t_enter(BoxCast<2>{{{0, 1}, {2, 2}}, {1, 0}}, box), 3) << "touching at a face";
   EXPECT_EQ(t_enter(BoxCast<2>{{{0, 1.5f}, {2, 2}}, {1, 0}}, box), std::nullopt);
   EXPECT_EQ(t_enter(BoxCast<2>{{{9, 0}, {10, 1}}, {-2, 0}}, box), 1.5f);
+}
+
+TEST(BoxCastEntry, LeavesOutWhatTheCastIsInRestsOnOrLeaves) {
+  const Box2 box{{2, 0}, {4, 1}};
+  const auto enter = [&box](const Box2& from, const std::array<float, 2>& direction) {
+    return t_enter(BoxCast<2>{.box = from, .direction = direction, .entering = true}, box);
+  };
+  EXPECT_EQ(enter({{0, 0}, {1, 1}}, {1, 0}), 1) << "from outside";
+  EXPECT_EQ(enter({{0, 1}, {1, 2}}, {1, 0}), 1) << "grazing a face";
+  EXPECT_EQ(enter({{3, 0}, {5, 1}}, {1, 0}), std::nullopt) << "from inside";
+  EXPECT_EQ(enter({{3, 0}, {5, 1}}, {0, 0}), std::nullopt) << "standing still inside";
+  EXPECT_EQ(enter({{2, 1}, {3, 2}}, {1, 0}), std::nullopt) << "along the top";
+  EXPECT_EQ(enter({{2, 1}, {3, 2}}, {0, 1}), std::nullopt) << "up from the top";
+  EXPECT_EQ(enter({{2, 1}, {3, 2}}, {1, 1}), std::nullopt);
+  EXPECT_EQ(enter({{2, 1}, {3, 2}}, {1, -0x1p-140f}), 0) << "into the top";
+  EXPECT_EQ(enter({{1, 1}, {2, 2}}, {1, -1}), 0) << "into a corner";
+  EXPECT_EQ(enter({{1, 1}, {2, 2}}, {1, 1}), std::nullopt) << "past a corner";
+  EXPECT_EQ(enter({{1, -1}, {2, std::nextafter(0.0f, -1.0f)}}, {1, 1}), 0x1p-149f) << "just before a corner";
+  const Box2 wall{{2, 0}, {2, 1}};
+  EXPECT_FALSE(enters(as_cast(Ray<2>{{2, 0.5f}, {1, 0}}), wall)) << "off a wall without thickness";
+  EXPECT_TRUE(enters(as_cast(Ray<2>{{std::nextafter(2.0f, 0.0f), 0.5f}, {1, 0}}), wall));
+}
+
+/// The definition by the times between which a cast that nothing stops touches the box, on a grid of ties.
+TEST(BoxCastEntry, IsTheBeginningOfAContactThatLasts) {
+  const auto expect_ties = []<typename Real>(Real unit) {
+    const auto box = [unit](int x, int y, int width, int height) {
+      const auto at = [unit](int place) { return static_cast<Real>(place) * unit; };
+      return Box<2, Real>{{at(x), at(y)}, {at(x + width), at(y + height)}};
+    };
+    for (int number = 0; number < 6 * 6 * 3 * 3 * 3 * 3 * 3; ++number) {
+      int rest = number;
+      const auto digit = [&rest](int base) { return std::exchange(rest, rest / base) % base; };
+      const std::array<Real, 2> direction = {Real(digit(3) - 1), Real(digit(3) - 1)};
+      const int side = digit(3);
+      const BoxCast<2, Real> cast{
+          .box = box(digit(6) - 3, digit(6) - 3, side, side), .direction = direction, .t_max = 9 * unit};
+      const Box<2, Real> other = box(0, 0, digit(3), digit(3));
+      Real begins = -infinity;
+      Real ends = infinity;
+      for (const int axis : {0, 1}) {
+        const Real before = other.min[axis] - cast.box.max[axis];
+        const Real after = other.max[axis] - cast.box.min[axis];
+        if (direction[axis] == 0) {
+          if (before > 0 || after < 0) ends = -infinity;
+        } else {
+          begins = std::max(begins, direction[axis] > 0 ? before : -after);
+          ends = std::min(ends, direction[axis] > 0 ? after : -before);
+        }
+      }
+      BoxCast<2, Real> entering = cast;
+      entering.entering = true;
+      const bool is_hit = begins <= ends && begins >= 0 && ends > 0;
+      ASSERT_EQ(t_enter(entering, other), is_hit ? std::optional(begins) : std::nullopt) << number;
+      ASSERT_EQ(t_enter(entering, other), is_hit ? t_enter(cast, other) : std::nullopt) << number;
+    }
+  };
+  expect_ties(1.0f);
+  expect_ties(1.0);
+  expect_ties(std::numeric_limits<float>::denorm_min());
+  expect_ties(std::numeric_limits<double>::denorm_min());
 }
 
 TEST(DistanceSquared, IsZeroInsideAndDefinedForInfinities) {

@@ -135,6 +135,7 @@ class QueryLaw : public testing::Test {
     }
     if (rng_.one_in(3)) cast.t_max = Real(rng_.whole(0, 4)) / Real(rng_.whole(1, 3));
     if (rng_.one_in(9)) cast.t_max *= 100;
+    cast.entering = rng_.one_in(3);
     return cast;
   }
 
@@ -192,7 +193,7 @@ class QueryLaw : public testing::Test {
     const auto shown = [&cast] {
       return "cast from " + testing::PrintToString(cast.box.min) + " to " +
              testing::PrintToString(cast.box.max) + " along " + testing::PrintToString(cast.direction) +
-             " up to " + testing::PrintToString(cast.t_max);
+             " up to " + testing::PrintToString(cast.t_max) + (cast.entering ? ", entering" : "");
     };
     EXPECT_EQ(found, expected) << shown();
     EXPECT_EQ(index.first_hit(cast, {filter, except}), first) << shown();

@@ -80,6 +80,20 @@ TEST(WorldQueries, CastAndHoldInTermsOfHandles) {
   EXPECT_FALSE(world.containing({5.5f, 0.5f}, [far](Handle handle) { return handle != far; }));
 }
 
+TEST(WorldQueries, LeaveOutTheFloorThatABoxRestsOn) {
+  World2 world;
+  world.add({{-9, -1}, {9, 0}});
+  const Handle wall = world.add({{5, 0}, {6, 9}});
+  const Box2 walker{{0, 0}, {1, 2}};
+  EXPECT_EQ(world.first_hit(BoxCast<2>{walker, {1, 0}})->t_enter, 0);
+  EXPECT_EQ(world.first_hit(BoxCast<2>{.box = walker, .direction = {1, 0}, .entering = true}),
+            (HandleHit<float>{wall, 4}));
+  int hits = 0;
+  world.hits(Ray<2>{.origin = {0, 0}, .direction = {1, 1}, .entering = true},
+             [&](Handle handle, float t) { hits += handle == wall && t == 5 ? 1 : 9; });
+  EXPECT_EQ(hits, 1);
+}
+
 TEST(WorldQueries, TellTheNearestByDistanceAndSlot) {
   World2 world;
   const Handle far = world.add({{5, 0}, {6, 1}});

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "broadside/algorithm.hpp"
+#include "broadside/batch.hpp"
 #include "broadside/components.hpp"
 #include "broadside/filter.hpp"
 #include "broadside/keys.hpp"
@@ -40,23 +41,41 @@
 namespace broadside::cli {
 namespace {
 
-/// The column or property that --same or --different names; empty without them.
-const std::string& key_column(const PairsArguments& arguments) {
+/// The frame to read, counted from 0.
+std::size_t frame_of(const PairsArguments& arguments) {
+  return arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
+}
+
+/// The column or property that read() takes from a file: the ids to write or else keys; empty without both.
+const std::string& labels_column(const PairsArguments& arguments, std::size_t file) {
+  if (!arguments.ids.empty()) return arguments.ids[std::min(file, arguments.ids.size() - 1)];
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
-/// Reads one frame of a file, with its ids or, without --ids, its keys.
-lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Rounding& rounding) {
+/// Which rows of tables may be boxes across the date line: with --longitude, and by the names of columns if
+/// space can repeat.
+lab::DateLine date_line_of(const PairsArguments& arguments, const lab::Entry& entry) {
+  if (arguments.is_longitude) return lab::DateLine::always;
+  const bool can_repeat = find_algorithm(entry.spec.name) != nullptr && !takes_all_frames(arguments) &&
+                          arguments.period.empty() && (arguments.within.empty() || arguments.is_euclidean) &&
+                          !arguments.leaves_out_touching;
+  return can_repeat ? lab::DateLine::by_names : lab::DateLine::none;
+}
+
+/// Reads one frame of a file, with its ids or, without --ids, its keys; or all frames.
+lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::DateLine date_line,
+                      lab::Rounding& rounding) {
   const std::string& path = arguments.files[file];
-  // Frames are counted from 0.
-  const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
   lab::ReadOptions options = read_options(arguments.input, path);
-  options.ids = key_column(arguments);
-  if (!arguments.ids.empty()) options.ids = arguments.ids[std::min(file, arguments.ids.size() - 1)];
+  options.ids = labels_column(arguments, file);
+  options.date_line = date_line;
   // Round once the frame is read instead, where the rounding is counted.
   const bool is_rounded = options.precision == lab::Precision::float32;
   if (is_rounded) options.precision.reset();
-  lab::FrameOfFile read = lab::read_frame(lab::open_file(path, options), frame);
+  lab::BoxFile opened = lab::open_file(path, options);
+  lab::FrameOfFile read = takes_all_frames(arguments)
+                              ? lab::read_all_frames(std::move(opened))
+                              : lab::read_frame(std::move(opened), frame_of(arguments));
   say_lines(read.warning);
   if (read.is_moving && arguments.frame.empty())
     say(fmt::format("{}: holds several frames; these are the pairs of the first (--frame 0)", read.name));
@@ -64,22 +83,22 @@ lab::FrameOfFile read(const PairsArguments& arguments, std::size_t file, lab::Ro
   return read;
 }
 
-/// The keys of the boxes that read() gave. Throws FileError if a box has none.
-std::vector<std::string> keys_of(const PairsArguments& arguments, std::size_t file,
+/// The keys in a column of the boxes that read() gave. Throws FileError if a box has none.
+std::vector<std::string> keys_of(const PairsArguments& arguments, const std::string& column, std::size_t file,
                                  const lab::FrameOfFile& boxes) {
   std::shared_ptr<const lab::BoxLabels> labels = boxes.labels;
-  if (!arguments.ids.empty()) {
+  if (column != labels_column(arguments, file)) {
     lab::ReadOptions options = read_options(arguments.input, arguments.files[file]);
-    options.ids = key_column(arguments);
-    const std::size_t frame = arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
-    labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame).labels;
+    options.ids = column;
+    options.date_line = lab::DateLine::always;  // read() has refused what is invalid
+    labels = lab::read_frame(lab::open_file(arguments.files[file], options), frame_of(arguments)).labels;
   }
   std::vector<std::string> keys = labels->ids;
   keys.resize(lab::size(boxes.boxes));
   const auto missing = std::ranges::find(keys, std::string());
   if (missing != keys.end())
     throw lab::FileError(fmt::format("{}: box {} has no '{}'; expected a key for each box", boxes.name,
-                                     missing - keys.begin(), key_column(arguments)));
+                                     missing - keys.begin(), column));
   return keys;
 }
 
@@ -93,10 +112,11 @@ class PairsCommand {
       sweep();
     } else {
       for (std::size_t file = 0; file < arguments.files.size(); ++file)
-        sets_.push_back(read(arguments, file, rounding_));
+        sets_.push_back(read(arguments, file, date_line_of(arguments, entry_), rounding_));
       if (is_between()) lab::match(sets_[0], sets_[1]);
-      if (!key_column(arguments).empty()) take_keys();
+      take_keys();
     }
+    take_longitude();
     // Not before both sets have the same precision: the next lower float is not the next lower double.
     if (arguments.leaves_out_touching) {
       for (lab::FrameOfFile& set : sets_)
@@ -131,7 +151,10 @@ class PairsCommand {
   /// Writes the pairs in the order in which they are found.
   void find(PairSink& pairs) {
     const lab::Stopwatch watch;
-    if (elements_.empty()) {
+    if (!different_.empty()) {
+      auto different = only_different(different_.front(), different_.back(), pairs);
+      search(different);
+    } else if (elements_.empty()) {
       search(pairs);
     } else {
       lab::ApartPairs apart(elements_.front(), elements_.back(), pairs);
@@ -142,6 +165,18 @@ class PairsCommand {
     progress_.clear();
   }
 
+  /// The pairs of every frame, those of each in the order in which they are found.
+  BatchPairs find_in_frames() {
+    const lab::Stopwatch watch;
+    BatchPairs found = std::visit(
+        [this](const auto& boxes) {
+          return find_pairs_batch(boxes, sets_[0].offsets, {.algorithm = entry_.spec});
+        },
+        sets_[0].boxes);
+    join_ms_ = watch.milliseconds();
+    return found;
+  }
+
   /// Summary of the join: inputs, algorithm and time.
   std::string text(const std::string& found) const {
     std::string sets;
@@ -149,9 +184,10 @@ class PairsCommand {
     std::string_view separator;
     for (const lab::FrameOfFile& set : sets_) {
       const std::size_t absent = lab::absent_count(set.boxes);
-      sets +=
-          fmt::format("{}{} ({}{})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"),
-                      absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
+      sets += fmt::format(
+          "{}{} ({}{}{})", separator, set.name, lab::counted(lab::size(set.boxes), "box", "boxes"),
+          set.offsets.empty() ? "" : " in " + lab::counted(set.offsets.size() - 1, "frame", "frames"),
+          absent > 0 ? fmt::format(", {} of them absent", lab::grouped(absent)) : "");
       separator = " with ";
     }
     return fmt::format(
@@ -160,7 +196,7 @@ class PairsCommand {
         arguments_.within.empty()
             ? ""
             : fmt::format(" within {}{}", arguments_.within, arguments_.is_euclidean ? " (Euclidean)" : ""),
-        arguments_.period.empty() ? "" : fmt::format(" with period {}", arguments_.period),
+        period_.empty() ? "" : fmt::format(" with period {}", period_),
         arguments_.leaves_out_touching ? ", without pairs that only touch" : "", precision_text(),
         lab::duration(read_ms_ / 1e3), entry_.spec.text(), lab::duration(join_ms_ / 1e3));
   }
@@ -182,13 +218,37 @@ class PairsCommand {
     if (arguments_.right != arguments_.left) add(arguments_.right);
   }
 
+  /// Longitude repeats if the user says so, or if a table has boxes across the date line.
+  void take_longitude() {
+    if (!period_.empty()) return;
+    const std::string period = lab::dimension(sets_[0].boxes) == 2 ? "360,-" : "360,-,-";
+    if (arguments_.is_longitude) period_ = period;
+    for (const lab::FrameOfFile& set : sets_) {
+      const std::size_t across = set.labels == nullptr ? 0 : set.labels->across_date_line;
+      if (across == 0 || arguments_.is_longitude) continue;
+      period_ = period;
+      say(fmt::format("{}: {} across the date line, so longitude repeats, as with --longitude", set.name,
+                      lab::counted(across, "box is", "boxes are")));
+    }
+  }
+
   void take_keys() {
-    const KeyRule rule = arguments_.same.empty() ? KeyRule::different : KeyRule::same;
-    const std::vector<std::string> left = keys_of(arguments_, 0, sets_[0]);
-    if (is_between())
-      std::tie(filters_, right_filters_) = filters_of_keys(rule, left, keys_of(arguments_, 1, sets_[1]));
-    else
-      filters_ = filters_of_keys(rule, left);
+    const auto keys = [this](const std::string& column, std::size_t file) {
+      return keys_of(arguments_, column, file, sets_[file]);
+    };
+    const bool are_same = !arguments_.same.empty();
+    const bool are_different = !arguments_.different.empty();
+    if (are_same || are_different) {
+      const KeyRule rule = are_same ? KeyRule::same : KeyRule::different;
+      const std::string& column = are_same ? arguments_.same : arguments_.different;
+      const std::vector<std::string> left = keys(column, 0);
+      if (is_between())
+        std::tie(filters_, right_filters_) = filters_of_keys(rule, left, keys(column, 1));
+      else
+        filters_ = filters_of_keys(rule, left);
+    }
+    for (std::size_t file = 0; are_same && are_different && file < sets_.size(); ++file)
+      different_.push_back(keys(arguments_.different, file));
   }
 
   /// The precision in which the pairs are exact, or how many coordinates were rounded.
@@ -211,7 +271,7 @@ class PairsCommand {
 
   void search(PairSink& pairs) {
     const PairFilters filters{filters_, right_filters_};
-    if (arguments_.is_euclidean || !arguments_.period.empty()) return search_around(pairs, filters);
+    if (arguments_.is_euclidean || !period_.empty()) return search_around(pairs, filters);
     if (!arguments_.within.empty()) {
       const double distance = read_distance(arguments_.within);
       if (is_between())
@@ -228,7 +288,7 @@ class PairsCommand {
 
   /// The pairs within a Euclidean distance, which may be 0, in space that may repeat.
   void search_around(PairSink& pairs, const PairFilters& filters) {
-    const std::vector<double> periods = read_periods(arguments_.period);
+    const std::vector<double> periods = read_periods(period_);
     Reach reach = arguments_.within.empty() ? 0 : read_distance(arguments_.within);
     if (!periods.empty()) reach = reach.periodic(periods);
     const FindOptions options{
@@ -246,10 +306,12 @@ class PairsCommand {
 
   const PairsArguments& arguments_;
   lab::Entry entry_;
+  std::string period_ = arguments_.period;
   std::vector<lab::FrameOfFile> sets_;
   std::vector<lab::MeshElements> elements_;  // of each set, if pairs with a shared vertex are left out
   std::vector<Filter> filters_;              // of keys
   std::vector<Filter> right_filters_;
+  std::vector<std::vector<std::string>> different_;  // keys of each set, if the filters are of other keys
   lab::Rounding rounding_;
   ProgressLine progress_;
   std::uint64_t shown_pairs_ = 0;
@@ -289,15 +351,46 @@ void write_components(PairsCommand& join, const PairsArguments& arguments) {
   say(join.text(lab::counted(count, "component", "components")));
 }
 
+/// Writes a line for each pair of each frame, with the frame's number.
+void write_pairs_of_frames(PairsCommand& join, const PairsArguments& arguments) {
+  BatchPairs found = join.find_in_frames();
+  const std::size_t frames = found.offsets.size() - 1;
+  if (arguments.order == "sorted") {
+    for (std::size_t frame = 0; frame < frames; ++frame)
+      std::sort(found.pairs.data() + found.offsets[frame], found.pairs.data() + found.offsets[frame + 1]);
+  }
+  if (arguments.counts) {
+    print(fmt::format("{}\n", found.pairs.size()));
+    flush_output();
+  } else {
+    lab::write_file(arguments.output, [&](std::ostream& stream) {
+      lab::PairFile file(stream, lab::pair_format_of(arguments.output, arguments.to), false, {}, false,
+                         "frame,first,second\n", 3);
+      for (std::size_t frame = 0; frame < frames; ++frame) file.write(frame, found.of(frame));
+      file.finish();
+    });
+  }
+  say(join.text(counted_pairs(found.pairs.size())));
+}
+
 Exit run(const PairsArguments& arguments, const CLI::App& verb, const lab::Catalogue& catalogue) {
   check_alone(verb, "--count", {"--order", "--to"}, "which writes no pairs");
   check_keys(verb, arguments);
   check_components(verb, arguments);
+  if (takes_all_frames(arguments))
+    check_alone(
+        verb, "--frame",
+        {"--ids", "--same", "--different", "--components", "--within", "--period", "--longitude", "--memory"},
+        "which only finds the overlapping boxes of each frame");
   check(arguments, catalogue);
   if (!arguments.memory.empty()) return join_out_of_core(arguments, entry_of(arguments, catalogue));
   PairsCommand join(arguments, catalogue);
   if (arguments.finds_components) {
     write_components(join, arguments);
+    return Exit::success;
+  }
+  if (takes_all_frames(arguments)) {
+    write_pairs_of_frames(join, arguments);
     return Exit::success;
   }
   if (arguments.counts) {
@@ -370,6 +463,11 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "measured in a straight line and needs --euclidean")
       ->type_name("LENGTHS");
   verb->add_flag(
+      "--longitude", arguments->is_longitude,
+      "The first axis is in degrees of longitude: it repeats after 360, and a row of a table from 170 to "
+      "-170 is a box across the date line. Rows like that need no such option if the columns' names say "
+      "lon");
+  verb->add_flag(
       "--no-touching", arguments->leaves_out_touching,
       "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "
       "on a border belongs to the box that begins there");
@@ -378,8 +476,9 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
           "Find only pairs of boxes with the same key, such as an image or a class: a table's column, or "
           "a map's property")
       ->type_name("NAME");
-  verb->add_option("--different", arguments->different,
-                   "Find only pairs of boxes with different keys, likewise")
+  verb->add_option(
+          "--different", arguments->different,
+          "Find only pairs of boxes with different keys, likewise; with --same as well, both must hold")
       ->type_name("NAME");
   verb->add_flag(
       "--components", arguments->finds_components,
@@ -392,7 +491,8 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Threads to search with (0: as many as the machine has; default: the spec's, or 1); they "
                    "affect the time alone");
   verb->add_option("--frame", arguments->frame,
-                   "The frame of a file whose boxes move, counted from 0 (default: the first)");
+                   "The frame of a file whose boxes move, counted from 0 (default: the first); all: every "
+                   "frame, with the frame's number before each pair. All frames are held in memory");
   verb->add_option("-o,--output", arguments->output,
                    "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
                    "as CSV unless --to says otherwise")

@@ -81,12 +81,15 @@ void check_keys(const CLI::App& verb, const PairsArguments& arguments) {
       std::error_code fault;
       const auto kind = std::filesystem::status(file, fault).type();
       const bool is_read_once = file == "-" || kind == std::filesystem::file_type::fifo;
-      if (!arguments.ids.empty() && is_read_once)
-        throw Unusable(fmt::format("{} and --ids with '{}', which can be read only once; expected a file",
-                                   option, file));
+      const bool has_both_keys = !arguments.same.empty() && !arguments.different.empty();
+      if (is_read_once && (!arguments.ids.empty() || has_both_keys))
+        throw Unusable(fmt::format("{} and {} with '{}', which can be read only once; expected a file",
+                                   option, has_both_keys ? "--different" : "--ids", file));
     }
   }
-  check_alone(verb, "--same", {"--different"}, "which contradict each other");
+  if (!arguments.same.empty() && arguments.same == arguments.different)
+    throw Unusable(fmt::format("--same and --different are both '{}'; expected two columns or properties",
+                               arguments.same));
 }
 
 void check_components(const CLI::App& verb, const PairsArguments& arguments) {
@@ -161,8 +164,8 @@ void check_memory(const PairsArguments& arguments) {
         "when the program was built");
   for (const auto& [is_given, option] :
        {std::pair(arguments.is_swept, "--swept"), std::pair(!arguments.within.empty(), "--within"),
-        std::pair(!arguments.period.empty(), "--period"), std::pair(!arguments.ids.empty(), "--ids"),
-        std::pair(!arguments.frame.empty(), "--frame")})
+        std::pair(!arguments.period.empty(), "--period"), std::pair(arguments.is_longitude, "--longitude"),
+        std::pair(!arguments.ids.empty(), "--ids"), std::pair(!arguments.frame.empty(), "--frame")})
     if (is_given) throw Unusable(fmt::format("{} with --memory; expected one or the other", option));
 }
 
@@ -208,14 +211,24 @@ void check(const PairsArguments& arguments, const lab::Catalogue& catalogue) {
   check_memory(arguments);
   if (!arguments.within.empty()) read_distance(arguments.within);
   read_periods(arguments.period);
-  if (!arguments.period.empty() && !arguments.within.empty() && !arguments.is_euclidean)
-    throw Unusable("--period and --within without --euclidean; expected it");
-  if (!arguments.period.empty() && arguments.leaves_out_touching)
-    throw Unusable("--no-touching with --period; expected one or the other");
-  if ((arguments.is_euclidean || !arguments.period.empty()) &&
-      find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)
+  if (arguments.is_longitude && !arguments.period.empty())
+    throw Unusable("--longitude with --period, whose first number it is; expected one or the other");
+  const bool repeats = arguments.is_longitude || !arguments.period.empty();
+  const char* const repeating = arguments.is_longitude ? "--longitude" : "--period";
+  if (repeats && !arguments.within.empty() && !arguments.is_euclidean)
+    throw Unusable(fmt::format("{} and --within without --euclidean; expected it", repeating));
+  if (repeats && arguments.leaves_out_touching)
+    throw Unusable(fmt::format("--no-touching with {}; expected one or the other", repeating));
+  if (!arguments.frame.empty() && !takes_all_frames(arguments)) read_index("--frame", arguments.frame);
+  if (takes_all_frames(arguments) && arguments.files.size() != 1)
+    throw Unusable(fmt::format("--frame all with {} files; expected one", arguments.files.size()));
+  const char* const of_library = arguments.is_euclidean        ? "--euclidean"
+                                 : repeats                     ? repeating
+                                 : takes_all_frames(arguments) ? "--frame all"
+                                                               : nullptr;
+  if (of_library != nullptr && find_algorithm(entry_of(arguments, catalogue).spec.name) == nullptr)
     throw Unusable(fmt::format("--algorithm is '{}' with {}; expected one of the library's own",
-                               arguments.algorithm, arguments.is_euclidean ? "--euclidean" : "--period"));
+                               arguments.algorithm, of_library));
   if (arguments.is_euclidean && arguments.within.empty())
     throw Unusable("--euclidean without --within; expected a distance");
   if (!arguments.within.empty() && arguments.leaves_out_touching)

@@ -21,6 +21,7 @@ struct PairsArguments {
   std::vector<std::string> ids;  // one for both files, or one for each
   std::string within;
   std::string period;
+  bool is_longitude = false;  // whether the first axis is in degrees around the earth
   bool is_euclidean = false;  // how the distance of --within is measured
   bool leaves_out_touching = false;
   std::string algorithm{default_algorithm};
@@ -40,6 +41,9 @@ struct PairsArguments {
   std::string right;
   bool excludes_shared = false;
 };
+
+/// Whether the pairs of every frame of a file are found.
+inline bool takes_all_frames(const PairsArguments& arguments) { return arguments.frame == "all"; }
 
 /// The part of a mesh that `text` names. Throws Unusable, naming `option`, if there is no such part.
 lab::MeshPart read_part(const std::string& option, const std::string& text);

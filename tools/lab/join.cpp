@@ -34,6 +34,20 @@ FrameOfFile read(FrameReader<D, Real>& frames, std::string name, std::size_t fra
           frames.is_computed()};
 }
 
+template <int D, typename Real>
+FrameOfFile read_all(FrameReader<D, Real>& frames, std::string name) {
+  std::vector<Box<D, Real>> boxes = frames.first();
+  std::vector<Box<D, Real>> all = boxes;
+  std::vector<std::size_t> offsets = {0, all.size()};
+  for (Step<D, Real> step; frames.next(step); offsets.push_back(all.size())) {
+    lab::apply(step, boxes);
+    all.insert(all.end(), boxes.begin(), boxes.end());
+  }
+  return {std::move(name),      std::move(all),    offsets.size() > 2,
+          frames.labels(),      frames.warning(),  std::string(frames.importer()),
+          frames.is_computed(), std::move(offsets)};
+}
+
 template <typename Real, int D, typename OldReal>
 std::vector<Box<D, Real>> converted(const std::vector<Box<D, OldReal>>& boxes) {
   std::vector<Box<D, Real>> result(boxes.size());
@@ -75,6 +89,10 @@ Precision precision(const AnyBoxes& boxes) noexcept {
 FrameOfFile read_frame(BoxFile file, std::size_t frame) {
   return std::visit([&](const auto& frames) { return read(*frames, std::move(file.name), frame); },
                     file.frames);
+}
+
+FrameOfFile read_all_frames(BoxFile file) {
+  return std::visit([&](const auto& frames) { return read_all(*frames, std::move(file.name)); }, file.frames);
 }
 
 Rounding round_to_float(AnyBoxes& boxes) {

@@ -25,7 +25,7 @@ std::size_t absent_count(const AnyBoxes& boxes);
 int dimension(const AnyBoxes& boxes) noexcept;
 Precision precision(const AnyBoxes& boxes) noexcept;
 
-/// The boxes of one frame of a file.
+/// The boxes of one frame of a file, or of all.
 struct FrameOfFile {
   std::string name;  ///< of the file
   AnyBoxes boxes;
@@ -35,11 +35,15 @@ struct FrameOfFile {
   std::string importer{};    ///< the library that may have rounded the file's numbers to float; otherwise
                              ///< empty
   bool is_computed = false;  ///< whether bounds were computed from a centre and a size
+  std::vector<std::size_t> offsets{};  ///< of all frames: where each begins, and the number of all boxes
 };
 
 /// Reads one frame; the first is frame 0. Throws FileError, also if the file has fewer frames. Memory: one
 /// frame, if the format is read frame by frame.
 FrameOfFile read_frame(BoxFile file, std::size_t frame);
+
+/// Reads all frames, one after the other. Absent boxes keep their places.
+FrameOfFile read_all_frames(BoxFile file);
 
 /// Rounds doubles to the nearest floats, and counts the coordinates that change.
 Rounding round_to_float(AnyBoxes& boxes);

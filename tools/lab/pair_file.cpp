@@ -43,10 +43,10 @@ PairFormat pair_format_of(const std::filesystem::path& path, std::string_view na
 }
 
 PairFile::PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids,
-                   bool has_large_numbers, std::string_view header)
+                   bool has_large_numbers, std::string_view header, std::size_t columns)
     : stream_(stream), ids_(ids) {
   if (format == PairFormat::npy)
-    array_.emplace(stream, has_large_numbers ? "u8" : "u4", 2);
+    array_.emplace(stream, has_large_numbers ? "u8" : "u4", columns);
   else if (!header.empty())
     text_ = header;
   else
@@ -68,6 +68,19 @@ void PairFile::write(std::span<const std::array<std::uint64_t, 2>> pairs) {
   for (const std::array<std::uint64_t, 2>& pair : pairs) {
     append(text_, pair[0], ids_.left, ',');
     append(text_, pair[1], ids_.right, '\n');
+    if (text_.size() >= bytes_per_piece) write_text();
+  }
+}
+
+void PairFile::write(std::size_t frame, std::span<const Pair> pairs) {
+  using Row = std::array<std::uint32_t, 3>;
+  for (const Pair pair : pairs) {
+    const Row row = {static_cast<std::uint32_t>(frame), index(pair.first), index(pair.second)};
+    if (array_) {
+      array_->write(std::span<const Row>(&row, 1));
+      continue;
+    }
+    for (std::size_t i = 0; i < row.size(); ++i) append(text_, row[i], nullptr, i < 2 ? ',' : '\n');
     if (text_.size() >= bytes_per_piece) write_text();
   }
 }

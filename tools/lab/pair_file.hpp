@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -36,15 +37,19 @@ class PairFile {
  public:
   /// Begins the file. The stream must outlive this object; the caller checks it for errors. With
   /// `is_between`, pairs are of a left and a right set, and the columns are named so. Ids, which must outlive
-  /// this object, are for CSV only. A `header` names the columns of rows other than pairs.
+  /// this object, are for CSV only. A `header` names the columns of rows other than pairs, of which there are
+  /// `columns`.
   PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {},
-           bool has_large_numbers = false, std::string_view header = {});
+           bool has_large_numbers = false, std::string_view header = {}, std::size_t columns = 2);
 
   void write(std::span<const Pair> pairs);
 
   /// Writes pairs of numbers beyond 32 bits. Files with `has_large_numbers` accept only these; other files do
   /// not accept them.
   void write(std::span<const std::array<std::uint64_t, 2>> pairs);
+
+  /// Writes rows of three columns: the frame's number, and a pair in it.
+  void write(std::size_t frame, std::span<const Pair> pairs);
 
   /// Call after the last pair.
   void finish();

@@ -27,6 +27,7 @@ from broadside._pairs import (
     find_pairs_batch,
     intervals,
     invalid_rows,
+    overlap_times,
     pairs,
 )
 from broadside._partition import Assignment, Partition
@@ -72,6 +73,7 @@ __all__ = [
     "invalid_rows",
     "nearest_pairs",
     "neighbour_lists",
+    "overlap_times",
     "pairs",
     "read",
 ]

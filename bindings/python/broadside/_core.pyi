@@ -28,10 +28,22 @@ class _Queried:
     def overlapping(self, queries: object, filters: object | None, exclude: object | None) -> tuple[Any, Any]: ...
     def containing(self, points: object, filters: object | None, exclude: object | None) -> tuple[Any, Any]: ...
     def hits(
-        self, origins: object, directions: object, t_max: float, filters: object | None, exclude: object | None
+        self,
+        origins: object,
+        directions: object,
+        t_max: float,
+        entering: bool,
+        filters: object | None,
+        exclude: object | None,
     ) -> tuple[Any, Any, Any]: ...
     def first_hit(
-        self, origins: object, directions: object, t_max: float, filters: object | None, exclude: object | None
+        self,
+        origins: object,
+        directions: object,
+        t_max: float,
+        entering: bool,
+        filters: object | None,
+        exclude: object | None,
     ) -> tuple[Any, Any]: ...
     def nearest(
         self,
@@ -108,7 +120,12 @@ def find(
     quarantine: object,
     touching: object,
     within: float | tuple[NDArray[np.float64], NDArray[np.float64]] | None,
+    to: tuple[object, ...] | None,
+    different: tuple[NDArray[np.int64], ...] | None,
 ) -> Any: ...
+def overlap_times(
+    boxes: object, to: tuple[object, ...], other: object | None, pairs: object
+) -> NDArray[np.float64]: ...
 def distances(boxes: object, other: object | None, pairs: object, period: object) -> NDArray[np.float64]: ...
 def neighbours(pairs: object, boxes: int, full: bool) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
 def find_batch(

@@ -22,20 +22,22 @@ class Keyed:
     packed: NDArray[np.uint64]
 
 
-def with_keys(filters: Any, other_filters: Any, same: Any, different: Any, is_between: bool) -> tuple[Any, Any]:
-    """The filters of both sets, with those of the keys."""
+def with_keys(filters: Any, other_filters: Any, same: Any, different: Any, is_between: bool) -> tuple[Any, Any, Any]:
+    """The filters of both sets, with those of the keys; with both kinds of keys, also those that must differ."""
     if same is None and different is None:
-        return filters, other_filters
-    if same is not None and different is not None:
-        raise ValueError("same and different are both given; expected one of the two")
+        return filters, other_filters, None
     name = "different" if same is None else "same"
-    given = different if same is None else same
+    groups = _groups_of(different if same is None else same, name, is_between)
+    made = [_keyed(group, old, name) for group, old in zip(groups, (filters, other_filters), strict=False)]
+    also_different = None if same is None or different is None else tuple(_groups_of(different, "different", is_between))
+    return made[0], made[1] if is_between else other_filters, also_different
+
+
+def _groups_of(given: Any, name: str, is_between: bool) -> list[NDArray[np.int64]]:
+    """The numbers of the keys of each set."""
     if is_between and not (isinstance(given, (tuple, list)) and len(given) == 2):
         raise TypeError(f"{name} is {_arguments.kind_of(given)}; expected two arrays of keys, ({name}_of_boxes, {name}_of_other)")
-    arrays = [_plain(keys, name) for keys in (given if is_between else [given])]
-    groups = _groups(arrays, name)
-    made = [_keyed(group, old, name) for group, old in zip(groups, (filters, other_filters), strict=False)]
-    return made[0], made[1] if is_between else other_filters
+    return _groups([_plain(keys, name) for keys in (given if is_between else [given])], name)
 
 
 def _plain(keys: Any, name: str) -> NDArray[Any]:

@@ -198,11 +198,13 @@ class World:
         directions: Any,
         *,
         t_max: float = math.inf,
+        entering: bool = False,
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> Hits:
         """All boxes that each ray meets: see `Index.hits`."""
-        return Hits(*self._world.hits(origins, directions, _arguments.number(t_max, "t_max"), filters, exclude))
+        limit = _arguments.number(t_max, "t_max")
+        return Hits(*self._world.hits(origins, directions, limit, entering, filters, exclude))
 
     def first_hit(
         self,
@@ -210,12 +212,13 @@ class World:
         directions: Any,
         *,
         t_max: float = math.inf,
+        entering: bool = False,
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> FirstHits:
         """The box that each ray meets first: see `Index.first_hit`."""
         limit = _arguments.number(t_max, "t_max")
-        return FirstHits(*self._world.first_hit(origins, directions, limit, filters, exclude))
+        return FirstHits(*self._world.first_hit(origins, directions, limit, entering, filters, exclude))
 
     def nearest(
         self,

@@ -38,6 +38,7 @@ def pairs(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> NDArray[np.uint32]: ...
 @overload
 def pairs(
@@ -59,6 +60,7 @@ def pairs(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> PairTable: ...
 @overload
 def pairs(
@@ -80,6 +82,7 @@ def pairs(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> Any: ...
 def pairs(
     boxes: Any,
@@ -100,6 +103,7 @@ def pairs(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> Any:
     """Every pair of overlapping boxes, once. Boxes that touch overlap, unless `touching` is False.
 
@@ -136,7 +140,8 @@ def pairs(
         same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Integers, strings
             or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
             Filters may only say which boxes are static.
-        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out.
+        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out. With
+            `same` as well, both must hold, such as the same image and different classes.
         within: Find the boxes whose Euclidean distance is at most this number (a cutoff), instead of those that
             overlap; or a radius for each box, shape (n,): two pair if their distance is at most the sum of their radii;
             of two sets, the radii of both as a tuple. The sets may then be points as well: arrays of shape (n, 2) or
@@ -145,6 +150,9 @@ def pairs(
             ``(360, None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie
             in any cell; one at least as long as the period is the whole axis. With `within`, the distance is that of
             the nearest images.
+        to: The boxes move: `boxes` are at the beginning of a step and these, as many, at its end, and each bound moves
+            at an even speed. Two pair if they overlap at some time of the step; not if they pass through a place one
+            after the other. Of two sets, the ends of both as a tuple. `overlap_times` tells when pairs overlap.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
@@ -162,12 +170,13 @@ def pairs(
     within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
     milliseconds. Any number of threads may call it at once.
     """
-    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
     if other is not None or columns is not None or other_columns is not None:
         boxes, other = _sets(boxes, other, columns, other_columns)
     if within is not None or period is not None:
         boxes, other, within = _reaching(boxes, other, within, period)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within)
+    moving = ends(to, other is not None, columns, other_columns)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
     try:
         if output == "numpy":
             return _find(_ARRAY, boxes, other, algorithm, sort, *which)
@@ -209,6 +218,36 @@ def _reaching(boxes: Any, other: Any, within: Any, period: Any) -> tuple[Any, An
     return _within.boxes_of(boxes), _within.boxes_of(other), _within.checked(within, period, other is not None)
 
 
+def ends(to: Any, is_between: bool, columns: Columns | None, other_columns: Columns | None) -> Any:
+    """Where the boxes of each set end, as the extension module takes it."""
+    if to is None:
+        return None
+    if not is_between:
+        return (_convert.given(to, "to", columns),)
+    if not isinstance(to, tuple) or len(to) != 2:
+        raise TypeError(f"to is {_arguments.kind_of(to)}; expected a tuple of the ends of both sets")
+    return _convert.given(to[0], "to", columns), _convert.given(to[1], "to", other_columns)
+
+
+def overlap_times(boxes: Any, to: Any, pairs: ArrayLike, other: Any = None) -> NDArray[np.float64]:
+    """The times between which the boxes of each pair overlap in a step from 0 to 1.
+
+    Args:
+        boxes: The boxes at the beginning of the step, as `pairs` takes them.
+        to: The boxes at its end; of two sets, those of both as a tuple.
+        pairs: Rows of two ids, shape (k, 2), such as ``pairs(boxes, to=to)``.
+        other: The second set, if the pairs are of two sets.
+
+    Returns:
+        float64 of shape (k, 2): the first and the last time at which the boxes overlap; ``inf, -inf`` for boxes that
+        never do. Contacts tie exactly where differences of coordinates and their products are exact, as of whole
+        numbers.
+
+    Raises ValueError for an id that is out of range, or ends of another shape.
+    """
+    return _core.overlap_times(boxes, ends(to, other is not None, None, None), other, pairs)
+
+
 def _kept(boxes: Any, name: str) -> Any:
     return boxes if _convert.is_empty_sequence(boxes) else _convert.boxes(boxes, name)
 
@@ -230,13 +269,15 @@ def count(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
-    filters, other_filters = with_keys(filters, other_filters, same, different, other is not None)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns)
     if within is not None or period is not None:
         boxes, other, within = _reaching(boxes, other, within, period)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within)
+    moving = ends(to, other is not None, columns, other_columns)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
     found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
     return found
 
@@ -304,6 +345,7 @@ def components(
     different: Any = None,
     within: Any = None,
     period: Any = None,
+    to: Any = None,
 ) -> NDArray[np.uint32]:
     """The connected components of the pairs that `pairs` gives for the same arguments.
 
@@ -313,11 +355,12 @@ def components(
         uint32 of shape (n,): for each box the least row of the boxes in its component. A box without pairs, an absent
         one for example, has its own row.
     """
-    filters, _ = with_keys(filters, None, same, different, False)
+    filters, _, keys = with_keys(filters, None, same, different, False)
     boxes, _ = _sets(boxes, None, columns, None)
     if within is not None or period is not None:
         boxes, _, within = _reaching(boxes, None, within, period)
-    which = (threads, filters, None, ignored, quarantine, touching, within)
+    moving = ends(to, False, columns, None)
+    which = (threads, filters, None, ignored, quarantine, touching, within, moving, keys)
     found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
     return found
 

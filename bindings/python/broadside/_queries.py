@@ -149,14 +149,18 @@ class Index:
         directions: Any,
         *,
         t_max: float = math.inf,
+        entering: bool = False,
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> Hits:
         """All boxes that each ray meets: the points origin + t * direction, 0 <= t <= t_max.
 
-        `origins` and `directions` have shape (m, dimension) and are finite. Raises InvalidQueryError otherwise.
+        `origins` and `directions` have shape (m, dimension) and are finite. Raises InvalidQueryError otherwise. With
+        `entering`, only boxes that the ray enters: not those that its origin is in or on, unless it is on the border
+        and the ray moves into the box.
         """
-        return Hits(*self._index.hits(origins, directions, _arguments.number(t_max, "t_max"), filters, exclude))
+        limit = _arguments.number(t_max, "t_max")
+        return Hits(*self._index.hits(origins, directions, limit, entering, filters, exclude))
 
     def first_hit(
         self,
@@ -164,12 +168,13 @@ class Index:
         directions: Any,
         *,
         t_max: float = math.inf,
+        entering: bool = False,
         filters: NDArray[np.void] | None = None,
         exclude: ArrayLike | None = None,
     ) -> FirstHits:
         """The box that each ray, as in `hits`, meets first."""
         limit = _arguments.number(t_max, "t_max")
-        return FirstHits(*self._index.first_hit(origins, directions, limit, filters, exclude))
+        return FirstHits(*self._index.first_hit(origins, directions, limit, entering, filters, exclude))
 
     def nearest(
         self,

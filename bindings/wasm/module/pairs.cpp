@@ -6,6 +6,7 @@
 
 #include "broadside/components.hpp"
 #include "broadside/finder.hpp"
+#include "broadside/keys.hpp"
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 #include "broadside/within.hpp"
@@ -39,6 +40,7 @@ struct PairsCall {
   std::uint32_t mode;
   const double* within;        ///< a distance, or the radii of the left set
   const double* right_within;  ///< the radii of the right set
+  const double* different;     ///< numbers of keys that must differ, of both sets in turn; null without them
 };
 
 class WasmFinder {
@@ -69,6 +71,13 @@ class WasmFinder {
 
  private:
   void find(const PairsCall& search, PairSink& pairs) {
+    if (search.different == nullptr) return find_by_filters(search, pairs);
+    const double* const right = search.different + ((search.mode & joins) == 0 ? 0 : search.count);
+    auto different = only_different(search.different, right, pairs);
+    find_by_filters(search, different);
+  }
+
+  void find_by_filters(const PairsCall& search, PairSink& pairs) {
     finder_.set_touching((search.mode & leaves_out_touching) == 0);
     const auto boxes = boxes_at<dimension>(search.boxes, search.count);
     const PairFilters filters{filters_at(search.filters, search.count),
@@ -174,9 +183,11 @@ BROADSIDE_EXPORT(finder_free) void finder_free(WasmFinder* finder) { delete find
 BROADSIDE_EXPORT(finder_find)
 broadside_status finder_find(WasmFinder* finder, const float* boxes, std::size_t count, const float* right,
                              std::size_t right_count, const Filter* filters, const Filter* right_filters,
-                             std::uint32_t mode, const double* within, const double* right_within) {
+                             std::uint32_t mode, const double* within, const double* right_within,
+                             const double* different) {
   return guarded([&] {
-    finder->find({boxes, count, right, right_count, filters, right_filters, mode, within, right_within});
+    finder->find(
+        {boxes, count, right, right_count, filters, right_filters, mode, within, right_within, different});
   });
 }
 

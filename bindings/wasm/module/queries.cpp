@@ -25,9 +25,9 @@ Point<dimension> point_at(std::size_t first) {
 }
 
 /// The moving box: `question` has its origin, the direction, t_max and half its extent.
-BoxCast<dimension> cast_at() {
+BoxCast<dimension> cast_at(bool entering) {
   return {Box<dimension>::around(point_at(0), point_at(2 * dimension + 1)), point_at(dimension),
-          question[2 * dimension]};
+          question[2 * dimension], entering};
 }
 
 class WasmIndex {
@@ -143,10 +143,11 @@ broadside_status query_nearest_of_each(WasmIndex* asked, const float* boxes, std
 
 /// Writes the parameter of the hit to `question`.
 BROADSIDE_EXPORT(query_first_hit)
-broadside_status query_first_hit(bool is_world, void* address, const Filter* filter, double except) {
+broadside_status query_first_hit(bool is_world, void* address, const Filter* filter, double except,
+                                 bool entering) {
   return asked(is_world, address, except,
                [&](const BoxIndex<dimension>& index, std::optional<BoxId> left_out) {
-                 if (const auto hit = index.first_hit(cast_at(), {filter, left_out})) {
+                 if (const auto hit = index.first_hit(cast_at(entering), {filter, left_out})) {
                    ids.push_back(hit->box);
                    question[0] = hit->t_enter;
                  }

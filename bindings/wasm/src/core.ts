@@ -18,7 +18,7 @@ export interface Exports {
   finder_free(finder: number): void;
   finder_find(
     finder: number, boxes: number, count: number, right: number, rightCount: number, filters: number,
-    rightFilters: number, mode: number, within: number, rightWithin: number,
+    rightFilters: number, mode: number, within: number, rightWithin: number, different: number,
   ): number;
   tracker_make(spec: number, size: number, touching: boolean): number;
   tracker_free(tracker: number): void;

@@ -1,6 +1,6 @@
 // All pairs of boxes of one dimension: by finders that stay in the module, one for each algorithm, so that calls ask for no memory.
 import type {
-  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, Keys, NeighbourLists, NeighboursOptions,
+  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, NeighbourLists, NeighboursOptions,
   PairsOptions,
 } from "../types/types.d.ts";
 import { type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putDoubles, putFilters } from "./boxes.ts";
@@ -154,24 +154,25 @@ export class Pairs {
   #search(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): void {
     const core = this.#core;
     let { filters, rightFilters } = options;
+    let different = noNumbers;
     const count = countOf(core, boxes, right === undefined ? "boxes" : "left");
     const rightCount = right === undefined ? 0 : countOf(core, right, "right");
     if (options.same !== undefined || options.different !== undefined || options.rightSame !== undefined ||
         options.rightDifferent !== undefined)
-      [filters, rightFilters] = filtersOfKeys(options, count, right === undefined ? undefined : rightCount);
+      [filters, rightFilters, different] = filtersOfKeys(options, count, right === undefined ? undefined : rightCount);
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
     const [reach, within, rightWithin] = periodicReachOf(options, core.dimension, count, right === undefined ? undefined : rightCount);
     const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
     core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
       (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)) +
-      8 * (within.length + rightWithin.length));
+      8 * (within.length + rightWithin.length + different.length));
     const at = put(core, boxes);
     const rightAt = right === undefined ? 0 : put(core, right);
     core.check(core.exports.finder_find(finder, at, count, rightAt, rightCount,
       putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount),
       reach | (options.touching === false ? mode | Mode.leavesOutTouching : mode), putDoubles(core, within),
-      putDoubles(core, rightWithin)));
+      putDoubles(core, rightWithin), putDoubles(core, different)));
   }
 
   #finder(algorithm: string): number {
@@ -192,32 +193,48 @@ export class Pairs {
   }
 }
 
-/** Filters by which only boxes with the same key pair, or only boxes with different ones: each key is a group. */
-function filtersOfKeys(options: JoinOptions, count: number, rightCount: number | undefined): [Filters, Filters?] {
+type KeysOption = "same" | "different" | "rightSame" | "rightDifferent";
+
+/** A number from 1 on for each box's key, the same for equal ones. `numbers` has those so far. */
+function numbersOfKeys(
+  options: JoinOptions, name: KeysOption, boxes: number, numbers: Map<number | string, number>,
+): number[] {
+  const keys = options[name];
+  if (keys === undefined || countIn(keys, 1, name) !== boxes)
+    refuse(`the length of ${name}`, keys?.length, `${boxes}, one for each box`);
+  return Array.from(keys, (key, i) => {
+    if (typeof key !== "string" && !Number.isInteger(key)) refuse(`${name}[${i}]`, key, "a whole number or a text");
+    let number = numbers.get(key);
+    if (number === undefined) numbers.set(key, number = numbers.size + 1);
+    return number;
+  });
+}
+
+/**
+ * Filters by which only boxes with the same key pair, or only boxes with different ones: each key is a group. With both
+ * kinds of keys, those are of the same ones, and the numbers of the different ones of both sets follow.
+ */
+function filtersOfKeys(
+  options: JoinOptions, count: number, rightCount: number | undefined,
+): [Filters, Filters | undefined, ArrayLike<number>] {
   const isSame = options.same !== undefined || options.rightSame !== undefined;
-  if (isSame && (options.different !== undefined || options.rightDifferent !== undefined))
-    refuse("different", options.different ?? options.rightDifferent, "nothing, as same is given");
+  const isDifferent = options.different !== undefined || options.rightDifferent !== undefined;
   const numbers = new Map<number | string, number>();
-  const made = (keys: Keys | undefined, given: Filters | undefined, boxes: number, isRight: boolean): Filters => {
-    const name = isRight ? isSame ? "rightSame" : "rightDifferent" : isSame ? "same" : "different";
-    if (given !== undefined) refuse(isRight ? "rightFilters" : "filters", given, `nothing, as ${name} is given`);
-    if (keys === undefined || countIn(keys, 1, name) !== boxes)
-      refuse(`the length of ${name}`, keys?.length, `${boxes}, one for each box`);
-    const group = new Int32Array(boxes);
-    for (let i = 0; i < boxes; ++i) {
-      const key = keys[i] as number | string;
-      if (typeof key !== "string" && !Number.isInteger(key)) refuse(`${name}[${i}]`, key, "a whole number or a text");
-      let number = numbers.get(key);
-      if (number === undefined) numbers.set(key, number = numbers.size + 1);
-      group[i] = isSame ? number : -number;
-    }
-    if (!isSame) return { group };
+  const made = (name: KeysOption, filters: "filters" | "rightFilters", boxes: number): Filters => {
+    if (options[filters] !== undefined) refuse(filters, options[filters], `nothing, as ${name} is given`);
+    const group = numbersOfKeys(options, name, boxes, numbers);
+    if (!isSame) return { group: group.map((number) => -number) };
     const none = new Uint32Array(boxes);
     return { category: none, mask: none, group };
   };
-  const filters = made(isSame ? options.same : options.different, options.filters, count, false);
-  if (rightCount === undefined) return [filters];
-  return [filters, made(isSame ? options.rightSame : options.rightDifferent, options.rightFilters, rightCount, true)];
+  const filters = made(isSame ? "same" : "different", "filters", count);
+  const right = rightCount === undefined ? undefined :
+    made(isSame ? "rightSame" : "rightDifferent", "rightFilters", rightCount);
+  if (!(isSame && isDifferent)) return [filters, right, noNumbers];
+  const ofDifferent = new Map<number | string, number>();
+  const different = numbersOfKeys(options, "different", count, ofDifferent);
+  if (rightCount === undefined) return [filters, right, different];
+  return [filters, right, [...different, ...numbersOfKeys(options, "rightDifferent", rightCount, ofDifferent)]];
 }
 
 type Reach = readonly [mode: number, within: ArrayLike<number>, rightWithin: ArrayLike<number>];

@@ -5,7 +5,7 @@ import type {
 } from "../types/types.d.ts";
 import { type Given, bytesOfFilter, countIn, putFilter } from "./boxes.ts";
 import type { Core, Cores, Exports } from "./core.ts";
-import { asksForView, checkOptions, refuse } from "./error.ts";
+import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
 import { frameOptions, idsOf, putFrame } from "./tracker.ts";
 import { KeptWorld, handlesOf } from "./world.ts";
@@ -25,13 +25,13 @@ export interface QueryExports extends Exports {
     index: number, boxes: number, count: number, except: number, exceptCount: number, filters: number, k: number,
     maxDistance: number,
   ): number;
-  query_first_hit(isWorld: number, asked: number, filter: number, except: number): number;
+  query_first_hit(isWorld: number, asked: number, filter: number, except: number, entering: number): number;
 }
 
 const queryOptions = ["filter", "except"];
 const foundOptions = [...queryOptions, "view"];
 const nearestOptions = [...foundOptions, "maxDistance"];
-const rayOptions = [...queryOptions, "tMax", "halfExtent"];
+const rayOptions = [...queryOptions, "tMax", "halfExtent", "entering"];
 const nothing = -1;  // the `except` of a query that leaves none out
 
 function checkK(k: unknown, least: number): void {
@@ -108,8 +108,9 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
 
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options: RayOptions = {}): Hit | undefined {
     const address = this.#address();
-    const { tMax = Infinity, halfExtent } = options;
+    const { tMax = Infinity, halfExtent, entering = false } = options;
     if (typeof tMax !== "number") refuse("tMax", tMax, "a number");
+    checkSwitch("entering", entering);
     const { filter, except } = this.#options(options, rayOptions);
     const dimension = this.#dimension;
     let at = this.#ask(0, origin, dimension, "origin");
@@ -117,7 +118,7 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
     const core = this.#core;
     core.f32[core.question + at++] = tMax;
     this.#ask(at, halfExtent ?? new Float32Array(dimension), dimension, "halfExtent");
-    core.check(this.#exports.query_first_hit(this.#isWorld, address, filter, except));
+    core.check(this.#exports.query_first_hit(this.#isWorld, address, filter, except, entering ? 1 : 0));
     const found = this.#found(true);
     return found.length === 0 ? undefined : { id: found[0] as number, t: core.f32[core.question] as number };
   }

@@ -46,7 +46,7 @@ export interface CountOptions {
   readonly filters?: Filters;
   /** Only boxes with the same key pair. Instead of filters. */
   readonly same?: Keys;
-  /** Only boxes with different keys pair. Instead of filters. */
+  /** Only boxes with different keys pair. Instead of filters. With `same` as well, both must hold. */
   readonly different?: Keys;
   /**
    * Whether boxes that only touch overlap: true by default. If false, boxes are half-open (min <= p < max), except
@@ -232,6 +232,8 @@ export interface RayOptions extends QueryOptions {
   readonly tMax?: number;
   /** Half the extent, on each axis, of a box that is moved instead of the point. */
   readonly halfExtent?: ArrayLike<number>;
+  /** Whether to leave out boxes that the ray, or the moving box, is in or rests on at its start and does not enter. */
+  readonly entering?: boolean;
 }
 
 /** A box that a ray hits, at `origin + t * direction`. */

@@ -96,10 +96,13 @@ class BvhIndex {
 
   std::optional<Real> t_enter_of(const BoxCast<D, Real>& cast, const kernels::FoundBoxes& found,
                                  std::size_t i) const {
-    if constexpr (is_float<Real>)
+    if constexpr (is_float<Real>) {
+      const BoxId id{found.ids[i]};
+      if (cast.entering && !enters(cast, exact(tree_.slot(id), id))) return std::nullopt;
       return found.t_enter[i];
-    else
+    } else {
       return t_enter(cast, exact_[found.ids[i]]);
+    }
   }
 
  private:

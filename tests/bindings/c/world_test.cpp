@@ -116,6 +116,25 @@ TEST_F(CWorld, AnswersQueriesAsTheClassBehindIt) {
       EXPECT_EQ(hit.t_enter, first->t_enter);
     }
 
+    const BoxCast<2> cast{.box = asked, .direction = direction, .entering = true};
+    const auto entered = model.first_hit(cast);
+    std::size_t entered_count = 0;
+    model.hits(cast, [&](Handle, float) { ++entered_count; });
+    std::vector<broadside_hit> hits(200);
+    ASSERT_EQ(broadside_world_entered(world_, &asked, &direction, std::numeric_limits<double>::infinity(),
+                                      nullptr, hits.data(), hits.size(), &count, &error_),
+              BROADSIDE_OK);
+    EXPECT_EQ(count, entered_count);
+    ASSERT_EQ(
+        broadside_world_first_entered(world_, &asked, &direction, std::numeric_limits<double>::infinity(),
+                                      nullptr, &hit, &is_found, &error_),
+        BROADSIDE_OK);
+    ASSERT_EQ(is_found != 0, entered.has_value());
+    if (entered) {
+      EXPECT_EQ(handle_of(hit.handle), entered->handle);
+      EXPECT_EQ(hit.t_enter, entered->t_enter);
+    }
+
     const auto near_box = model.nearest(asked, 2);
     broadside_neighbour to_box[2];
     ASSERT_EQ(broadside_world_nearest_to_box(world_, &asked, std::numeric_limits<double>::infinity(), nullptr,

@@ -92,6 +92,22 @@ def test_finds_what_rays_hit(data):
         assert first_of_world.box[i] == (handles[met[0][1]] if met else 2**64 - 1)
 
 
+def test_leaves_out_boxes_that_a_ray_does_not_enter():
+    for dtype in (np.float32, np.float64):
+        index, world, handles = both(np.array([[0, 0, 2, 2], [4, 0, 6, 2]], dtype))
+        origins = [[1, 1], [2, 1], [2, 1], [1, 2], [0, 1], [0, 1]]  # inside, on the border out and in, along it ...
+        directions = [[1, 0], [1, 0], [-1, 0], [1, 0], [1, 0], [-1, 0]]
+        rays = (origins, directions)
+        expected = {(0, 1): 3, (1, 1): 2, (2, 0): 0, (3, 1): 3, (4, 0): 0, (4, 1): 4}
+        hits = index.hits(*rays, entering=True)
+        assert dict(zip(zip(hits.query.tolist(), hits.box.tolist()), hits.t.tolist())) == expected
+        assert found(world.hits(*rays, entering=True)) == {(query, int(handles[box])) for query, box in expected}
+        assert index.first_hit(*rays, entering=True).box.tolist() == [1, 1, 0, 1, 0, 2**32 - 1]
+        first = world.first_hit(*rays, entering=True)
+        assert first.t.tolist() == [3, 2, 0, 3, 0, np.inf] and first.box[0] == handles[1]
+        assert len(index.hits(*rays).box) > len(hits.box)
+
+
 @given(data=st.data(), k=st.integers(1, 50))
 def test_finds_the_nearest(data, k):
     boxes = present(data.draw(box_arrays()))

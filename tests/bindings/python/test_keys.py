@@ -28,6 +28,22 @@ def test_only_the_same_or_only_different_keys_pair(keys):
     assert broadside.count(BOXES, same=keys) == len(equal)
 
 
+def test_keys_of_both_kinds_must_hold():
+    images = KEYS["integers"]
+    for name in ("strings", "far apart", "all"):
+        classes = KEYS[name]
+        expected = {(a, b) for a, b in brute_force(BOXES) if images[a] == images[b] and classes[a] != classes[b]}
+        assert as_set(broadside.pairs(BOXES, same=images, different=classes)) == expected
+        assert broadside.count(BOXES, same=images, different=classes) == len(expected)
+        of_each = broadside.components(BOXES, same=images, different=classes)
+        assert all(of_each[a] == of_each[b] for a, b in expected)
+        between = {(a, b - 150) for a, b in expected if a < 150 <= b}
+        both = {"same": (images[:150], images[150:]), "different": (classes[:150], classes[150:])}
+        assert as_set(broadside.pairs(BOXES[:150], BOXES[150:], **both)) == between
+    with pytest.raises(ValueError, match="filters with categories or masks are given with same"):
+        broadside.pairs(BOXES, same=images, different=images, filters=broadside.filters(400, mask=2))
+
+
 def test_a_key_means_the_same_in_two_sets():
     left, right = BOXES[:250], BOXES[250:]
     for keys in KEYS.values():
@@ -80,7 +96,7 @@ def test_filters_are_applied_as_well_or_refused():
     ("arguments", "error", "message"),
     [
         ({"same": [1, 2, 3]}, ValueError, "same has 3 keys for 400 boxes; expected one for each box"),
-        ({"same": KEYS["all"], "different": KEYS["all"]}, ValueError, "same and different are both given"),
+        ({"same": KEYS["all"], "different": KEYS["all"][:3]}, ValueError, "different has 3 keys for 400 boxes"),
         ({"same": [np.nan] * 400}, ValueError, "same has no key in row 0"),
         ({"same": [0.5] * 400}, TypeError, "same has dtype float64; expected integers, strings or categories"),
         ({"same": [[1]] * 400}, ValueError, r"same has shape \(400, 1\)"),

@@ -200,7 +200,7 @@ test("memory that runs out within a call", async () => {
   assert.equal(core.finder_make(boxes, new TextEncoder().encodeInto("grid", new Uint8Array(memory.buffer, boxes)).written), 0);
   const finder = reply()[0] as number;
   new Float32Array(memory.buffer, boxes, 4 * count).fill(1);
-  const find = () => core.finder_find(finder, boxes, count, 0, 0, 0, 0, 0, 0, 0);
+  const find = () => core.finder_find(finder, boxes, count, 0, 0, 0, 0, 0, 0, 0, 0);
   const taken: number[] = [];
   for (let bytes = 2 ** 31; bytes >= 1; bytes /= 2) {
     for (let address; (address = core.reserve(bytes)) !== 0;) taken.push(address);

@@ -166,6 +166,10 @@ test("only boxes with the same key pair, or only boxes with different ones", () 
           assert.deepEqual([...broadside.pairs(boxes, { same: keys, sorted: true })], expected(true));
           assert.deepEqual([...broadside.pairs(boxes, { different: keys, sorted: true })], expected(false));
           assert.equal(broadside.count(boxes, { same: keys }), expected(true).length / 2);
+          const classes = Array.from({ length: count }, (_, i) => i % 3);
+          const both = all.filter((_, i) => keys[all[i - i % 2]!] === keys[all[i - i % 2 + 1]!] &&
+            classes[all[i - i % 2]!] !== classes[all[i - i % 2 + 1]!]);
+          assert.deepEqual([...broadside.pairs(boxes, { same: keys, different: classes, sorted: true })], both);
         }
       }
     }
@@ -176,6 +180,8 @@ test("a key means the same in two sets", () => {
   const left = [0, 0, 1, 1, 0, 0, 1, 1], right = [1, 1, 2, 2];
   assert.deepEqual([...broadside.join(left, right, { same: ["a", "b"], rightSame: ["b"] })], [1, 0]);
   assert.equal(broadside.countJoin(left, right, { different: ["a", "b"], rightDifferent: ["b"] }), 1);
+  const both = { same: [1, 1], rightSame: [1], different: ["a", "b"], rightDifferent: ["b"] };
+  assert.deepEqual([...broadside.join(left, right, both)], [0, 0]);
 });
 
 test("refuses keys that it cannot use", () => {
@@ -185,7 +191,7 @@ test("refuses keys that it cannot use", () => {
   refused({ same: [1] }, /the length of same is 1; expected 2, one for each box/);
   refused({ same: [1, NaN] }, /same\[1\] is NaN; expected a whole number or a text/);
   refused({ different: [1, undefined] }, /different\[1\] is undefined/);
-  refused({ same: [1, 2], different: [1, 2] }, /different is Array; expected nothing, as same is given/);
+  refused({ same: [1, 2], different: [1] }, /the length of different is 1; expected 2, one for each box/);
   refused({ same: [1, 2], filters: {} }, /filters is Object; expected nothing, as same is given/);
   assert.throws(() => broadside.join(boxes, boxes, { same: [1, 2] }), /the length of rightSame is undefined/);
 });

@@ -100,6 +100,11 @@ test("options of queries", async () => {
   assert.equal(index.firstHit([-1, 0], [1, 0], { tMax: 0.5 }), undefined);
   assert.deepEqual(index.firstHit([-1, 0], [1, 0], { except: 0 }), { id: 1, t: 3 });
   assert.deepEqual(index.firstHit([-1, 1.5], [1, 0], { halfExtent: [0.5, 0.5] }), { id: 0, t: 0.5 });
+  assert.deepEqual(index.firstHit([-1, 1.5], [1, 0], { halfExtent: [1, 0.5] }), { id: 0, t: 0 });
+  assert.deepEqual(index.firstHit([-1, 1.5], [1, 0], { halfExtent: [1, 0.5], entering: true }), { id: 0, t: 0 });
+  assert.equal(index.firstHit([-1, 1.5], [-1, 0], { halfExtent: [1, 0.5], entering: true }), undefined);
+  assert.throws(() => index.firstHit([0, 0], [1, 0], { entering: 1 } as object),
+    { code: "INVALID_ARGUMENT", message: "entering is 1; expected true or false" });
   index.update([9, 9, 9, 9]);
   assert.deepEqual([...index.overlapping(all)], [0]);
   index.update([8, 8, 8, 8, 7, 7, 7, 7], { changed: [0] });

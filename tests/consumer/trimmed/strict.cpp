@@ -25,6 +25,12 @@ std::size_t pairs_of_other_questions(const std::vector<Box2>& boxes) {
       find_pairs_within(boxes, Reach(2).periodic({8.0, 8.0}), {.algorithm = "grid"});
   std::size_t found = distances(boxes, near).size() + nearest_pairs(boxes, 1).boxes.size();
   found += neighbours(near, boxes.size(), NeighbourLists::full).ids.size();
+  const std::vector<Pair> met = find_pairs_moving(boxes, boxes, {.algorithm = "grid"});
+  found += overlap_times(boxes, boxes, met).size();
+  PairCounter counter;
+  const std::vector<int> keys(boxes.size());
+  auto different = only_different(keys, keys, counter);
+  find_pairs(boxes, different, {.algorithm = "grid"});
   const std::vector<std::uint64_t> owners(boxes.size());
   OwnerPairs bodies;
   found += bodies.update(near, {}, owners).begun.size();

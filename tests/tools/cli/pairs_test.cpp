@@ -57,11 +57,11 @@ TEST(PairsVerb, WritesAnArrayIntoAPipe) {
 }
 
 const std::string keyed_boxes =
-    "name,image,min_x,min_y,max_x,max_y\n"
-    "a,left,0,0,2,2\n"
-    "b,right,1,1,3,3\n"
-    "c,left,2,2,4,4\n"
-    "d,right,9,9,9,9\n";
+    "name,image,class,min_x,min_y,max_x,max_y\n"
+    "a,left,cat,0,0,2,2\n"
+    "b,right,cat,1,1,3,3\n"
+    "c,left,dog,2,2,4,4\n"
+    "d,right,dog,9,9,9,9\n";
 
 TEST(PairsVerb, FindsOnlyPairsOfTheSameOrOfDifferentKeys) {
   const TemporaryFolder folder;
@@ -71,6 +71,12 @@ TEST(PairsVerb, FindsOnlyPairsOfTheSameOrOfDifferentKeys) {
   EXPECT_EQ(run({"pairs", file, file, "--same", "image", "--count"}).output, "6\n");
   EXPECT_EQ(run({"pairs", file, "--same", "image", "--within", "6", "--count"}).output, "2\n");
   EXPECT_EQ(shell("cat " + file + " | $BROADSIDE pairs - --same image --count").output, "1\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "image", "--different", "class"}).output, "first,second\n0,2\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "class", "--different", "image", "--ids", "name"}).output,
+            "first,second\na,b\n");
+  EXPECT_EQ(run({"pairs", file, file, "--same", "image", "--different", "class", "--count"}).output, "2\n");
+  EXPECT_EQ(run({"pairs", file, "--same", "image", "--different", "name", "--components"}).output,
+            "box,component\n0,0\n1,1\n2,0\n3,3\n");
 }
 
 TEST(PairsVerb, WritesTheComponentOfEachBox) {
@@ -87,14 +93,16 @@ TEST(PairsVerb, RefusesKeysAndComponentsThatItCannotUse) {
   const TemporaryFolder folder;
   const std::string file = folder.put("boxes.csv", keyed_boxes);
   const std::string no_key = folder.put("no.csv", "image,min_x,min_y,max_x,max_y\na,0,0,1,1\n,1,1,2,2\n");
-  expect_refused("pairs", {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
-                           {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
-                           {{no_key, "--same", "image"},
-                            {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
-                           {{file, "--different", ""}, {"--different is ''"}},
-                           {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
-                           {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
-                           {{file, "--components", "--count"}, {"--components", "--count"}}});
+  expect_refused(
+      "pairs",
+      {{{file, "--same", "image", "--different", "image"}, {"--same", "--different"}},
+       {{file, "--same", "imag"}, {"no column 'imag'", "image"}},
+       {{no_key, "--same", "image"}, {"no.csv: box 1 has no 'image'", "expected a key for each box"}},
+       {{file, "--different", ""}, {"--different is ''"}},
+       {{"-", "--same", "image", "--ids", "name"}, {"--same and --ids with '-'"}},
+       {{"-", "--same", "image", "--different", "class"}, {"--different with '-'", "only once"}},
+       {{file, file, "--components"}, {"--components with 2 files", "expected one"}},
+       {{file, "--components", "--count"}, {"--components", "--count"}}});
 }
 
 std::string many_boxes(int count) {
@@ -350,7 +358,7 @@ TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
   EXPECT_THAT(run({"pairs", file, "--period", "360,-"}).errors, HasSubstr("1 pair with period 360,-"));
   const std::string across = folder.put("across.csv", "xmin,ymin,xmax,ymax\n170,0,-170,1\n");
   expect_refused("pairs", {
-                              {{across}, {"min (170, 0) and max (-170, 1)", "add 360 to the maximum"}},
+                              {{across}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
                               {{file, "--period", "0,1"}, {"--period is '0,1'", "a number above 0"}},
                               {{file, "--period", "1,"}, {"--period is '1,'"}},
                               {{file, "--period", "360"}, {"1 period for boxes of 2 dimensions"}},
@@ -359,6 +367,30 @@ TEST(PairsVerb, PairsAroundTheEdgeIfSpaceRepeats) {
                               {{file, "--period", "1,1", "--algorithm", "karras_lbvh"},
                                {"--algorithm is 'karras_lbvh' with --period", "the library's own"}},
                           });
+}
+
+TEST(PairsVerb, TakesRowsFromEastToWestAsAcrossTheDateLine) {
+  const TemporaryFolder folder;
+  const std::string rows = "170,0,-170,1\n-175,0,-174,1\n179,1,180,2\n-180,2,-179,3\n0,0,1,1\n";
+  const std::string plain = folder.put("plain.csv", "west,south,east,north\n" + rows);
+  const std::string expected = "first,second\n0,1\n0,2\n2,3\n";
+  EXPECT_EQ(run({"pairs", plain, "--longitude"}).output, expected);
+  EXPECT_EQ(run({"pairs", plain, plain, "--longitude", "--count"}).output, "11\n");
+  const std::string named = folder.put("named.csv", "min_lon,min_lat,max_lon,max_lat\n" + rows);
+  const Ended ended = run({"pairs", named});
+  EXPECT_EQ(ended.output, expected);
+  EXPECT_THAT(ended.errors, HasSubstr("named.csv: 1 box is across the date line, so longitude repeats"));
+  EXPECT_THAT(ended.errors, HasSubstr("3 pairs with period 360,-"));
+  const std::string none =
+      folder.put("none.csv", "min_lon,min_lat,max_lon,max_lat\n179,0,180,1\n-180,0,-179,1\n");
+  EXPECT_EQ(run({"pairs", none, "--count"}).output, "0\n") << "no box is across";
+  EXPECT_EQ(run({"pairs", none, "--longitude", "--count"}).output, "1\n");
+  EXPECT_EQ(run({"pairs", named, "--within", "1", "--euclidean", "--count"}).output, "4\n");
+  expect_refused("pairs", {{{plain}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
+                           {{named, "--no-touching"}, {"min (170, 0) and max (-170, 1)"}},
+                           {{named, "--longitude", "--no-touching"}, {"--no-touching with --longitude"}},
+                           {{named, "--longitude", "--period", "360,-"}, {"--longitude with --period"}},
+                           {{named, "--longitude", "--within", "1"}, {"--longitude and --within without"}}});
 }
 
 TEST(PairsVerb, LeavesOutWhatOnlyTouches) {
@@ -507,6 +539,35 @@ TEST(PairsVerb, TakesAFrameOfAFileThatMoves) {
   const Ended beyond = run({"pairs", "--count", file, "--frame", "2"});
   EXPECT_EQ(beyond.status, 2);
   EXPECT_THAT(beyond.errors, HasSubstr("--frame is 2; expected 0 to 1, as the file has 2 frames"));
+}
+
+TEST(PairsVerb, TakesAllFramesOfAFileThatMoves) {
+  const TemporaryFolder folder;
+  const std::string file = folder.put("boxes.csv",
+                                      "frame,box,min_x,min_y,max_x,max_y\n"
+                                      "0,0,0,0,1,1\n"
+                                      "0,1,5,5,6,6\n"
+                                      "0,2,6,6,7,7\n"
+                                      "1,0,4,4,8,8\n"
+                                      "2,,,,,\n"
+                                      "3,1,,,,\n");
+  const std::string expected = "frame,first,second\n0,1,2\n1,0,1\n1,0,2\n1,1,2\n2,0,1\n2,0,2\n2,1,2\n3,0,2\n";
+  const Ended all = run({"pairs", file, "--frame", "all"});
+  EXPECT_EQ(all.output, expected);
+  EXPECT_THAT(all.errors,
+              HasSubstr("(12 boxes in 4 frames, 1 of them absent) in 2D: 8 pairs, exact in double"));
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--count"}).output, "8\n");
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--no-touching", "--count"}).output, "5\n");
+  EXPECT_EQ(run({"pairs", file, "--frame", "all", "--precision", "float", "--algorithm", "grid"}).output,
+            expected);
+  ASSERT_EQ(run({"pairs", file, "--frame", "all", "-o", folder.file("pairs.npy")}).status, 0);
+  EXPECT_THAT(text_of(folder.file("pairs.npy")), HasSubstr("(8, 3)"));
+  expect_refused("pairs", {{{file, file, "--frame", "all"}, {"--frame all with 2 files", "expected one"}},
+                           {{file, "--frame", "all", "--within", "1"}, {"--frame", "--within"}},
+                           {{file, "--frame", "all", "--ids", "box"}, {"--frame", "--ids"}},
+                           {{file, "--frame", "all", "--algorithm", "karras_lbvh"},
+                            {"--algorithm is 'karras_lbvh' with --frame all", "the library's own"}},
+                           {{file, "--frame", "every"}, {"--frame is 'every'"}}});
 }
 
 /// Two triangles with an edge in common, and one far above them that comes down onto them later.

@@ -1,6 +1,7 @@
 // The list of file formats, and how to read and write files of boxes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -24,6 +25,14 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Which rows of a table with minimum > maximum on the first axis are boxes across the date line (from 170 to
+/// -170 degrees), whose maximum then becomes 360 more. Others are invalid.
+enum class DateLine : std::uint8_t {
+  none,
+  by_names,  ///< those whose columns have names of longitudes, in a table without frames
+  always     ///< all whose bounds are in [-180, 360]
+};
+
 /// Options of reading a file. The file and its format supply what is left empty.
 struct ReadOptions {
   std::string format{};    ///< the name of a format; empty: found from the file's content and name
@@ -39,6 +48,7 @@ struct ReadOptions {
   /// called for the first few. Otherwise a file with an invalid box is refused.
   std::function<void(std::string_view why)> say_invalid{};
   Progress progress{};
+  DateLine date_line = DateLine::none;
 };
 
 /// A kind of element that a file's boxes can be made of, such as "triangles".

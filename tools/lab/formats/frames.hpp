@@ -71,6 +71,7 @@ struct BoxLabels {
   bool has_ids = false;
   std::vector<std::string> ids{};     ///< the user's ids by place, for the frames read so far; any text
   std::vector<std::string> unread{};  ///< the names of a table's columns that are not read
+  std::size_t across_date_line = 0;   ///< boxes that were read as across it, of the frames read so far
 };
 
 /// Reads the frames of a file in sequence. Throws FileError (lab/formats/format.hpp) if the file is invalid,

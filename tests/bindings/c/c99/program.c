@@ -99,6 +99,37 @@ static void try_floats(void) {
   }
 
   {
+    /* In motion: box 1 leaves box 0 and meets box 2, which comes to touch box 0 at the end. */
+    const float ends[3][4] = {{0, 0, 1, 1}, {9, 9, 10, 10}, {1, 1, 2, 2}};
+    const broadside_boxes to = {BROADSIDE_FLOAT_2D, ends, 3, 0};
+    const broadside_boxes fewer = {BROADSIDE_FLOAT_2D, ends, 2, 0};
+    const broadside_pair which[3] = {{0, 1}, {0, 2}, {1, 2}};
+    broadside_overlap_time times[3];
+    broadside_find_options options;
+    broadside_tracker* tracker = NULL;
+    broadside_find_options_init(&options);
+    options.to = &to;
+    status = broadside_count_pairs(&boxes, NULL, &options, &count, &error);
+    expect(status == BROADSIDE_OK && count == 3, "moving", &error);
+    status = broadside_overlap_times(&boxes, &to, NULL, NULL, which, 3, times, &error);
+    expect(status == BROADSIDE_OK && times[0].leave == 0 && times[1].enter == 1 && times[2].enter == 0.25 &&
+               times[2].leave == 5 / 12.0,
+           "overlap times", &error);
+    status = broadside_overlap_times(&boxes, &to, &boxes, NULL, which, 3, times, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT, "overlap times of a set without ends", &error);
+    status = broadside_tracker_create(BROADSIDE_C_API_VERSION, BROADSIDE_FLOAT_2D, &options, &tracker, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT && strstr(error.message, "to or right_to") != NULL, "tracker", &error);
+    status = broadside_count_pairs(&boxes, &boxes, &options, &count, &error);
+    expect(status == BROADSIDE_INVALID_ARGUMENT && strstr(error.message, "right_to") != NULL, "one end", &error);
+    options.right_to = &to;
+    status = broadside_count_pairs(&boxes, &boxes, &options, &count, &error);
+    expect(status == BROADSIDE_OK && count == 9, "two moving sets", &error);
+    options.right_to = &fewer;
+    status = broadside_count_pairs(&boxes, &boxes, &options, &count, &error);
+    expect(status == BROADSIDE_INVALID_FRAME, "ends of another length", &error);
+  }
+
+  {
     /* Intervals that touch: closed, and then half-open. */
     const double starts[3] = {3000000000.0, 3000000001.0, INFINITY};
     const double ends[3] = {3000000001.0, 3000000002.0, -INFINITY};

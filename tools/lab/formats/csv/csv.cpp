@@ -95,8 +95,11 @@ class CsvOpener {
     std::string note = note_on_columns();
     if (!note.empty()) note = fmt::format("{}: {}", input_->name(), note);
     std::shared_ptr<BoxLabels> labels = find_labels();
+    const bool crosses = options_.date_line == DateLine::always ||
+                         (options_.date_line == DateLine::by_names && !columns_.has_frames &&
+                          is_longitude(BoxColumns::first) && is_longitude(BoxColumns::second));
     return read_csv({std::move(input_), lines_, separator_, std::move(columns_), std::move(labels),
-                     Quarantine(options_), std::move(others), std::move(note)});
+                     Quarantine(options_), std::move(others), std::move(note), crosses});
   }
 
  private:
@@ -224,6 +227,14 @@ class CsvOpener {
   std::size_t column_of(int place) const {
     return static_cast<std::size_t>(std::find(columns_.places.begin(), columns_.places.end(), place) -
                                     columns_.places.begin());
+  }
+
+  /// Whether the name of this place's column says that it is a longitude.
+  bool is_longitude(int place) const {
+    const std::size_t column = column_of(place);
+    if (column >= columns_.names.size()) return false;
+    const std::string name = plain(columns_.names[column]);
+    return name.find("lon") != std::string::npos || name.find("lng") != std::string::npos;
   }
 
   /// Looks for the first geometry, which determines the dimension, and for the first row that shows in which

@@ -79,9 +79,10 @@ void CsvRows::check_count() const {
 
 namespace {
 
-/// Whether only the first axis descends, as longitude does from east to west of the date line.
+/// Whether only the first axis descends, by degrees of longitude from east to west of the date line, or from
+/// 359 to 1.
 bool is_across_date_line(std::span<const double> min, std::span<const double> max) {
-  return min[0] > 0 && min[0] <= 180 && max[0] < 0 && max[0] >= -180 &&
+  return min[0] <= 360 && max[0] >= -180 && min[0] > max[0] && min[0] - max[0] <= 360 &&
          std::equal(min.begin() + 1, min.end(), max.begin() + 1, std::less_equal<>());
 }
 
@@ -97,16 +98,23 @@ DoubleBox3 CsvRows::checked_box() const {
   const auto axes = static_cast<std::size_t>(columns().dimension);
   const std::span min = std::span(row.box.min).first(axes);
   const std::span max = std::span(row.box.max).first(axes);
+  const bool is_across = !columns().is_computed() && is_across_date_line(min, max);
+  if (is_across && table_.crosses_date_line) {
+    ++table_.labels->across_date_line;
+    DoubleBox3 box = row.box;
+    box.max[0] += 360;
+    if (axes == 2) box.max[2] = box.max[0];
+    return box;
+  }
   const auto is_nan = [](double number) { return std::isnan(number); };
   if (std::any_of(min.begin(), min.end(), is_nan) || std::any_of(max.begin(), max.end(), is_nan))
     table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
   table_.lines.refuse(
       fmt::format("min ({}) and max ({})", fmt::join(min, ", "), fmt::join(max, ", ")),
-      fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}{}",
-                  columns().is_computed() ? "that is, sizes of 0 or more, " : "", other_ways(),
-                  is_across_date_line(min, max)
-                      ? "; add 360 to the maximum of a box across the date line, and see pairs --period"
-                      : ""));
+      fmt::format(
+          "min <= max on every axis, {}or no coordinates for an absent box{}{}",
+          columns().is_computed() ? "that is, sizes of 0 or more, " : "", other_ways(),
+          is_across && max[0] < 0 ? "; or --longitude of pairs, if the box is across the date line" : ""));
 }
 
 DoubleBox3 CsvRows::geometry_box() const {

@@ -28,6 +28,7 @@ struct CsvTable {
   Quarantine quarantine;
   std::vector<std::string> others{};  ///< alternative meanings of the columns, for other_ways()
   std::string note{};                 ///< how ambiguous columns were read; empty if no columns are ambiguous
+  bool crosses_date_line = false;     ///< whether rows may be boxes across the date line: see DateLine
 };
 
 /// The box made of a row's numbers.
