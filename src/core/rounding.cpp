@@ -32,11 +32,20 @@ constexpr std::size_t min_compared = 64;
 /// The offset of a sample.
 std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash_key(hash) >> 32); }
 
+/// The median; of five numbers without a branch on their order, which no predictor could know.
+double fitted_median(std::vector<double>& values) {
+  if (values.size() != min_fitted) return median(values);
+  const auto [a, b, c, d, e] = std::array{values[0], values[1], values[2], values[3], values[4]};
+  const double low = std::max(std::min(a, b), std::min(c, d));
+  const double high = std::min(std::max(a, b), std::max(c, d));
+  return std::max(std::min(low, high), std::min(std::max(low, high), e));
+}
+
 /// Fits one axis to the finite minima of some boxes.
 LinearRounding fit_axis(std::vector<double>& minima) {
-  const double origin = median(minima);
+  const double origin = fitted_median(minima);
   for (double& min : minima) min = std::min(std::abs(min - origin), largest_double);
-  double distance = median(minima);
+  double distance = fitted_median(minima);
   if (distance == 0 && !minima.empty()) distance = *std::max_element(minima.begin(), minima.end());
   return {origin, distance};
 }
