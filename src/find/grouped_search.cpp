@@ -38,22 +38,12 @@ bool is_lonely(const Filter& filter) {
   return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
 }
 
-/// accepts() without branches: whether boxes of a few groups pair cannot be predicted.
-bool accepts_unpredictably(const Filter& a, const Filter& b) {
-  const auto number = [](bool is_so) { return static_cast<std::uint32_t>(is_so); };
-  const std::uint32_t common = number(a.group == b.group) & number(a.group != 0);
-  const std::uint32_t by_group = common & number(a.group > 0);
-  const std::uint32_t by_bits =
-      (common ^ 1) & number((a.mask & b.category) != 0) & number((b.mask & a.category) != 0);
-  return ((by_group | by_bits) & ~(number(a.is_static) & number(b.is_static))) != 0;
-}
-
 /// Passes on the pairs that filters accept. `Filters` is indexed by the place of a box.
 template <typename Filters>
 struct PassAccepted {
   bool operator()(Pair pair, Pair& to) const {
     to = pair;
-    return accepts_unpredictably(filters[pair.first], filters[pair.second]);
+    return accepts(filters[pair.first], filters[pair.second]);
   }
 
   Filters filters;
