@@ -193,6 +193,9 @@ Box<D, Real> enlarged_outwards(const Box<D, Given>& box, double by) {
 /// the pairs of neighbours one after the other, and each looks up two boxes.
 constexpr std::size_t min_sorted_boxes = std::size_t{1} << 15;
 
+/// Boxes that are read, from anywhere in memory, before any is worked on: the reads then overlap.
+constexpr std::size_t gathered_at_once = 256;
+
 /// A set of boxes, in which some may be absent, and what is searched in their stead.
 template <int D, typename Real>
 struct Set {
@@ -223,9 +226,13 @@ struct Set {
     if (sorts && reach.has_radii()) core::renew(sorted_radii, count);
     const auto by = enlargements(reach);
     parallel.for_ranges(count, [&](core::Range range, std::size_t) {
+      std::array<Box<D, Real>, gathered_at_once> some;
       for (std::size_t i = range.begin; i < range.end; ++i) {
+        const std::size_t at = (i - range.begin) % gathered_at_once;
+        for (std::size_t k = 0; at == 0 && k < std::min(gathered_at_once, range.end - i); ++k)
+          some[k] = boxes[sorts ? order[i + k].place : i + k];
         const std::size_t place = sorts ? order[i].place : i;
-        const Box<D, Real> box = boxes[place];
+        const Box<D, Real>& box = some[at];
         enlarged[i] = enlarged_outwards<Real>(box, by(place));
         if (as_points) points[i] = box.min;
         if (!sorts) continue;
