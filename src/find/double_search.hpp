@@ -51,9 +51,9 @@ class DoubleSearch {
       if (!rounded.is_lossless) all_exact.store(false, std::memory_order_relaxed);
       hash.fetch_add(rounded.hash, std::memory_order_relaxed);
     });
-    is_exact_ = all_exact;
+    is_lossless_ = all_exact;
     if (!all_present) return false;
-    if (is_exact_ || boxes.size() <= few_boxes) return true;
+    if (is_lossless_ || boxes.size() <= few_boxes) return true;
     if (core::makes_false_pairs<D>(fit, boxes, left_count, hash)) {
       const std::array<core::QuantileRounding, D> quantiles = core::fit_quantiles<D>(boxes, hash);
       parallel_.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
@@ -65,15 +65,16 @@ class DoubleSearch {
   }
 
   /// Returns search_floats(input, sink), which works as Searcher::search() does. round() has rounded the
-  /// boxes, with the same arguments.
+  /// boxes, with the same arguments. Unless `is_exact`, pairs that overlap only as floats are written too.
   template <typename SearchFloats>
   std::optional<Statistics> search(std::span<const Box<D, double>> boxes, std::size_t left_count,
-                                   Successor<D>* successor, const Workers& workers, PairSink& pairs,
-                                   const SearchFloats& search_floats) {
+                                   Successor<D>* successor, const Workers& workers, bool is_exact,
+                                   PairSink& pairs, const SearchFloats& search_floats) {
+    const bool needs_doubles = is_exact && !is_lossless_;
     const bool in_kernels = tests_doubles_ && boxes.size() <= kernels::touching_bit;
-    const Box<D, double>* const doubles = in_kernels && !is_exact_ ? boxes.data() : nullptr;
+    const Box<D, double>* const doubles = in_kernels && needs_doubles ? boxes.data() : nullptr;
     const SearchInput<D> input{floats_, left_count, doubles, successor, workers};
-    if (is_exact_ || in_kernels) return search_floats(input, pairs);
+    if (!needs_doubles || in_kernels) return search_floats(input, pairs);
     return core::search_through(ExactSink(boxes, pairs),
                                 [&](PairSink& exact) { return search_floats(input, exact); });
   }
@@ -135,7 +136,7 @@ class DoubleSearch {
   bool tests_doubles_;
   core::Parallel parallel_;
   core::LargeArray<Box<D>> floats_;
-  bool is_exact_ = false;  // whether all coordinates that differ as doubles also differ in floats_
+  bool is_lossless_ = false;  // whether all coordinates that differ as doubles also differ in floats_
 };
 
 }  // namespace broadside::find

@@ -211,7 +211,8 @@ std::optional<Statistics> Search<D, Real>::search_present(std::span<const Box<D,
     return search_floats({boxes, left_count, nullptr, options.successor, options.workers}, pairs);
   } else {
     if (!options.are_rounded) doubles_.round(boxes, left_count, options.workers);
-    return doubles_.search(boxes, left_count, options.successor, options.workers, pairs, search_floats);
+    return doubles_.search(boxes, left_count, options.successor, options.workers, options.is_exact, pairs,
+                           search_floats);
   }
 }
 

@@ -43,6 +43,9 @@ struct SearchOptions {
   std::optional<std::size_t> absent{};
 
   bool are_rounded = false;  ///< whether Search::round() returned true for the boxes
+
+  /// If false, pairs of boxes of doubles that overlap only when rounded to floats are written too.
+  bool is_exact = true;
 };
 
 /// Finds pairs of boxes, some of which may be absent. Boxes that are not present form no pairs. There is one

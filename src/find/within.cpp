@@ -69,6 +69,12 @@ bool are_within(const Box<D, Real>& a, const Box<D, Real>& b, double distance) {
   return scaled_square(a, b, exponent) <= limit * limit;
 }
 
+template <std::size_t D, typename Real>
+bool are_within(const std::array<Real, D>& a, const std::array<Real, D>& b, double distance) {
+  using PointBox = Box<static_cast<int>(D), Real>;
+  return are_within(PointBox{a, a}, PointBox{b, b}, distance);
+}
+
 template <int D, typename Real>
 double distance_of(const Box<D, Real>& a, const Box<D, Real>& b) {
   const double greatest = greatest_gap(a, b);
@@ -93,13 +99,12 @@ struct SumOfRadii {
   const double* right;
 };
 
-/// Passes on the pairs of boxes within limit(pair) of each other, in the same order, under their `ids` unless
-/// these are null.
-template <int D, typename Real, typename Limit>
+/// Passes on the pairs of shapes, which are boxes or points, within limit(pair) of each other, in the same
+/// order, under their `ids` unless these are null.
+template <typename Shape, typename Limit>
 class WithinSink final : public core::FilterSink {
  public:
-  WithinSink(const Box<D, Real>* left, const Box<D, Real>* right, const BoxId* ids, Limit limit,
-             PairSink& target)
+  WithinSink(const Shape* left, const Shape* right, const BoxId* ids, Limit limit, PairSink& target)
       : FilterSink(target), left_(left), right_(right), ids_(ids), limit_(limit) {}
 
   std::unique_ptr<FilterSink> onto(PairSink& target) const override {
@@ -137,8 +142,8 @@ class WithinSink final : public core::FilterSink {
     return {BoxId{a ^ swap}, BoxId{b ^ swap}};
   }
 
-  const Box<D, Real>* left_;
-  const Box<D, Real>* right_;
+  const Shape* left_;
+  const Shape* right_;
   const BoxId* ids_;
   Limit limit_;
 };
@@ -188,37 +193,57 @@ Box<D, Real> enlarged_outwards(const Box<D, Given>& box, double by) {
 /// the pairs of neighbours one after the other, and each looks up two boxes.
 constexpr std::size_t min_sorted_boxes = std::size_t{1} << 15;
 
+/// Boxes that are read, from anywhere in memory, before any is worked on: the reads then overlap.
+constexpr std::size_t gathered_at_once = 256;
+
 /// A set of boxes, in which some may be absent, and what is searched in their stead.
 template <int D, typename Real>
 struct Set {
   Set(BoxView<D, Real> view, std::vector<Box<D, Real>>& gathered, std::span<const double> set_radii)
       : boxes(find::array_of(view, gathered)), radii(set_radii) {}
 
-  /// Sorts the boxes by place. None may be absent.
-  void sort(bool has_radii, core::Parallel& parallel) {
-    find::SpatialOrder<D, Real> curve;
-    const std::span<const core::KeyedPlace> order = curve.sort(boxes, parallel);
-    core::renew(sorted, boxes.size());
-    core::renew(ids, boxes.size());
-    if (has_radii) core::renew(sorted_radii, boxes.size());
-    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        sorted[i] = boxes[order[i].place];
-        ids[i] = BoxId{order[i].place};
-        if (has_radii) sorted_radii[i] = radii[order[i].place];
-      }
+  /// Whether all boxes are finite points.
+  bool are_points() const {
+    return std::all_of(boxes.begin(), boxes.end(), [](const Box<D, Real>& box) {
+      bool is_point = true;
+      for (std::size_t axis = 0; axis < D; ++axis)
+        is_point &= box.min[axis] == box.max[axis] && std::isfinite(box.min[axis]);
+      return is_point;
     });
-    boxes = sorted;
-    radii = sorted_radii;
   }
 
-  void enlarge(const Reach& reach, core::Parallel& parallel) {
-    core::renew(enlarged, boxes.size());
+  /// Makes `enlarged`, and `points` if the boxes are finite points. If `sorts`, all of these, `boxes` and
+  /// `radii` are by place in space, and no box may be absent.
+  void prepare(const Reach& reach, bool as_points, bool sorts, core::Parallel& parallel) {
+    find::SpatialOrder<D, Real> curve;
+    std::span<const core::KeyedPlace> order;
+    if (sorts) order = curve.sort(boxes, parallel);
+    const std::size_t count = boxes.size();
+    core::renew(enlarged, count);
+    if (as_points) core::renew(points, count);
+    if (sorts) core::renew(ids, count);
+    if (sorts && !as_points) core::renew(sorted, count);
+    if (sorts && reach.has_radii()) core::renew(sorted_radii, count);
     const auto by = enlargements(reach);
-    parallel.for_ranges(boxes.size(), [&](core::Range range, std::size_t) {
-      for (std::size_t i = range.begin; i < range.end; ++i)
-        enlarged[i] = enlarged_outwards<Real>(boxes[i], by(i));
+    parallel.for_ranges(count, [&](core::Range range, std::size_t) {
+      std::array<Box<D, Real>, gathered_at_once> some;
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const std::size_t at = (i - range.begin) % gathered_at_once;
+        for (std::size_t k = 0; at == 0 && k < std::min(gathered_at_once, range.end - i); ++k)
+          some[k] = boxes[sorts ? order[i + k].place : i + k];
+        const std::size_t place = sorts ? order[i].place : i;
+        const Box<D, Real>& box = some[at];
+        enlarged[i] = enlarged_outwards<Real>(box, by(place));
+        if (as_points) points[i] = box.min;
+        if (!sorts) continue;
+        ids[i] = BoxId(place);
+        if (!as_points) sorted[i] = box;
+        if (reach.has_radii()) sorted_radii[i] = radii[place];
+      }
     });
+    if (!sorts) return;
+    boxes = sorted;
+    radii = sorted_radii;
   }
 
   /// How far each box is enlarged.
@@ -230,6 +255,7 @@ struct Set {
   std::span<const Box<D, Real>> boxes;
   std::span<const double> radii;
   core::LargeArray<Box<D, Real>> enlarged{};
+  core::LargeArray<Point<D, Real>> points{};
   core::LargeArray<Box<D, Real>> sorted{};
   core::LargeArray<double> sorted_radii{};
   core::LargeArray<BoxId> ids{};  // of sorted boxes
@@ -369,22 +395,27 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
   const bool sorts = !is_periodic && !is_between && absent_left == 0 &&
                      left.boxes.size() >= min_sorted_boxes && filters.filters.empty() &&
                      (filters.ignored == nullptr || filters.ignored->empty());
-  if (sorts) left.sort(reach.has_radii(), parallel);
+  const bool as_points = !is_periodic && left.are_points() && right.are_points();
   if (!is_periodic) {
-    left.enlarge(reach, parallel);
-    right.enlarge(reach, parallel);
+    left.prepare(reach, as_points, sorts, parallel);
+    right.prepare(reach, as_points, false, parallel);
   }
   const Set<D, Real>& other = is_between ? right : left;
   const auto find_within = [&](auto limit, PairSink& sink) {
-    const find::SearchOptions<D> options{filters, workers, nullptr, absent_left + absent_right};
+    // Candidates may overlap only as floats: their distance is tested anyway.
+    const find::SearchOptions<D> options{filters, workers,    nullptr, absent_left + absent_right,
+                                         false,   is_periodic};
     if (is_periodic) return find_periodic<D, Real>(left, other, reach, periods, limit, search, options, sink);
-    return core::search_through(
-        WithinSink<D, Real, decltype(limit)>(left.boxes.data(), other.boxes.data(),
-                                             sorts ? left.ids.data() : nullptr, limit, sink),
-        [&](PairSink& candidates) {
-          return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
-                            : search.find(left.enlarged, options, candidates);
-        });
+    const auto find_candidates = [&](PairSink& candidates) {
+      return is_between ? search.find_between(left.enlarged, right.enlarged, options, candidates)
+                        : search.find(left.enlarged, options, candidates);
+    };
+    const BoxId* const ids = sorts ? left.ids.data() : nullptr;
+    const auto search_shapes = [&](const auto* lefts, const auto* rights) {
+      return core::search_through(WithinSink(lefts, rights, ids, limit, sink), find_candidates);
+    };
+    return as_points ? search_shapes(left.points.data(), other.points.data())
+                     : search_shapes(left.boxes.data(), other.boxes.data());
   };
   find::deliver(environment, pairs, [&](PairSink& sink) {
     return reach.has_radii() ? find_within(SumOfRadii{left.radii.data(), other.radii.data()}, sink)

@@ -175,21 +175,23 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
       });
 }
 
-/// Inserts a box into the lists of the queries from `at` on: `sum` are its distances.
+using Keys = hn::RebindToSigned<Floats>;
+
+/// Inserts a box into the lists of the queries from `at` on: `sum` are its distances. Returns whether it is
+/// in any.
 template <int D>
-HWY_INLINE void insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum, std::uint32_t slot) {
-  if (all_false(Floats(), hn::Lt(sum, load(group.distances[group.count - 1], at)))) return;
-  NumberVector slots = hn::Set(Numbers(), slot);
+HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum, std::size_t number) {
+  const Keys tag;
+  const auto rounded = hn::And(hn::BitCast(tag, sum), hn::Set(tag, ~NearGroup<D>::number_mask));
+  auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
+  if (all_false(tag, hn::Lt(key, hn::Load(tag, group.keys[group.count - 1].data() + at)))) return false;
   for (std::size_t i = 0; i < group.count; ++i) {
-    const FloatVector other = load(group.distances[i], at);
-    const NumberVector others = hn::Load(Numbers(), group.slots[i].data() + at);
-    const FloatMask is_nearer = hn::Lt(sum, other);
-    const auto moves = hn::RebindMask(Numbers(), is_nearer);
-    hn::Store(hn::IfThenElse(is_nearer, sum, other), Floats(), group.distances[i].data() + at);
-    hn::Store(hn::IfThenElse(moves, slots, others), Numbers(), group.slots[i].data() + at);
-    sum = hn::IfThenElse(is_nearer, other, sum);
-    slots = hn::IfThenElse(moves, others, slots);
+    std::int32_t* const place = group.keys[i].data() + at;
+    const auto other = hn::Load(tag, place);
+    hn::Store(hn::Min(key, other), tag, place);
+    key = hn::Max(key, other);
   }
+  return true;
 }
 
 template <int D>
@@ -205,17 +207,31 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
         for (std::size_t at = 0; at < fan_out; at += lanes)
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
         for (; near != 0; near &= near - 1) {
+          if (group.boxes == group.slots.size()) {
+            group.is_complete = false;
+            limit = -1;  // ends the traversal
+            return;
+          }
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
           const DistanceFrom<D> from({leaf.box(lane), group.weight});
+          bool is_near = false;
           for (std::size_t at = 0; at < fan_out; at += lanes) {
             from.within(group.queries, at, infinity, sum);
             // Finite, so that a list with room takes it.
             sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
-            insert_near(group, at, sum, static_cast<std::uint32_t>(number * fan_out + lane));
+            is_near |= insert_near(group, at, sum, group.boxes);
           }
+          group.slots[group.boxes] = static_cast<std::uint32_t>(number * fan_out + lane);
+          group.boxes += is_near ? 1 : 0;
         }
-        const std::array<float, fan_out>& farthest = group.distances[group.count - 1];
-        limit = std::min(group.limit, *std::max_element(farthest.begin(), farthest.end()));
+        const Keys tag;
+        auto farthest = hn::Zero(tag);
+        for (std::size_t at = 0; at < fan_out; at += lanes)
+          farthest = hn::Max(farthest, hn::Load(tag, group.keys[group.count - 1].data() + at));
+        farthest = hn::MaxOfLanes(tag, farthest);
+        if (hn::GetLane(farthest) == NearGroup<D>::no_key) return;
+        const auto rounded_up = hn::Or(farthest, hn::Set(tag, NearGroup<D>::number_mask));
+        limit = std::min(group.limit, hn::GetLane(hn::BitCast(Floats(), rounded_up)));
       });
 }
 
@@ -295,14 +311,11 @@ void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
 template <int D>
 void NearGroup<D>::start(std::size_t size) {
   count = size;
-  for (std::size_t i = 0; i < count; ++i) {
-    slots[i].fill(no_slot);
-    for (std::size_t lane = 0; lane < fan_out; ++lane) {
-      const bool is_there = queries.min[0][lane] <= queries.max[0][lane];
-      distances[i][lane] =
-          is_there ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
-    }
-  }
+  is_complete = true;
+  boxes = 0;
+  for (std::size_t lane = 0; lane < fan_out; ++lane)
+    keys[0][lane] = queries.min[0][lane] <= queries.max[0][lane] ? no_key : 0;
+  for (std::size_t i = 1; i < count; ++i) keys[i] = keys[0];
 }
 template void NearGroup<2>::start(std::size_t);
 template void NearGroup<3>::start(std::size_t);

@@ -77,11 +77,14 @@ void find_first_met(const BvhView<D>& tree, const CastQuery<D>& cast, FoundBoxes
 template <int D>
 void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& found);
 
-/// Sixteen queries that are close to each other, and the boxes nearest to each: lists, one per lane, of slots
-/// in the tree and of squared distances as in DistanceQuery, in ascending order of these.
+/// Sixteen queries that are close to each other, and the boxes nearest to each: lists, one per lane, of keys
+/// in ascending order. A key is a squared distance as in DistanceQuery, rounded down, with the box's number
+/// as its last bits. So one minimum and one maximum take a box a step down a list.
 template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
+  static constexpr std::int32_t number_mask = 0x7ff;  ///< the bits of a key that are a number
+  static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
   /// Empties the lists, of which each will have `size` boxes, up to max_count.
   void start(std::size_t size);
@@ -90,9 +93,10 @@ struct NearGroup {
   std::array<float, D> weight;
   float limit;  ///< boxes that are farther away need not be found
   std::size_t count;
-  alignas(64) std::array<std::array<float, fan_out>, max_count> distances;
-  alignas(
-      64) std::array<std::array<std::uint32_t, fan_out>, max_count> slots;  ///< no_slot after the last one
+  bool is_complete;   ///< false if there were too many boxes to number
+  std::size_t boxes;  ///< how many have a number
+  alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
+  std::array<std::uint32_t, number_mask> slots;  ///< in the tree, by number
 };
 
 /// Fills the lists, by one traversal for all queries.

@@ -1,4 +1,5 @@
-// Squared distances of given pairs of boxes. No vectors: a pair has few coordinates, from two places.
+// Squared distances of given pairs of boxes or points. No vectors: a pair has few coordinates, from two
+// places.
 #include "kernels/squared_distances.hpp"
 
 #include <algorithm>
@@ -8,21 +9,24 @@
 namespace broadside::kernels {
 namespace {
 
-/// How many pairs ahead boxes are prefetched. Searches write neighbours one after the other, but their boxes
-/// may be anywhere in the array.
+/// How many pairs ahead shapes are prefetched. Searches write neighbours one after the other, but their
+/// shapes may be anywhere in the array.
 constexpr std::size_t distances_ahead = 64;
 
-/// A box may lie in two cache lines.
-template <typename Box>
-void prefetch(const Box& box) {
-  hwy::Prefetch(&box);
-  hwy::Prefetch(reinterpret_cast<const char*>(&box + 1) - 1);
+/// Larger shapes may well lie in two cache lines, which are both prefetched.
+constexpr std::size_t max_prefetched_once = 24;
+
+template <typename Shape>
+void prefetch(const Shape& shape) {
+  hwy::Prefetch(&shape);
+  if constexpr (sizeof(Shape) > max_prefetched_once)
+    hwy::Prefetch(reinterpret_cast<const char*>(&shape + 1) - 1);
 }
 
 }  // namespace
 
-template <int D, typename Real>
-void set_squared_distances(const Box<D, Real>* left, const Box<D, Real>* right, std::span<const Pair> pairs,
+template <typename Shape>
+void set_squared_distances(const Shape* left, const Shape* right, std::span<const Pair> pairs,
                            double* squares) {
   const auto prefetch_pair = [&](std::size_t i) {
     prefetch(left[index(pairs[i].first)]);
@@ -35,9 +39,15 @@ void set_squared_distances(const Box<D, Real>* left, const Box<D, Real>* right, 
   }
 }
 
-template void set_squared_distances(const Box2*, const Box2*, std::span<const Pair>, double*);
-template void set_squared_distances(const Box3*, const Box3*, std::span<const Pair>, double*);
-template void set_squared_distances(const DoubleBox2*, const DoubleBox2*, std::span<const Pair>, double*);
-template void set_squared_distances(const DoubleBox3*, const DoubleBox3*, std::span<const Pair>, double*);
+#define BROADSIDE_SQUARED_DISTANCES(D, Real)                                                               \
+  template void set_squared_distances(const Box<D, Real>*, const Box<D, Real>*, std::span<const Pair>,     \
+                                      double*);                                                            \
+  template void set_squared_distances(const Point<D, Real>*, const Point<D, Real>*, std::span<const Pair>, \
+                                      double*);
+BROADSIDE_SQUARED_DISTANCES(2, float)
+BROADSIDE_SQUARED_DISTANCES(3, float)
+BROADSIDE_SQUARED_DISTANCES(2, double)
+BROADSIDE_SQUARED_DISTANCES(3, double)
+#undef BROADSIDE_SQUARED_DISTANCES
 
 }  // namespace broadside::kernels

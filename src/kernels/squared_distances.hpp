@@ -1,6 +1,7 @@
-// Squared distances of given pairs of boxes.
+// Squared distances of given pairs of boxes or points.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -30,10 +31,21 @@ inline double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) {
   (std::make_index_sequence<D>());
 }
 
-/// Sets squares[i] to the squared_distance() of the boxes of pairs[i], the first of which is in `left` and
-/// the second in `right`.
-template <int D, typename Real>
-void set_squared_distances(const Box<D, Real>* left, const Box<D, Real>* right, std::span<const Pair> pairs,
+/// The same for boxes that are finite points, to the last bit.
+template <std::size_t D, typename Real>
+inline double squared_distance(const std::array<Real, D>& a, const std::array<Real, D>& b) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < D; ++axis) {
+    const double gap = static_cast<double>(a[axis]) - static_cast<double>(b[axis]);
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// Sets squares[i] to the squared_distance() of the shapes of pairs[i], the first of which is in `left` and
+/// the second in `right`. A shape is a Box or a Point.
+template <typename Shape>
+void set_squared_distances(const Shape* left, const Shape* right, std::span<const Pair> pairs,
                            double* squares);
 
 }  // namespace broadside::kernels

@@ -132,6 +132,22 @@ TYPED_TEST(NearestPairsLaw, FindsTheSameWithThreadsAndAtEveryScale) {
   }
 }
 
+/// Sixteen queries are answered together, but these are far from each other: too many boxes come near one.
+TEST(NearestPairs, AreExactWhereQueriesAreFewAndFarApart) {
+  Rng rng(9);
+  const auto drawn = [&rng](std::size_t count) {
+    std::vector<Box3> points(count);
+    for (Box3& point : points) {
+      for (float& number : point.min) number = rng.unit();
+      point.max = point.min;
+    }
+    return points;
+  };
+  const auto left = drawn(16);
+  const auto right = drawn(20'000);
+  EXPECT_EQ(nearest_pairs(left, right, 29).boxes, expected_pairs(left, &right, 29, {}).boxes);
+}
+
 TEST(NearestPairs, NamesTheNearestOfEachBox) {
   const std::vector<Box2> shops = {{{0, 0}, {1, 1}}, {{4, 0}, {5, 1}}, {{6, 0}, {7, 1}}};
   const std::vector<Box2> stops = {{{2, 0}, {2, 0}}, {{9, 1}, {9, 1}}};

@@ -11,9 +11,11 @@
 #include "algorithms/bvh/box_order.hpp"
 #include "algorithms/bvh/bvh_packer.hpp"
 #include "algorithms/bvh/query_results.hpp"
+#include "core/bit_cast.hpp"
 #include "core/input_check.hpp"
 #include "core/message.hpp"
 #include "core/parallel.hpp"
+#include "core/sample.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -217,12 +219,33 @@ bool BvhIndex<D, Real>::find_nearest(const Box<D, Real>& box, std::size_t count,
 
 namespace {
 
+/// Queries compared with the boxes of the tree, to learn whether they are the same.
+constexpr std::size_t max_compared_queries = 64;
+
+/// Whether the queries are the tree's own boxes: by all ids, and by some boxes.
+template <int D>
+bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree) {
+  if (queries.size() != tree.size()) return false;
+  const std::size_t compared = std::min(queries.size(), max_compared_queries);
+  for (std::size_t i = 0; i < compared; ++i) {
+    const NumberedBox<D>& query = queries[core::sampled_place(i, compared, queries.size())];
+    const std::uint32_t slot = tree.slot(BoxId{query.number});
+    if (slot == kernels::no_slot || !(tree.box_at(slot) == query.box)) return false;
+  }
+  return std::all_of(queries.begin(), queries.end(), [&](const NumberedBox<D>& query) {
+    return tree.slot(BoxId{query.number}) != kernels::no_slot;
+  });
+}
+
 /// The queries in an order in which neighbours in space follow one another: that of a packed tree's leaves.
 template <int D>
-std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, core::Parallel& parallel) {
+std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree,
+                                         core::Parallel& parallel) {
+  if (are_own_boxes(queries, tree)) return tree.ids_by_leaf();
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
   std::vector<Box<D>> boxes;
+  boxes.reserve(queries.size());
   for (const NumberedBox<D>& query : queries) boxes.push_back(query.box);
   BvhPacker<D> packer;
   packer.pack(boxes, parallel);
@@ -255,16 +278,17 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const double max_squared = options.max_distance * options.max_distance;
   core::Parallel parallel;
   parallel.start(options.workers, queries.size());
-  const std::vector<std::uint32_t> order = spatial_order<D>(queries, parallel);
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
   // The kernel finds two boxes more than asked for: one may be left out, and the farthest shows that no other
   // box is as near.
-  const bool in_groups = options.filters.empty() && count + 2 <= kernels::NearGroup<D>::max_count;
+  using Group = kernels::NearGroup<D>;
+  const bool in_groups = options.filters.empty() && count + 2 <= Group::max_count;
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
-    kernels::NearGroup<D> group;
+    Group group;
     for (std::size_t number = range.begin; number < range.end; ++number) {
       const std::span<const std::uint32_t> some =
           std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
@@ -281,15 +305,19 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         const std::size_t query = some[lane];
         const Box<D, Real> box = boxes[query];
         NearestBoxes nearest(count + 1, max_squared);
-        for (std::size_t i = 0; in_groups && i < group.count; ++i) {
-          const std::uint32_t slot = group.slots[i][lane];
-          if (slot == kernels::no_slot) break;
-          const BoxId id = id_at(slot);
-          nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+        bool is_sure = false;
+        if (in_groups) {
+          for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
+            const std::uint32_t slot =
+                group.slots[static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask)];
+            const BoxId id = id_at(slot);
+            nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+          }
+          const std::int32_t last = group.keys[count + 1][lane];
+          is_sure = group.is_complete &&
+                    (last == Group::no_key || limit_in_tree(nearest.limit() * unit) <
+                                                  core::bit_cast<float>(last & ~Group::number_mask));
         }
-        const bool is_sure =
-            in_groups && (group.slots[count + 1][lane] == kernels::no_slot ||
-                          limit_in_tree(nearest.limit() * unit) < group.distances[count + 1][lane]);
         if (!is_sure) {
           QueryOptions eligible;
           if (!options.filters.empty()) eligible.filter = &options.filters[query];

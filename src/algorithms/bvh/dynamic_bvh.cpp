@@ -38,7 +38,9 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   root_ = no_slot;
   insertions_ = 0;
   packed_.clear();
+  packed_.reserve(boxes.size());
   ids_.clear();
+  ids_.reserve(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Box<D> box = boxes[i];  // a copy, since another thread may change the caller's
     if (!is_present(box)) continue;
@@ -55,6 +57,18 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   arrange<D>(children_);
   while (children_.size() > 1) add_level();
   root_ = children_.front().number;
+}
+
+template <int D>
+std::vector<std::uint32_t> DynamicBvh<D>::ids_by_leaf() const {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(size_);
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    if (!info_[node].is_leaf) continue;
+    const auto& children = nodes_[node].id;
+    ids.insert(ids.end(), children.begin(), children.begin() + info_[node].count);
+  }
+  return ids;
 }
 
 /// Puts the boxes into leaves, in the packer's order.

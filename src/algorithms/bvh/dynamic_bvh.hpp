@@ -56,9 +56,18 @@ class DynamicBvh {
   /// Whether a rebuild pays after the insertions since the last build. A build also reads absent boxes.
   bool needs_rebuild() const noexcept { return insertions_ > size_ / 2 + slots_.size() / 64 + 1024; }
 
+  /// The ids of all boxes, leaf by leaf: after build() in the packer's order, in which neighbours in space
+  /// follow one another.
+  std::vector<std::uint32_t> ids_by_leaf() const;
+
   /// The number of boxes, and of nodes.
   std::size_t size() const noexcept { return size_; }
   std::size_t nodes() const noexcept { return nodes_.size() - free_.size(); }
+
+  /// The box in a slot.
+  Box<D> box_at(std::uint32_t slot) const noexcept {
+    return nodes_[slot / kernels::fan_out].box(slot % kernels::fan_out);
+  }
 
   /// The tree for searches. There must be a box.
   kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
@@ -92,9 +101,6 @@ class DynamicBvh {
   std::uint32_t new_node(bool is_leaf);
   std::uint32_t numbered(std::uint32_t node) const noexcept {
     return info_[node].is_leaf ? node | kernels::leaf_bit : node;
-  }
-  Box<D> box_at(std::uint32_t slot) const noexcept {
-    return nodes_[slot / kernels::fan_out].box(slot % kernels::fan_out);
   }
   void write(std::uint32_t slot, const Box<D>& box) noexcept {
     nodes_[slot / kernels::fan_out].set(slot % kernels::fan_out, box);
