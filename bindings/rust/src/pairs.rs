@@ -250,7 +250,7 @@ impl FindOptions<'_> {
     }
 
     fn collect<B: Bounds>(&self, left: &[B], right: Option<&[B]>) -> Result<Vec<Pair>, Error> {
-        let mut pairs = Vec::with_capacity(left.len());
+        let mut pairs = Vec::with_capacity(2 * left.len());
         self.for_each_pairs(left, right, |chunk| {
             pairs.extend_from_slice(chunk);
             ControlFlow::Continue(())
