@@ -81,26 +81,28 @@ impl std::error::Error for Error {}
 /// A status other than OK, and what the library wrote about it.
 pub(crate) struct Failure {
     pub status: ffi::Status,
-    error: MaybeUninit<ffi::Error>,
+    index: usize,
+    message: String,
 }
 
 /// Makes a call, which gets a place for its error.
 pub(crate) fn call(call: impl FnOnce(*mut ffi::Error) -> ffi::Status) -> Result<(), Failure> {
     let mut error = MaybeUninit::uninit();
-    match call(error.as_mut_ptr()) {
-        ffi::BROADSIDE_OK => Ok(()),
-        status => Err(Failure { status, error }),
+    let status = call(error.as_mut_ptr());
+    if status == ffi::BROADSIDE_OK {
+        return Ok(());
     }
+    let error: *const ffi::Error = error.as_ptr();
+    // SAFETY: a call that fails has written its error: the index, and a message that ends with a 0.
+    let (index, message) = unsafe { ((*error).index, CStr::from_ptr(std::ptr::addr_of!((*error).message).cast())) };
+    Err(Failure { status, index: index as usize, message: message.to_string_lossy().into_owned() })
 }
 
 impl From<Failure> for Error {
     fn from(failure: Failure) -> Self {
-        let error = failure.error.as_ptr();
-        // SAFETY: a call that fails has written its error: the index, and a message that ends with a 0.
-        let (index, message) = unsafe { ((*error).index, CStr::from_ptr(std::ptr::addr_of!((*error).message).cast())) };
-        let message = message.to_string_lossy().into_owned();
-        match failure.status {
-            ffi::BROADSIDE_INVALID_INPUT => Error::InvalidInput { index: index as usize, message },
+        let Failure { status, index, message } = failure;
+        match status {
+            ffi::BROADSIDE_INVALID_INPUT => Error::InvalidInput { index, message },
             ffi::BROADSIDE_INVALID_FRAME => Error::InvalidFrame(message),
             ffi::BROADSIDE_INVALID_QUERY => Error::InvalidQuery(message),
             ffi::BROADSIDE_INVALID_SPEC => Error::InvalidSpec(message),

@@ -45,7 +45,7 @@ fn variable_of(declaration: &str) -> String {
         Some(text) => (text, true),
         None => (declaration.trim(), false),
     };
-    let (c_type, name) = text.rsplit_once(|c: char| c == ' ' || c == '*').expect(declaration);
+    let (c_type, name) = text.rsplit_once(&[' ', '*'][..]).expect(declaration);
     let stars = text.matches('*').count();
     let mut rust_type = type_of(c_type.trim_end_matches('*').trim());
     for star in 0..stars {
