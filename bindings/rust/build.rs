@@ -48,11 +48,12 @@ fn link_installed(folder: &str) {
     }
 }
 
-/// Links a library file: libhwy.a, libhwy.so, hwy.lib, ...
+/// Links a library file: libhwy.a, libhwy.so.1.0.3, hwy.lib, ...
 fn link_file(path: &Path) {
-    let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("CMake writes whole paths");
-    let is_static = path.extension().map_or(false, |extension| extension == "a");
-    let name = if cfg!(windows) && !is_static { stem } else { stem.strip_prefix("lib").unwrap_or(stem) };
+    let file = path.file_name().and_then(|name| name.to_str()).expect("CMake writes whole paths");
+    let stem = file.split('.').next().unwrap();
+    let is_static = file.ends_with(".a");
+    let name = if file.ends_with(".lib") { stem } else { stem.strip_prefix("lib").unwrap_or(stem) };
     println!("cargo:rustc-link-search=native={}", path.parent().unwrap().display());
     println!("cargo:rustc-link-lib={}{name}", if is_static { "static=" } else { "" });
 }
