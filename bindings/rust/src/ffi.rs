@@ -1,5 +1,5 @@
-//! The part of `bindings/c/broadside.h` that this crate calls, by hand; `tests/crate/declarations.rs` compares the two
-//! texts. A name is that of the header without `broadside_`.
+//! The part of `bindings/c/broadside.h` that this crate calls, by hand; `tests/declarations.rs` compares the two texts.
+//! A name is that of the header without `broadside_`.
 use std::os::raw::{c_char, c_int, c_void};
 
 pub use crate::{Handle, HandlePair, Pair};

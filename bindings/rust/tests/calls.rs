@@ -11,6 +11,11 @@ const ORIGIN: Box2 = Box2::point([0.0, 0.0]);
 const INVALID: Box2 = Box2::point([f32::NAN, 0.0]);
 
 #[test]
+fn have_the_library_s_version() {
+    assert_eq!(broadside::version(), env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
 fn refuse_invalid_boxes() {
     let boxes = [ORIGIN, INVALID];
     let is_box_1 = |error: Error| matches!(error, Error::InvalidInput { index: 1, .. });
