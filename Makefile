@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint docs clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -95,6 +95,13 @@ $(python_folder)/%/ready: | setup
 	python3 -m venv --clear $(@D)
 	$(@D)/bin/python -m pip install --quiet --requirement $<
 	touch $@
+
+# Its own target folder; `cargo package` fetches the optional crates.
+test-rust: export CARGO_TARGET_DIR := $(CURDIR)/build/rust
+test-rust: | setup ## Test the Rust crate, and build what `cargo package` packs; needs cargo, and the network once
+	cargo test --quiet --all-features
+	cargo run --quiet --example falling_boxes
+	cargo package --quiet --allow-dirty
 
 # CMake's build folders: one for each dimension.
 wasm_folder := build/wasm

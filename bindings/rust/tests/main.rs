@@ -1,0 +1,4 @@
+//! The crate's tests, in one program, so that they link once.
+mod calls;
+mod declarations;
+mod equivalence;
