@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust wasm test-wasm test-installed compare-web playground bench test sanitize systems windows clang format check-format lint docs clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -134,6 +134,9 @@ playground: $(wasm_folder)/playground/build.ninja ## Build the playground, a pag
 	@test -f $< || emcmake cmake --preset playground
 	cmake --build --preset playground
 	node tools/web/build.mjs --playground build/playground
+
+film: playground ## Film the playground for README: docs/pictures/playground.gif
+	node tools/docs/film.mjs build/playground/index.html docs/pictures/playground.gif
 
 $(wasm_folder)/playground/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset playground

@@ -39,6 +39,7 @@ struct AdviseArguments {
   std::optional<std::uint64_t> seed;
   EntryOptions entries{.algorithms = "own"};
   std::optional<double> budget;
+  bool allows_busy = false;
   std::string json;
 };
 
@@ -168,10 +169,11 @@ Exit run(AdviseArguments& arguments, const CLI::App& verb, const lab::Catalogue&
     throw Interruption();
   }
   advice.processor_share = share.value();
+  advice.is_withheld = lab::is_busy(advice.processor_share) && !arguments.allows_busy;
   progress.clear();
   advice.warning = boxes.warning;
   say_lines(advice.warning);
-  print(lab::text_of(advice) + lab::busy_hint(advice.processor_share));
+  print(lab::text_of(advice, output_width()));
   flush_output();
   if (!arguments.json.empty()) {
     on_signal(OnSignal::end);
@@ -212,6 +214,8 @@ Verb add_advise(CLI::App& program, const lab::Catalogue& catalogue, std::span<co
   verb->add_option("--budget", arguments->budget,
                    fmt::format("About how many seconds measuring may take (default: {})",
                                lab::AdviseOptions{}.budget_seconds));
+  verb->add_flag("--allow-busy", arguments->allows_busy,
+                 "Advise even if other programs had the processor for more than a tenth of the time");
   verb->add_option("--json", arguments->json, "Also write the advice and its measurements to this file")
       ->type_name("FILE");
   add_examples(*verb, {{"advise boxes.csv", "the algorithm for your boxes, from any file that is read"},

@@ -24,6 +24,7 @@
 #include "cli/values.hpp"
 #include "cli/verbs.hpp"
 #include "lab/numbers.hpp"
+#include "lab/report/fold.hpp"
 #include "lab/report/json.hpp"
 #include "lab/report/machine.hpp"
 #include "lab/report/scene_drawings.hpp"
@@ -161,13 +162,14 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   options.watch.progress = [&](std::string_view what) {
     progress.show(what, static_cast<double>(finished) / static_cast<double>(options.plan.size()));
   };
+  const std::size_t width = output_width();
   options.finished = [&, is_first = true](const lab::CaseResult& result) mutable {
     ++finished;
     progress.clear();
     if (arguments.has_details)
-      print(lab::table_of(result) + '\n');
+      print(lab::table_of(result, width) + '\n');
     else
-      print((is_first ? lab::case_line_heading() : "") + lab::case_line(result));
+      print((is_first ? lab::case_line_heading(width) : "") + lab::case_line(result, width));
     is_first = false;
     flush_output();
   };
@@ -176,7 +178,7 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   const lab::Comparison comparison = lab::compare(catalogue, options);
   progress.clear();
   for (const std::string& warning : comparison.warnings) say_lines(warning);
-  print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison));
+  print((arguments.has_details || comparison.cases.empty() ? "" : "\n") + lab::summary_of(comparison, width));
   if (arguments.files.any() && (!comparison.stopped || !comparison.cases.empty())) {
     on_signal(OnSignal::end);
     const std::string json = lab::json_of(comparison, command);
@@ -192,7 +194,8 @@ Exit run(CompareArguments& arguments, const CLI::App& verb, const lab::Catalogue
   } else if (arguments.files.any()) {
     say(fmt::format("stopped before a case had ended; nothing is written to {}", arguments.files.names()));
   }
-  if (!arguments.has_details && !comparison.cases.empty()) print(details_hint(arguments.files));
+  if (!arguments.has_details && !comparison.cases.empty())
+    print(lab::folded(details_hint(arguments.files), width));
   if (comparison.stopped) return Exit::interrupted;
   return comparison.all_verified() ? Exit::success : Exit::failed;
 }

@@ -2,8 +2,6 @@
 #include "cli/help.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <iterator>
 #include <sstream>
 #include <string_view>
@@ -11,48 +9,25 @@
 #include <fmt/format.h>
 
 #include "cli/message.hpp"
-#include "lab/platform/terminal.hpp"
+#include "lab/report/fold.hpp"
 
 namespace broadside::cli {
 namespace {
+
+using lab::wrapped;
 
 constexpr std::size_t default_width = 80;
 constexpr std::size_t min_width = 40;
 constexpr std::size_t max_width = 100;  // longer lines are hard to read
 
-std::size_t terminal_width() {
-  std::size_t width = 0;
-  if (const char* const columns = std::getenv("COLUMNS")) {
-    const std::string_view text = columns;
-    std::from_chars(text.data(), text.data() + text.size(), width);
-  }
-  if (width == 0) width = lab::platform::terminal_width();
+std::size_t help_width() {
+  const std::size_t width = terminal_columns();
   return width == 0 ? default_width : std::clamp(width, min_width, max_width);
-}
-
-/// The words of `text` in lines of at most `width` columns. The first line begins in column `column`, the
-/// others in column `indent`.
-std::string wrapped(const std::string& text, std::size_t width, std::size_t column, std::size_t indent) {
-  std::string lines;
-  std::istringstream words(text);
-  bool is_first = true;
-  for (std::string word; words >> word; is_first = false) {
-    if (!is_first && column + 1 + word.size() > width) {
-      lines += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (!is_first) {
-      lines += ' ';
-      ++column;
-    }
-    lines += word;
-    column += word.size();
-  }
-  return lines;
 }
 
 }  // namespace
 
-HelpFormatter::HelpFormatter() : width_(terminal_width()) {
+HelpFormatter::HelpFormatter() : width_(help_width()) {
   column_width(std::min<std::size_t>(26, width_ / 3));
   label("SUBCOMMAND", "VERB");
   label("Positionals", "Arguments");

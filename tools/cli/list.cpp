@@ -15,6 +15,7 @@
 #include "lab/catalogue.hpp"
 #include "lab/formats/format.hpp"
 #include "lab/peers/peers.hpp"
+#include "lab/report/fold.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::cli {
@@ -40,23 +41,8 @@ std::string values_of(const Tunable& tunable) {
 /// Prints `begin` and then the text, wrapped for a terminal of usual width. Each line of the text is aligned
 /// with its first.
 void print_wrapped(const std::string& begin, std::string_view text) {
-  constexpr std::size_t widest = 110;
-  print(begin);
-  std::size_t column = begin.size();
-  std::string_view space;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(word.size() + 1, text.size()));
-    if (!space.empty() && column + 1 + word.size() > widest) {
-      print(fmt::format("\n{:{}}", "", begin.size()));
-      column = begin.size();
-      space = "";
-    }
-    print(fmt::format("{}{}", space, word));
-    column += space.size() + word.size();
-    space = " ";
-  }
-  print("\n");
+  const std::size_t width = std::min<std::size_t>(output_width(), 110);
+  print(begin + lab::wrapped(text, width, begin.size(), begin.size()) + "\n");
 }
 
 /// An algorithm or scene: one line for itself and one for each of its tunables.

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "lab/platform/descriptor.hpp"
 #include "lab/platform/terminal.hpp"
+#include "lab/report/fold.hpp"
 
 namespace broadside::cli {
 
@@ -69,6 +72,20 @@ void say_lines(std::string_view text) {
 void print(std::string_view text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output();
+}
+
+std::size_t terminal_columns() {
+  std::size_t width = 0;
+  if (const char* const columns = std::getenv("COLUMNS")) {
+    const std::string_view text = columns;
+    std::from_chars(text.data(), text.data() + text.size(), width);
+  }
+  return width == 0 ? lab::platform::terminal_width() : width;
+}
+
+std::size_t output_width() {
+  constexpr std::size_t min_width = 40;
+  return lab::platform::terminal_width() == 0 ? lab::any_width : std::max(terminal_columns(), min_width);
 }
 
 void flush_output() {

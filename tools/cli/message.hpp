@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,6 +26,13 @@ void say_lines(std::string_view text);
 
 /// Prints text to standard output. Throws Unusable if the write fails.
 void print(std::string_view text);
+
+/// COLUMNS or, without it, the columns of the terminal on standard output; 0 if there is neither.
+std::size_t terminal_columns();
+
+/// The width to fold printed text to: the terminal's columns, at least 40. Output to a file or a pipe is not
+/// folded.
+std::size_t output_width();
 
 /// Throws Unusable if printed text could not be written.
 void flush_output();

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "process.hpp"
@@ -21,8 +22,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
+using testing::StartsWith;
 
-/// A terminal that nobody looks at.
+/// A terminal of 80 columns that nobody looks at.
 class Terminal {
  public:
   Terminal() : descriptor_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -32,6 +34,8 @@ class Terminal {
     // While it is open here, it stays when a program closes it.
     other_ = open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     fcntl(descriptor_, F_SETFL, O_NONBLOCK);
+    const winsize size{.ws_row = 25, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+    ioctl(other_, TIOCSWINSZ, &size);
   }
   ~Terminal() {
     close(other_);
@@ -67,6 +71,15 @@ TEST(Progress, IsShownOnATerminalAndGoneInTheEnd) {
   EXPECT_THAT(terminal.shown(), AllOf(HasSubstr(gone + "0 %: [1/4] uniform 2D"),
                                       HasSubstr(gone + "25 %: [2/4]"), EndsWith(gone)));
   EXPECT_THAT(ended.output, Not(HasSubstr("\x1b")));
+}
+
+TEST(Output, IsFoldedOnATerminalAndWholeInAPipe) {
+  const std::string command =
+      "$BROADSIDE compare uniform -n 100 --dimension 2 --algorithms brute_force,grid ";
+  const Terminal terminal;
+  ASSERT_EQ(shell("unset COLUMNS; " + command + "--details >" + terminal.path()).status, 0);
+  EXPECT_THAT(terminal.shown(), Not(MatchesRegex("(.|\r|\n)*[^\r\n]{81}(.|\r|\n)*")));
+  EXPECT_THAT(shell("COLUMNS=40 " + command).output, StartsWith("case                   "));
 }
 
 TEST(Progress, TellsHowLongTheRestWillTake) {

@@ -27,6 +27,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Key;
 using testing::Not;
+using testing::StartsWith;
 
 AdviseOptions quickly(const std::string& algorithms) {
   AdviseOptions options;
@@ -127,6 +128,16 @@ TEST(Advise, OffersNothingWhereNothingIsVerified) {
   EXPECT_FALSE(advice.choice);
   EXPECT_FALSE(advice.all_verified());
   EXPECT_THAT(text_of(advice), AllOf(HasSubstr("nothing to advise"), HasSubstr("FAILED")));
+  EXPECT_TRUE(nlohmann::json::parse(json_of(advice, {}))["advice"].is_null());
+}
+
+TEST(Advise, IsWithheldOnABusyMachineAndSaysSoFirst) {
+  Advice advice = advise(Catalogue(), "row", row(50), quickly("grid,auto"));
+  advice.processor_share = 0.5;
+  EXPECT_THAT(text_of(advice), AllOf(StartsWith("busy: "), HasSubstr("\nAdvice: ")));
+  advice.is_withheld = true;
+  EXPECT_THAT(text_of(advice), AllOf(StartsWith("No advice: "), HasSubstr("\nbusy: "), HasSubstr("grid"),
+                                     Not(HasSubstr("Advice: "))));
   EXPECT_TRUE(nlohmann::json::parse(json_of(advice, {}))["advice"].is_null());
 }
 

@@ -77,6 +77,41 @@ TEST(AlignedColumns, AlignsEachAsItIsToldAndLeavesNoSpaceAtTheEnd) {
   EXPECT_THROW(columns.add({"too few"}), std::invalid_argument);
 }
 
+TEST(AlignedColumns, PrintsPartsThatFitEachWithTheFirstColumn) {
+  AlignedColumns columns("<>><");
+  columns.add({"name", "one", "two", ""});
+  columns.add({"a", "1", "22", "skipped: it would take far too long"});
+  columns.add_line("others:");
+  columns.add({"bb", "1", "2", "verified"});
+  EXPECT_EQ(columns.text("  ", 30),
+            "  name  one  two\n"
+            "  a       1   22\n"
+            "  others:\n"
+            "  bb      1    2\n"
+            "\n"
+            "  name\n"
+            "  a     skipped: it would take\n"
+            "        far too long\n"
+            "  others:\n"
+            "  bb    verified\n");
+}
+
+TEST(Folded, WrapsLongLinesAndIndentsWhatContinuesThem) {
+  EXPECT_EQ(folded("  - one two three four\nfive\n\nsix", 14), "  - one two\n    three four\nfive\n\nsix");
+  EXPECT_EQ(folded("  a    b    c\n", 13), "  a    b    c\n");
+}
+
+TEST(CaseLine, FoldsAllCasesAtTheSameColumns) {
+  const CaseResult result = still_case({timed("grid", {1, 1, 1})});
+  const auto heading = lines_of(case_line_heading(80));
+  const auto lines = lines_of(case_line(result, 80));
+  ASSERT_EQ(heading.size(), 3u);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(heading[0].find("best of ours"), lines[0].find("grid"));
+  for (const std::string& line : heading) EXPECT_LE(line.size(), 80u);
+  EXPECT_EQ(lines_of(case_line(result)).size(), 1u);
+}
+
 TEST(Table, PutsTheFastestFirstAndThoseWithoutATimeLast) {
   const auto lines = lines_of(table_of(still_case(
       {skipped("slow"), timed("second", {8, 9, 10}), failed("wrong"), timed("first", {4, 4.5, 5})})));

@@ -11,6 +11,7 @@
 #include "lab/advise/signals.hpp"
 #include "lab/catalogue.hpp"
 #include "lab/measure/benchmark.hpp"
+#include "lab/report/fold.hpp"
 #include "lab/scenes/scene.hpp"
 
 namespace broadside::lab {
@@ -39,6 +40,7 @@ struct Advice {
   std::string input;           ///< name of the file or scene
   std::string warning;         ///< if the file was read in part; empty otherwise
   double processor_share = 1;  ///< ProcessorShare during the measurements
+  bool is_withheld = false;    ///< since the machine was busy: text and JSON have the measurements alone
   Signals signals{};
   Mode mode = Mode::find;
   std::size_t first_frame = 0;  ///< only some frames of a long history are measured: from this one ...
@@ -73,8 +75,8 @@ Advice advise(const Catalogue& catalogue, const std::string& input, const Histor
 std::vector<std::string> reasons_of(const Advice& advice);
 std::vector<std::string> changes_of(const Advice& advice);
 
-/// The advice as text.
-std::string text_of(const Advice& advice);
+/// The advice as text, folded to `width` except for its code. Says first whether the machine was busy.
+std::string text_of(const Advice& advice, std::size_t width = any_width);
 
 /// The advice as JSON, by the schema "broadside.advice/2" (docs/benchmarking.md). `command` holds the
 /// program's arguments, starting with the program itself.

@@ -75,7 +75,7 @@ Json json_of(const RankedAlgorithm& ranked) {
 }
 
 Json advice_json(const Advice& advice) {
-  if (!advice.choice) return {};
+  if (!advice.choice || advice.is_withheld) return {};
   const AlgorithmChoice& choice = *advice.choice;
   const Measurement& chosen = advice.ranking[choice.chosen].measurement;
   const auto spec_of = [&](std::size_t place) { return advice.ranking[place].measurement.algorithm; };
@@ -109,7 +109,7 @@ std::string json_of(const Advice& advice, std::span<const std::string> command) 
   add("input", advice.input);
   add("warning", or_null(advice.warning));
   add("processor_share", advice.processor_share);
-  add("busy", !busy_hint(advice.processor_share).empty());
+  add("busy", is_busy(advice.processor_share));
   add("signals", json_of(advice.signals));
   add("mode", advice.mode == Mode::find ? "find" : "track");
   add("first_frame", advice.first_frame);

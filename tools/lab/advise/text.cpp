@@ -7,6 +7,7 @@
 #include "lab/advise/advise.hpp"
 #include "lab/measure/ranking.hpp"
 #include "lab/measure/samples.hpp"
+#include "lab/measure/steadiness.hpp"
 #include "lab/numbers.hpp"
 #include "lab/report/aligned_columns.hpp"
 
@@ -35,17 +36,7 @@ std::string verdict_with_reason(const Measurement& measurement) {
   return "skipped: " + measurement.reason;
 }
 
-/// The table, with a line before the algorithms that were only in the first round.
-std::string with_first_round_apart(std::string table, const Advice& advice) {
-  const auto first = std::ranges::find(advice.ranking, false, &RankedAlgorithm::is_finalist);
-  if (first == advice.ranking.begin() || first == advice.ranking.end()) return table;
-  std::size_t place = table.find('\n') + 1;  // after the heading
-  for (auto finalist = advice.ranking.begin(); finalist != first; ++finalist)
-    place = table.find('\n', place) + 1;
-  return table.insert(place, "  measured in the first, short round only:\n");
-}
-
-std::string table(const Advice& advice) {
+std::string table(const Advice& advice, std::size_t width) {
   const bool moves = advice.mode == Mode::track;
   AlignedColumns columns(moves ? "<>>>>>><" : "<>>>>><");
   std::vector<std::string> head = {
@@ -53,7 +44,10 @@ std::string table(const Advice& advice) {
   if (moves) head.insert(head.begin() + 2, "p99");
   columns.add(head);
   const double chosen = advice.milliseconds;
+  bool was_finalist = false;
   for (const RankedAlgorithm& ranked : advice.ranking) {
+    if (was_finalist && !ranked.is_finalist) columns.add_line("measured in the first, short round only:");
+    was_finalist = ranked.is_finalist;
     const Measurement& measurement = ranked.measurement;
     const bool timed = is_timed(measurement);
     const auto memory = [&](const std::optional<std::uint64_t>& count) {
@@ -76,7 +70,7 @@ std::string table(const Advice& advice) {
       row.insert(row.begin() + 2, timed ? duration(percentile(measurement.samples_ms, 0.99) / 1e3) : "-");
     columns.add(row);
   }
-  return with_first_round_apart(columns.text("  "), advice);
+  return columns.text("  ", width);
 }
 
 std::string list(const std::vector<std::string>& sentences) {
@@ -118,17 +112,21 @@ std::string text_of(const Signals& signals) {
   return text;
 }
 
-std::string text_of(const Advice& advice) {
-  std::string text = fmt::format("{}: {}\n\n", advice.input, text_of(advice.signals));
+std::string text_of(const Advice& advice, std::size_t width) {
+  std::string text = busy_hint(advice.processor_share);
+  if (advice.is_withheld)
+    text = "No advice: the times of a busy machine mislead (--allow-busy advises all the same).\n" + text;
+  if (!text.empty()) text += "\n";
+  text += fmt::format("{}: {}\n\n", advice.input, text_of(advice.signals));
   if (advice.mode == Mode::track && advice.frames < advice.signals.motion->frames)
     text += fmt::format("Measured on the {} from frame {} on:\n", counted(advice.frames, "frame", "frames"),
                         grouped(advice.first_frame + 1));
-  text += table(advice);
+  text += table(advice, width);
   if (advice.floor_ms && advice.choice)
     text += fmt::format("  sorting the boxes and writing the pairs alone takes {}\n",
                         duration(*advice.floor_ms / 1e3));
-  if (!advice.choice)
-    return text + "\nNothing of Broadside's own was verified, so there is nothing to advise.\n";
+  if (!advice.choice) text += "\nNothing of Broadside's own was verified, so there is nothing to advise.\n";
+  if (!advice.choice || advice.is_withheld) return folded(text, width);
   const Measurement& chosen = advice.ranking[advice.choice->chosen].measurement;
   text += fmt::format("\nAdvice: {}\n", advice.spec);
   text += fmt::format("  {} {} to be expected on this machine", duration(advice.milliseconds / 1e3),
@@ -140,7 +138,7 @@ std::string text_of(const Advice& advice) {
   text += "\n";
   text += "\nWhy\n" + list(advice.reasons);
   if (!advice.changes.empty()) text += "\nWhat would change it\n" + list(advice.changes);
-  return text + "\n" + advice.snippet;
+  return folded(text, width) + "\n" + advice.snippet;
 }
 
 }  // namespace broadside::lab

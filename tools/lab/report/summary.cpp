@@ -118,7 +118,7 @@ std::string left_out_text(const Comparison& comparison) {
 
 }  // namespace
 
-std::string summary_of(const Comparison& comparison) {
+std::string summary_of(const Comparison& comparison, std::size_t width) {
   std::size_t measured = 0;
   std::vector<std::string> failures;
   Steadiness steadiness;
@@ -141,7 +141,7 @@ std::string summary_of(const Comparison& comparison) {
       columns.add({standing.algorithm, grouped(standing.ratios.size()), grouped(standing.fastest),
                    ratio_text(standing.mean()), ""});
     }
-    text += columns.text("  ") + auto_text(comparison);
+    text += columns.text("  ", width) + auto_text(comparison);
     for (const auto& [kind, rival] : {std::pair(AlgorithmKind::peer, "peer"),
                                       std::pair(AlgorithmKind::literature, "from the literature")})
       text += lead_text(comparison, kind, rival, "the best of ours", best_own_of) +
@@ -155,8 +155,9 @@ std::string summary_of(const Comparison& comparison) {
   if (comparison.stopped) text += "; stopped before the end";
   text += "\n" + left_out_text(comparison);
   for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
-  return text + hint_of(steadiness, "or go by the least times (min_ms in --json)") +
-         busy_hint(comparison.processor_share);
+  return folded(text + hint_of(steadiness, "or go by the least times (min_ms in --json)") +
+                    busy_hint(comparison.processor_share),
+                width);
 }
 
 }  // namespace broadside::lab

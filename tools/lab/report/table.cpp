@@ -2,6 +2,7 @@
 #include "lab/report/table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -18,10 +19,27 @@
 namespace broadside::lab {
 namespace {
 
+constexpr std::array<std::size_t, 6> line_widths = {48, 25, 19, 30, 19, 13};
+
 /// Lines are printed one by one, when cases end, so their columns have fixed widths.
-std::string line(std::string_view name, std::string_view own, std::string_view chosen, std::string_view peer,
-                 std::string_view lead, std::string_view verified) {
-  return fmt::format("{:<48}  {:<25}  {:<19}  {:<30}  {:<19}  {}\n", name, own, chosen, peer, lead, verified);
+std::string line(const std::array<std::string, line_widths.size()>& cells, std::size_t width) {
+  constexpr std::string_view continued = "\n    ";
+  std::string text;
+  std::size_t used = 0;
+  for (std::size_t column = 0; column < cells.size(); ++column) {
+    if (column > 0 && used + 2 + line_widths[column] > width) {
+      text.erase(text.find_last_not_of(' ') + 1);
+      text += continued;
+      used = continued.size() - 1;
+    } else if (column > 0) {
+      text += "  ";
+      used += 2;
+    }
+    text += fmt::format("{:<{}}", cells[column], line_widths[column]);
+    used += line_widths[column];
+  }
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text + "\n";
 }
 
 std::string name_and_time(const Measurement* measurement) {
@@ -149,7 +167,7 @@ struct Scale {
   std::string no_mark{};  // as wide as " est.", if one occurs
 };
 
-std::string still_rows(const CaseResult& result) {
+std::string still_rows(const CaseResult& result, std::size_t width) {
   const Scale scale(result);
   const double floor = result.floor_ms.empty() ? 0 : median(result.floor_ms);
   const auto range = [&](const std::vector<double>& samples) {
@@ -179,10 +197,10 @@ std::string still_rows(const CaseResult& result) {
          "-", "-", "-", range(result.floor_ms), "boxes moved into parts and read back, pairs written"},
         "1.0");
   }
-  return columns.text("  ");
+  return columns.text("  ", width);
 }
 
-std::string moving_rows(const CaseResult& result) {
+std::string moving_rows(const CaseResult& result, std::size_t width) {
   const Scale scale(result);
   const double movers = std::max(result.of.moving * scale.boxes, 1.0);
   AlignedColumns columns("<>>>><>>>>>><");
@@ -203,7 +221,7 @@ std::string moving_rows(const CaseResult& result) {
                  scale.tests(*measurement), Scale::memory(*measurement, measurement->own_bytes),
                  Scale::memory(*measurement, measurement->peak_bytes), verdict(*measurement)});
   }
-  return columns.text("  ");
+  return columns.text("  ", width);
 }
 
 }  // namespace
@@ -236,11 +254,11 @@ std::string verdict_of(const CaseResult& result) {
   return evidence.empty() ? "nothing verified" : evidence;
 }
 
-std::string case_line_heading() {
-  return line("case", "best of ours", "auto over it", "fastest peer", "over the best", "verified");
+std::string case_line_heading(std::size_t width) {
+  return line({"case", "best of ours", "auto over it", "fastest peer", "over the best", "verified"}, width);
 }
 
-std::string case_line(const CaseResult& result) {
+std::string case_line(const CaseResult& result, std::size_t width) {
   const Case& measured = result.of;
   const Measurement* const own = best_own_of(result);
   const Measurement* const chosen = auto_of(result);
@@ -249,13 +267,15 @@ std::string case_line(const CaseResult& result) {
     if (measurement == nullptr || measurement == own || !measurement->to_best_own) return "-";
     return ratio_text(measurement->to_best_own->median, measurement->to_best_own->interval);
   };
-  return line(whole_name_of(measured), name_and_time(own), ratio(chosen), name_and_time(peer), ratio(peer),
-              verdict_of(result));
+  return line({whole_name_of(measured), name_and_time(own), ratio(chosen), name_and_time(peer), ratio(peer),
+               verdict_of(result)},
+              width);
 }
 
-std::string table_of(const CaseResult& result) {
-  const std::string rows = result.of.mode == Mode::track ? moving_rows(result) : still_rows(result);
-  return heading(result) + rows + explanations_of(result) + lead_text(result);
+std::string table_of(const CaseResult& result, std::size_t width) {
+  const std::string rows =
+      result.of.mode == Mode::track ? moving_rows(result, width) : still_rows(result, width);
+  return folded(heading(result) + rows + explanations_of(result) + lead_text(result), width);
 }
 
 }  // namespace broadside::lab

@@ -94,6 +94,7 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
     const rows = left.length === 1 ? "row" : "rows";
     count.textContent = left.length === spec.rows.length
       ? `${grouped(left.length)} ${rows}` : `${grouped(left.length)} of ${grouped(spec.rows.length)} rows`;
+    if (shown.length < left.length) count.textContent += `, the first ${grouped(shown.length)} of them shown`;
     more.hidden = shown.length === left.length;
     more.textContent = more.hidden ? "Show all rows" : `Show all ${grouped(left.length)} rows`;
   }

@@ -6,7 +6,8 @@ import { isPrinting, onTheme, theme } from "./themes.ts";
 
 type Draw = (place: Place) => Drawn;
 
-const printWidth = 660;
+/** In print, charts are made smaller by the style sheet, so that the longest fits on a page. */
+const printWidth = 840;
 
 export interface ChartFigure {
   element: HTMLElement;

@@ -274,7 +274,11 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     assert.equal(empty, 0);
     await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
     assert.equal(await page.evaluate(() => document.documentElement.dataset["theme"]), "dark");
-    assert.ok((await page.pdf({ format: "A4" })).length > 10_000);
+    const pdf = await page.pdf({ preferCSSPageSize: true });
+    assert.ok(pdf.length > 10_000);
+    const sizes = [...pdf.toString("latin1").matchAll(/\/MediaBox \[0 0 ([\d.]+)/g)].map(([, width]) => Math.round(Number(width)));
+    // The wide table alone is on landscape pages.
+    assert.ok(sizes.includes(595) && sizes.includes(842), sizes.join());
     assert.deepEqual(problems, []);
     await page.close();
   });

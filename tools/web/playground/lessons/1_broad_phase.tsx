@@ -1,3 +1,4 @@
+import { PanelAlgorithm } from "../ui/algorithm_choice.tsx";
 import { grouped, plural } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
@@ -22,7 +23,8 @@ export const broadPhase: Lesson = {
   exercise: {
     task: <p>Both panels search by brute force. Let the second one take another algorithm that finds <b>the same pairs</b>{" "}
       with <b>less than a tenth</b> of the tests.</p>,
-    hint: <p>The algorithm's name above a panel is a list. Not each entry does: <code>auto</code> itself takes brute
+    control: () => <PanelAlgorithm panel={1} label="The second panel's algorithm" />,
+    hint: <p>Not every algorithm in the list does: <code>auto</code> itself takes brute
       force while there are so few boxes.</p>,
     check({ shown }) {
       const brute = shown.panels.find(({ spec }) => spec === "brute_force");

@@ -1,4 +1,5 @@
 import { nameOf } from "../state/spec.ts";
+import { TunableField } from "../ui/algorithm_card.tsx";
 import { grouped } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
@@ -29,6 +30,7 @@ export const cellSize: Lesson = {
   exercise: {
     task: <p>Move the slider <b>cell</b> until tests and references of <code>paper_grid</code> add up to less than{" "}
       {grouped(maxTests)} for these 500 boxes.</p>,
+    control: () => <TunableField panel={0} name="cell" />,
     hint: <p>Take cells about twice as wide as a usual box, and look at both counts while you drag.</p>,
     check({ shown, state }) {
       const panel = shown.panels.find(({ spec }) => nameOf(spec) === "paper_grid");

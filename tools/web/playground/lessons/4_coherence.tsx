@@ -1,4 +1,5 @@
 import { grouped } from "../ui/numbers.ts";
+import { KnobSlider } from "../ui/scene_card.tsx";
 import { scene, type Lesson } from "./lesson.ts";
 
 const both = [{ spec: "grid", follow: false }, { spec: "grid", follow: true }];
@@ -22,21 +23,22 @@ export const coherence: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>Both panels show the same boxes; the second one follows. Change how the boxes move, but keep <b>some moving</b>,
-      until following makes <b>less than half</b> of the search's tests.</p>,
-    hint: <p>The slider is “Share that moves”. A follower compares each mover with many boxes near it, so few may move.</p>,
+    task: <p>Both panels show the same boxes; the second one reuses its last frame. Change how the boxes move, but keep <b>some moving</b>,
+      until that takes <b>less than half</b> of the search's tests.</p>,
+    control: () => <KnobSlider name="moving" />,
+    hint: <p>A tracker compares each mover with many boxes near it, so few may move.</p>,
     check({ shown, state }) {
       const searching = shown.panels.find((_, at) => state.panels[at]?.follow === false);
       const following = shown.panels.find((_, at) => state.panels[at]?.follow === true);
       if (searching === undefined || following === undefined)
-        return { done: false, text: "Keep a panel that searches and one that follows." };
+        return { done: false, text: "Keep a panel that searches anew and one that reuses its last frame." };
       const { name, count, knobs } = state.scene;
       if (name !== "drift" || count < 1000 || knobs.moving < 0.01 || knobs.speed < 0.1 || !state.playing)
         return { done: false, text: "Keep 1,000 drifting boxes, some of them moving." };
       const [a, b] = [searching.statistics.tests, following.statistics.tests];
       return {
         done: a > 0 && b < a / 2 && searching.pairs === following.pairs,
-        text: `The search makes ${grouped(a)} tests a frame, following ${grouped(b)}.`,
+        text: `The search makes ${grouped(a)} tests a frame, the tracker ${grouped(b)}.`,
       };
     },
   },

@@ -1,5 +1,7 @@
 import { signal } from "@preact/signals";
 
+import { PanelAlgorithm } from "../ui/algorithm_choice.tsx";
+import { Race } from "../ui/challenge_card.tsx";
 import { duration } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
@@ -35,8 +37,8 @@ export const choosing: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>For each of the three cases, choose an algorithm in the panel (not <code>auto</code>), then press <b>Race</b>{" "}
-      under “Make auto lose”. It has to take less than {enough} times as long as the fastest.</p>,
+    task: <p>For each of the three cases, choose an algorithm (not <code>auto</code>), then press <b>Race</b>. It has to take less than {enough} times as long as the fastest.</p>,
+    control: () => <><PanelAlgorithm panel={0} label="Algorithm" /><Race /></>,
     hint: <p>The list above has a line for each of the three.</p>,
     check({ state, duel }) {
       const now = cases.find((one) => one.scene.name === state.scene.name && one.scene.count === state.scene.count);

@@ -21,6 +21,8 @@ export interface Verdict {
 
 export interface Exercise {
   task: ComponentChildren;
+  /** The controls that the task speaks of. */
+  control: () => ComponentChildren;
   hint: ComponentChildren;
   check(facts: Facts): Verdict;
 }
@@ -38,6 +40,8 @@ export interface Lesson {
   /** Initial state of the lesson. */
   start: Partial<State>;
   exercise: Exercise;
+  /** Whether boxes have shadows on the axis of the sweep. */
+  drawsShadows?: boolean;
 }
 
 export function scene(name: string, count: number, knobs: Partial<Knobs> = {}): SceneChoice {

@@ -29,7 +29,7 @@ export const fileScene = "file";
 
 const sliders: SceneEntry[] = [
   {
-    name: "drift", title: "Drifting boxes", dimension: 2, count: 300, knobs: true,
+    name: "drift", title: "Drifting boxes", dimension: 2, count: 400, knobs: true,
     summary: "Boxes that drift and bounce. The sliders change sizes, clusters and motion.",
   },
   {

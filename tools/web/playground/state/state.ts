@@ -31,9 +31,10 @@ export const maxBoxes = 100_000;
 
 export const defaultState: State = {
   mode: "play",
-  scene: { name: "drift", count: 300, seed: 1, knobs: defaultKnobs },
+  scene: { name: "drift", count: 400, seed: 1, knobs: defaultKnobs },
   edits: [],
-  panels: [{ spec: "grid", follow: false }],
+  // Small enough cells for many rows.
+  panels: [{ spec: "grid:cell=8", follow: false }],
   panel: 0,
   structure: true,
   overlaps: true,

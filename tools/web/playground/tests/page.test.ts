@@ -121,8 +121,8 @@ describe("the playground", { skip: missing }, () => {
 
   test("boxes are painted, removed, and all edits undone", async () => {
     const { page } = await open(browser, "paused=1&n=30");
+    await page.getByRole("button", { name: "Add boxes" }).click();
     const picture = (await page.locator(".window").first().boundingBox())!;
-    await page.getByRole("button", { name: "Paint" }).click();
     await page.mouse.move(picture.x + 200, picture.y + 200);
     await page.mouse.down();
     await page.mouse.move(picture.x + 480, picture.y + 220, { steps: 12 });
@@ -131,7 +131,7 @@ describe("the playground", { skip: missing }, () => {
     assert.ok(painted >= 4, `${painted} boxes`);
     await until(page, (count) => window.playground.shown!.present === 30 + count, painted);
     assert.equal(unlawful(await seen(page)), undefined);
-    await page.getByRole("button", { name: "Remove" }).click();
+    await page.getByRole("button", { name: "Remove boxes" }).click();
     await page.mouse.click(...await page.evaluate(() => window.playground.where(30)!));
     await until(page, (count) => window.playground.shown!.present === 29 + count, painted);
     await page.getByRole("button", { name: "Undo all edits" }).click();
@@ -162,6 +162,58 @@ describe("the playground", { skip: missing }, () => {
     await until(page, () => window.playground.shown!.present === 80);
     await page.keyboard.press(" ");
     await until(page, () => window.playground.state.playing);
+    await page.close();
+  });
+
+  test("explains a selected box beside it on a wide page, below the picture on a phone", async () => {
+    for (const width of [1280, 390]) {
+      const { page } = await open(browser, "paused=1&n=80&a=grid&box=3", { width, height: 800 });
+      await page.locator(".selection").waitFor();
+      const [note, picture] = [(await page.locator(".explanation-note").boundingBox())!, (await page.locator(".window").boundingBox())!];
+      const [x, y] = await page.evaluate(() => window.playground.where(3)!);
+      const inside = note.x > picture.x - 1 && note.x + note.width < picture.x + picture.width + 1 &&
+        note.y > picture.y - 1 && note.y + note.height < picture.y + picture.height + 1;
+      const covers = x > note.x && x < note.x + note.width && y > note.y && y < note.y + note.height;
+      assert.ok(!covers, "it covers the box");
+      if (width === 390) assert.ok(note.y >= picture.y + picture.height);
+      else assert.ok(inside, `${JSON.stringify(note)} in ${JSON.stringify(picture)}`);
+      await page.getByRole("button", { name: "Deselect the box" }).click();
+      await until(page, () => window.playground.state.selected === -1);
+      await page.close();
+    }
+  });
+
+  test("says that a box can be dragged until one was", async () => {
+    const { page } = await open(browser, "paused=1&n=60");
+    const hint = page.locator(".drag-hint");
+    await hint.waitFor();
+    const [x, y] = await hint.evaluate((one) => window.playground.where(Number(one.dataset["box"]))!);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 40, y + 10, { steps: 3 });
+    await page.mouse.up();
+    await until(page, () => window.playground.state.edits.length === 1);
+    await page.keyboard.press("Escape");
+    assert.equal(await hint.isVisible(), false);
+    await page.close();
+  });
+
+  test("shows panels side by side over the whole width", async () => {
+    const { page } = await open(browser, "paused=1&n=60&a=grid;bvh", { width: 1280, height: 800 });
+    const [first, second] = await Promise.all([0, 1].map((at) => page.locator(".window").nth(at).boundingBox()));
+    assert.equal(first!.y, second!.y);
+    assert.ok(first!.width > 580 && first!.height > 300, `${first!.width} x ${first!.height}`);
+    await page.close();
+  });
+
+  test("a lesson is its text, then the picture, then the exercise with its control", async () => {
+    const { page } = await open(browser, "lesson=2", { width: 390, height: 780 });
+    const tops = await Promise.all(["article.lesson", ".window", ".exercise"].map(async (one) => (await page.locator(one).boundingBox())!.y));
+    assert.deepEqual(tops, [...tops].sort((a, b) => a - b));
+    assert.equal(await page.locator(".shadows").count(), 1);
+    await page.getByRole("button", { name: "Lesson 4:" }).click();
+    assert.equal(await page.locator(".exercise").getByRole("slider", { name: "Share that moves" }).count(), 1);
+    assert.equal(await page.locator(".shadows").count(), 0);
     await page.close();
   });
 
@@ -239,7 +291,7 @@ describe("the playground", { skip: missing }, () => {
     const { page, problems } = await open(browser, "mode=lesson&lesson=1");
     for (let lesson = 1; lesson <= 5; ++lesson) {
       await page.getByRole("button", { name: `Lesson ${lesson}:` }).click();
-      const tries = page.locator(".lesson > .row").nth(0).getByRole("button");
+      const tries = page.locator(".tries").getByRole("button");
       for (let at = -1; at < await tries.count(); ++at) {
         if (at >= 0) await tries.nth(at).click();
         await settled(page);
@@ -257,7 +309,7 @@ describe("the playground", { skip: missing }, () => {
   test("exercises notice that they are done", { skip: hasLibrary ? false : "skipped: the engine is missing" }, async () => {
     const done = async (page: Page): Promise<void> => page.locator(".exercise.done").waitFor();
     const { page } = await open(browser, "mode=lesson&lesson=1");
-    await page.getByLabel("Algorithm of panel 2").selectOption("quadtree");
+    await page.getByLabel("The second panel's algorithm").selectOption("quadtree");
     await done(page);
     await page.getByRole("button", { name: "Lesson 2:" }).click();
     await page.getByLabel("axis", { exact: true }).selectOption("y");

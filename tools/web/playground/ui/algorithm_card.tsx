@@ -1,9 +1,7 @@
-// The current panel's algorithm: its description, its tunables and the reason for auto's choice;
-// and buttons for more panels.
+// The current panel's algorithm: its description, its tunables and the reason for auto's choice.
 import type { Tunable } from "../engine/types.ts";
-import { maxPanels } from "../state/state.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
-import { addPanel, algorithms, changePanel, state, told } from "../state/store.ts";
+import { algorithms, changePanel, patch, state, told } from "../state/store.ts";
 import { Card, Choice, Slider, Switch } from "./field.tsx";
 
 /** The range of a slider for a tunable without bounds of its own. */
@@ -13,14 +11,23 @@ function rangeOf(tunable: Tunable, worldWidth: number): [min: number, max: numbe
   return [Math.max(tunable.min ?? 0, -1e6), Math.min(tunable.max ?? 100, 1e6)];
 }
 
+function tunablesOf(spec: string): readonly Tunable[] {
+  return algorithms.value.find(({ name }) => name === nameOf(spec))?.tunables ?? [];
+}
+
 function short(value: number): string {
   return String(Number(value.toPrecision(3)));
 }
 
-function TunableField({ tunable, spec, worldWidth, onChange }:
-    { tunable: Tunable; spec: string; worldWidth: number; onChange: (spec: string) => void }) {
-  const value = settingsOf(spec).get(tunable.name);
-  const set = (text: string | undefined): void => onChange(withSetting(spec, tunable.name, text));
+/** A tunable of a panel's algorithm; nothing if the algorithm has none of that name. */
+export function TunableField({ panel, name }: { panel: number; name: string }) {
+  const spec = state.value.panels[panel]!.spec;
+  const tunable = tunablesOf(spec).find((one) => one.name === name);
+  if (tunable === undefined) return null;
+  const bounds = told.value?.bounds;
+  const worldWidth = bounds === undefined ? 100 : bounds[told.value!.dimension]! - bounds[0]!;
+  const value = settingsOf(spec).get(name);
+  const set = (text: string | undefined): void => changePanel(panel, { spec: withSetting(spec, name, text) });
   if (tunable.type === "choice") {
     return <Choice label={tunable.name} value={value ?? tunable.default}
       options={[...new Set([tunable.default, ...(tunable.choices ?? [])])].map((one) => ({ value: one, label: one }))}
@@ -33,11 +40,12 @@ function TunableField({ tunable, spec, worldWidth, onChange }:
   const middle = logarithmic ? Math.sqrt(min * max) : (min + max) / 2;
   const written = (one: number): string => tunable.type === "integer" ? String(Math.round(one)) : short(one);
   return (
-    <div class="tunable" title={tunable.summary}>
-      <Switch label={`set ${tunable.name}`} value={on} onChange={(yes) => set(yes ? written(middle) : undefined)} />
-      {on ? <Slider label={tunable.name} value={number} min={min} max={max} logarithmic={logarithmic}
-        text={written} onChange={(one) => set(written(one))} hint={tunable.summary} />
-        : <span class="note">{tunable.default}</span>}
+    <div class="tunable">
+      {on && <Slider label={name} value={number} min={min} max={max} logarithmic={logarithmic}
+        text={written} onChange={(one) => set(written(one))} hint={tunable.summary} />}
+      <Switch label={<>choose <code>{name}</code> by hand{!on && ` (now ${tunable.default})`}</>} value={on}
+        onChange={(yes) => set(yes ? written(middle) : undefined)} />
+      <p class="note">{tunable.summary}</p>
     </div>
   );
 }
@@ -52,40 +60,21 @@ export function AlgorithmCard() {
   const { panels, panel } = state.value;
   const choice = panels[panel] ?? panels[0]!;
   const known = algorithms.value.find(({ name }) => name === nameOf(choice.spec));
-  const bounds = told.value?.bounds;
-  const worldWidth = bounds === undefined ? 100 : bounds[told.value!.dimension]! - bounds[0]!;
   // A tunable of trackers has no effect in a search.
-  const tunables = (known?.tunables ?? []).filter(({ name }) =>
+  const tunables = tunablesOf(choice.spec).filter(({ name }) =>
     !hidden.has(name) && (choice.follow || !["update", "detect"].includes(name)));
   const explanation = told.value?.panels[panel]?.explanation ?? "";
   return (
-    <Card title={panels.length > 1 ? `Algorithm: panel ${panel + 1}` : "Algorithm"}>
+    <Card title={panels.length > 1 ? `Algorithm ${panel + 1} of ${panels.length}` : "Algorithm"}>
+      {panels.length > 1 && <div class="row" role="group" aria-label="Algorithm to set">{panels.map((one, at) => (
+        <button key={at} type="button" aria-pressed={at === panel} onClick={() => patch({ panel: at })}>
+          {at + 1}: {nameOf(one.spec)}</button>
+      ))}</div>}
       <p><code>{choice.spec}</code></p>
       <p class="note">{known?.summary}</p>
-      {tunables.map((tunable) => (
-        <TunableField key={`${known!.name}.${tunable.name}`} tunable={tunable} spec={choice.spec}
-          worldWidth={worldWidth} onChange={(spec) => changePanel(panel, { spec })} />
-      ))}
+      {tunables.map(({ name }) => <TunableField key={`${known!.name}.${name}`} panel={panel} name={name} />)}
       {explanation !== "" && <p class="explanation">{explanation}</p>}
-      <div class="row">
-        <button type="button" disabled={panels.length >= maxPanels}
-          onClick={() => addPanel(nextSpec())}>Add a panel</button>
-        {panels.length > 1 && panels.map((one, at) => (
-          <button key={at} type="button" aria-pressed={at === panel} aria-label={`Settings of panel ${at + 1}: ${one.spec}`}
-            onClick={() => changeCurrent(at)}>{at + 1}</button>
-        ))}
-      </div>
     </Card>
   );
 }
 
-function changeCurrent(panel: number): void {
-  state.value = { ...state.value, panel };
-}
-
-/** An algorithm that no panel shows. */
-function nextSpec(): string {
-  const taken = new Set(state.value.panels.map(({ spec }) => nameOf(spec)));
-  const order = ["grid", "quadtree", "sweep_and_prune", "bvh", "auto", "brute_force"];
-  return order.find((name) => !taken.has(name)) ?? "auto";
-}

@@ -1,19 +1,17 @@
 // Chooses a panel's algorithm.
-import type { Dimension } from "../scene/scene.ts";
-import { algorithms } from "../state/store.ts";
+import { algorithms, changePanel, dimension, state } from "../state/store.ts";
 import { nameOf } from "../state/spec.ts";
 import { Choice } from "./field.tsx";
 
-const groups: Record<string, string> = { own: "The library", paper: "The draft's listings" };
+const groups: Record<string, string> = { own: "The library", paper: "As the paper lists them" };
 
-export function AlgorithmChoice({ spec, dimension, label, onChange }:
-    { spec: string; dimension: Dimension; label: string; onChange: (spec: string) => void }) {
-  const known = algorithms.value.filter(({ dimensions }) => dimensions.includes(dimension));
-  const name = nameOf(spec);
-  const options = known.map((one) =>
+export function PanelAlgorithm({ panel, label, bare = false }: { panel: number; label: string; bare?: boolean }) {
+  const name = nameOf(state.value.panels[panel]?.spec ?? "");
+  const options = algorithms.value.filter(({ dimensions }) => dimensions.includes(dimension.value)).map((one) =>
     ({ value: one.name, label: one.name, group: groups[one.kind] ?? one.kind }));
   // An algorithm that does not support the scene's dimension stays listed, with its search's error
   // beside it.
   if (!options.some(({ value }) => value === name)) options.unshift({ value: name, label: name, group: "Chosen" });
-  return <Choice label={label} value={name} options={options} onChange={onChange} bare />;
+  return <Choice label={label} value={name} options={options} bare={bare}
+    onChange={(spec) => changePanel(panel, { spec })} />;
 }

@@ -1,13 +1,15 @@
-// The page: its head, the picture, and the column beside it.
+// The page: its head, and the text, pictures and controls of each of its parts.
+import { lessons } from "../lessons/index.ts";
 import type { Mode } from "../state/state.ts";
 import { patch, said, state } from "../state/store.ts";
 import { address } from "./address.ts";
 import { AlgorithmCard } from "./algorithm_card.tsx";
 import { ChallengeCard } from "./challenge_card.tsx";
 import { hovering } from "./drop.ts";
-import { Inspector } from "./inspector.tsx";
-import { LessonView, openLesson } from "./lesson_view.tsx";
+import { Legend } from "./legend.tsx";
+import { LessonExercise, LessonText, openLesson } from "./lesson_view.tsx";
 import { SceneCard } from "./scene_card.tsx";
+import { Shadows } from "./shadows.tsx";
 import { ShareCard } from "./share_card.tsx";
 import type { Stage } from "./stage.ts";
 import { StageView } from "./stage_view.tsx";
@@ -57,8 +59,20 @@ function Embedded({ stage }: { stage: Stage }) {
   );
 }
 
+function Figure({ stage }: { stage: Stage }) {
+  const { mode, lesson } = state.value;
+  return (
+    <div class="left">
+      <StageView stage={stage} />
+      {mode === "lesson" && lessons[lesson]!.drawsShadows && <Shadows stage={stage} />}
+      <Legend />
+      <Transport />
+    </div>
+  );
+}
+
 export function App({ stage }: { stage: Stage }) {
-  const { mode, embed } = state.value;
+  const { mode, embed, panels } = state.value;
   const speaking = <div class="unseen" role="status" aria-live="polite">{said.value}</div>;
   if (embed) return <><Embedded stage={stage} />{speaking}</>;
   return (
@@ -68,23 +82,26 @@ export function App({ stage }: { stage: Stage }) {
         document.getElementById("main")?.focus();
       }}>Skip to the picture</a>
       <Head />
-      <main id="main" tabIndex={-1} class={mode}>
-        <h1 class="unseen">Playground: which boxes overlap, and how that is found</h1>
-        {mode === "steps" ? <StepsView /> : (
+      <main id="main" tabIndex={-1} class={`${mode} ${mode === "play" && panels.length > 1 ? "wide" : ""}`}>
+        {mode === "steps" && <StepsView />}
+        {mode === "lesson" && <><LessonText /><Figure stage={stage} /><LessonExercise /></>}
+        {mode === "play" && (
           <>
-            <div class="left">
-              <StageView stage={stage} />
-              <Transport />
-            </div>
-            <aside class="right" aria-label={mode === "lesson" ? "Lesson and settings" : "Settings"}>
-              {mode === "lesson" && <LessonView />}
+            <header class="intro">
+              <h1>Which boxes overlap?</h1>
+              <p>A broad phase finds every pair of boxes that overlap, and tests as few pairs as it can for that. Here are
+                Broadside's algorithms at work: drag a box, choose an algorithm, and see which boxes it compares.</p>
+            </header>
+            <Figure stage={stage} />
+            <aside class="right" aria-label="Settings">
               <SceneCard />
               <AlgorithmCard />
-              <Inspector />
+            </aside>
+            <div class="more">
               <TimesCard />
               <ChallengeCard />
               <ShareCard stage={stage} />
-            </aside>
+            </div>
           </>
         )}
       </main>

@@ -58,7 +58,7 @@ export function Choice({ label, value, options, onChange, bare = false, class: n
 }
 
 interface SwitchProps {
-  label: string;
+  label: ComponentChildren;
   value: boolean;
   onChange: (value: boolean) => void;
   hint?: string;
@@ -92,9 +92,10 @@ export function Buttons<Value extends string>({ label, value, options, onChange 
   );
 }
 
-export function Card({ title, children, open = true }: { title: string; children: ComponentChildren; open?: boolean }) {
+export function Card({ title, children, open = true, class: name = "" }:
+    { title: string; children: ComponentChildren; open?: boolean; class?: string }) {
   return (
-    <details class="card" open={open}>
+    <details class={`card ${name}`} open={open}>
       <summary><h2>{title}</h2></summary>
       <div class="inside">{children}</div>
     </details>

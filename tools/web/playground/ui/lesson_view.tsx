@@ -1,4 +1,4 @@
-// A lesson beside its boxes.
+// A lesson: its text before the picture, its exercise after it.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 
@@ -21,7 +21,7 @@ export function openLesson(at: number): void {
   show({ ...lessons[at]!.start, mode: "lesson", lesson: at });
 }
 
-export function LessonView() {
+export function LessonText() {
   const at = state.value.lesson;
   const lesson = lessons[at]!;
   return (
@@ -32,16 +32,25 @@ export function LessonView() {
             aria-label={`Lesson ${one + 1}: ${title}`} onClick={() => openLesson(one)}>{one + 1}</button>
         ))}
       </nav>
-      <h2 id="lesson-title">{at + 1}. {lesson.title}</h2>
+      <h1 id="lesson-title">{at + 1}. {lesson.title}</h1>
       {lesson.text}
-      <div class="row">
+      <div class="row tries">
+        <span>Show:</span>
         {lesson.tries.map(({ label, state: change }) =>
           <button key={label} type="button" onClick={() => show({ ...lesson.start, ...change })}>{label}</button>)}
       </div>
-      <ExerciseView key={lesson.title} lesson={lesson} />
+    </article>
+  );
+}
+
+export function LessonExercise() {
+  const at = state.value.lesson;
+  return (
+    <div class="card lesson-exercise">
+      <ExerciseView key={at} lesson={lessons[at]!} />
       {at + 1 < lessons.length &&
         <button type="button" onClick={() => openLesson(at + 1)}>Next: {lessons[at + 1]!.title}</button>}
-    </article>
+    </div>
   );
 }
 
@@ -66,8 +75,9 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
   }, [lesson]);
   return (
     <section class={`exercise ${done.value ? "done" : ""}`} aria-label="Exercise">
-      <h3>Exercise {done.value && <span class="badge">Done</span>}</h3>
+      <h2>Exercise {done.value && <span class="badge">Done</span>}</h2>
       {lesson.exercise.task}
+      {lesson.exercise.control()}
       <p class="verdict">{verdict.value?.text ?? "…"}</p>
       <div class="row">
         <button type="button" onClick={() => show(lesson.start)}>Start again</button>

@@ -2,8 +2,10 @@
 import { useEffect, useRef } from "preact/hooks";
 
 import type { PanelResult } from "../bench/protocol.ts";
-import { changePanel, dimension, removePanel, state, told } from "../state/store.ts";
-import { AlgorithmChoice } from "./algorithm_choice.tsx";
+import { changePanel, removePanel, state, told } from "../state/store.ts";
+import { PanelAlgorithm } from "./algorithm_choice.tsx";
+import { DragHint } from "./drag_hint.tsx";
+import { Explanation } from "./explanation.tsx";
 import { Switch } from "./field.tsx";
 import { keysHelp, windowKey } from "./keys.ts";
 import { bytes, duration, grouped } from "./numbers.ts";
@@ -22,17 +24,19 @@ export function PanelView({ at, stage }: { at: number; stage: Stage }) {
   return (
     <section class={`panel ${panel === at && panels.length > 1 ? "current" : ""}`} aria-label={`Panel ${at + 1}`}>
       <header>
-        <AlgorithmChoice spec={choice.spec} dimension={dimension.value} label={`Algorithm of panel ${at + 1}`}
-          onChange={(spec) => changePanel(at, { spec })} />
-        {!embed && <Switch label="follow" value={choice.follow}
-          hint="Follow the boxes from frame to frame instead of searching anew"
+        <PanelAlgorithm panel={at} label={`Algorithm of panel ${at + 1}`} bare />
+        {!embed && <Switch label="reuse last frame" value={choice.follow}
+          hint="Update the pairs of the last frame by what moved, instead of searching anew"
           onChange={(follow) => changePanel(at, { follow })} />}
         {panels.length > 1 && !embed &&
           <button type="button" class="quiet" aria-label={`Close panel ${at + 1}`} onClick={() => removePanel(at)}>×</button>}
       </header>
       <div ref={element} class={`window tool-${tool.value}`} tabIndex={0} role="group"
-        aria-label={`Boxes, searched by ${choice.spec}`} aria-describedby="keys-help" onKeyDown={windowKey} />
+        aria-label={`Boxes, searched by ${choice.spec}`} aria-describedby="keys-help" onKeyDown={windowKey}>
+        {at === 0 && <DragHint stage={stage} />}
+      </div>
       <Counts at={at} />
+      {!embed && <Explanation at={at} stage={stage} window={element} />}
       {at === 0 && <p id="keys-help" class="unseen">{keysHelp}</p>}
     </section>
   );

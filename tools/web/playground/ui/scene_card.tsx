@@ -2,9 +2,9 @@
 import { sceneEntries, sceneEntry, fileScene } from "../scene/catalogue.ts";
 import type { Knobs } from "../scene/drift.ts";
 import { maxBoxes } from "../state/state.ts";
-import { changeScene, chooseScene, fileName, patch, state } from "../state/store.ts";
+import { changeScene, chooseScene, fileName, state } from "../state/store.ts";
 import { openFile } from "./drop.ts";
-import { Card, Choice, Slider, Switch } from "./field.tsx";
+import { Card, Choice, Slider } from "./field.tsx";
 import { grouped } from "./numbers.ts";
 
 interface Knob {
@@ -33,8 +33,17 @@ function rounded(count: number): number {
   return Math.min(maxBoxes, Math.max(1, Math.round(count / unit) * unit));
 }
 
+/** A slider of the drifting boxes. */
+export function KnobSlider({ name }: { name: keyof Knobs }) {
+  const { scene } = state.value;
+  const { label, min, max, logarithmic, text, hint } = knobs.find((knob) => knob.name === name)!;
+  return <Slider label={label} value={scene.knobs[name]} min={min} max={max} text={text} hint={hint}
+    logarithmic={logarithmic ?? false}
+    onChange={(value) => changeScene({ knobs: { ...scene.knobs, [name]: value } })} />;
+}
+
 export function SceneCard() {
-  const { scene, structure, overlaps } = state.value;
+  const { scene } = state.value;
   const entry = sceneEntry(scene.name);
   const options = sceneEntries.map((one) => ({ value: one.name, label: one.title, group: one.breaks === undefined ? "Plain" : "That break algorithms" }));
   if (scene.name === fileScene) options.push({ value: fileScene, label: fileName.value || "A file", group: "Yours" });
@@ -45,18 +54,10 @@ export function SceneCard() {
       {entry?.breaks !== undefined && <p class="note">It breaks <code>{entry.breaks.spec}</code>: {entry.breaks.why}</p>}
       {scene.name !== fileScene && <Slider label="Number of boxes" value={scene.count} min={10} max={maxBoxes}
         logarithmic text={grouped} onChange={(value) => changeScene({ count: rounded(value) })} />}
-      {entry?.knobs === true && knobs.map(({ name, label, min, max, logarithmic, text, hint }) => (
-        <Slider key={name} label={label} value={scene.knobs[name]} min={min} max={max} text={text} hint={hint}
-          logarithmic={logarithmic ?? false}
-          onChange={(value) => changeScene({ knobs: { ...scene.knobs, [name]: value } })} />
-      ))}
+      {entry?.knobs === true && knobs.map(({ name }) => <KnobSlider key={name} name={name} />)}
       <div class="row">
-        <Switch label="structure" value={structure} hint="Draw the algorithm's cells, stripes or nodes"
-          onChange={(value) => patch({ structure: value })} />
-        <Switch label="overlaps" value={overlaps} hint="Fill where the boxes of a pair overlap"
-          onChange={(value) => patch({ overlaps: value })} />
         {scene.name !== fileScene &&
-          <button type="button" onClick={() => changeScene({ seed: scene.seed % 1000 + 1 })}>Other boxes</button>}
+          <button type="button" onClick={() => changeScene({ seed: scene.seed % 1000 + 1 })}>Draw new boxes at random</button>}
         <label class="file-choice">
           <span>Open a file …</span>
           <input type="file" class="unseen" accept=".csv,.txt,.btrace,.ply,.json,.geojson" onChange={(event) => {

@@ -57,7 +57,7 @@ export function ShareCard({ stage }: { stage: Stage }) {
     saveAs(await make(), `broadside.${kind.toLowerCase()}`);
   });
   return (
-    <Card title="Take it along">
+    <Card title="Share, save, and use it in your program">
       <div class="row">
         <button type="button" onClick={() => void copy(address(), "Link")}>Copy link</button>
         <button type="button" onClick={() => void copy(embedding(), "Code to embed")}>Copy code to embed</button>

@@ -1,8 +1,7 @@
 // The picture: one canvas behind all panels, and the position of each panel's window on it.
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 
-import { flatCamera } from "../draw/camera.ts";
-import { CanvasPainter } from "../draw/canvas_painter.ts";
+import { CanvasPainter, projectionOf } from "../draw/canvas_painter.ts";
 import type { Drawn, Painter, Painting, Place } from "../draw/painting.ts";
 import { WebglPainter } from "../draw/webgl_painter.ts";
 import { shown, state } from "../state/store.ts";
@@ -19,6 +18,8 @@ export class Stage {
   private places: Place[] = [];
   private readonly observed = new WeakSet<Element>();
   private readonly observer = new ResizeObserver(() => this.measure());
+  /** Changes with the places of the panels' windows. */
+  readonly layout = signal(0);
   /** Called when the same boxes must be repainted. */
   onChange: () => void = () => {};
 
@@ -65,17 +66,25 @@ export class Stage {
       const { x, y, width, height } = one.getBoundingClientRect();
       return { x: x - all.x, y: y - all.y, width, height };
     });
+    this.layout.value = this.layout.peek() + 1;
     this.onChange();
   }
 
-  /** Position of the middle of a flat box in the first panel, in pixels of the page. */
+  /** The rectangle that a box takes in a panel's window. */
+  rectangle(at: number, box: number): Place | undefined {
+    const painting = this.painting();
+    const panel = painting?.panels[at];
+    if (painting === undefined || panel === undefined || !(box in painting.marks)) return undefined;
+    const [x, y, width, height] = projectionOf(painting, panel)(painting.boxes, 2 * painting.dimension * box);
+    return { x, y, width, height };
+  }
+
+  /** Position of the middle of a box in the first panel, in pixels of the page. */
   where(box: number): [x: number, y: number] | undefined {
-    const [now, place] = [shown.value, this.places[0]];
-    if (now === null || place === undefined || now.dimension !== 2 || this.holder === undefined) return undefined;
-    const { scale, left, top } = flatCamera(now.bounds, place, view.value);
+    const [one, place] = [this.rectangle(0, box), this.places[0]];
+    if (one === undefined || place === undefined || this.holder === undefined) return undefined;
     const { x, y } = this.holder.getBoundingClientRect();
-    const [x0, y0, x1, y1] = [...now.boxes.subarray(4 * box, 4 * box + 4)] as [number, number, number, number];
-    return [x + place.x + left + scale * (x0 + x1) / 2, y + place.y + top + scale * (y0 + y1) / 2];
+    return [x + place.x + one.x + one.width / 2, y + place.y + one.y + one.height / 2];
   }
 
   place(panel: number): Place | undefined {

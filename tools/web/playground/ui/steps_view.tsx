@@ -75,6 +75,11 @@ export function StepsView() {
   };
   return (
     <div class="steps" onKeyDown={onKey}>
+      <header class="intro">
+        <h1>An algorithm, one step at a time</h1>
+        <p>The box or pair at work is marked in the picture, and the line that does it in the listing, which is the
+          paper's. Step with the buttons or the arrow keys.</p>
+      </header>
       <div class="steps-left">
         <Buttons label="Algorithm" value={algorithm} options={algorithms}
           onChange={(value) => change({ algorithm: value, at: 0 })} />
@@ -113,7 +118,7 @@ export function StepsView() {
           <Slider label="Number of boxes" value={count} min={2} max={40} step={1}
             onChange={(value) => change({ count: Math.round(value), at: 0 })} />
           {algorithm === "grid" && <Slider label="Cell" value={cell} min={0} max={8} step={0.25}
-            text={(value) => value === 0 ? "by itself" : String(value)} onChange={(value) => change({ cell: value, at: 0 })} />}
+            text={(value) => value === 0 ? "chosen by the algorithm" : String(value)} onChange={(value) => change({ cell: value, at: 0 })} />}
           {algorithm === "quadtree" && <Slider label="Capacity" value={capacity} min={1} max={16} step={1}
             onChange={(value) => change({ capacity: Math.round(value), at: 0 })} />}
           <Slider label="Steps in a second" value={pace.value} min={0.5} max={30} logarithmic
@@ -121,7 +126,7 @@ export function StepsView() {
           <button type="button" onClick={() => {
             changeScene({ seed: state.value.scene.seed % 1000 + 1 });
             change({ at: 0 });
-          }}>Other boxes</button>
+          }}>Draw new boxes at random</button>
         </section>
       </div>
     </div>

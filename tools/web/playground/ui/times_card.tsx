@@ -39,16 +39,17 @@ function options(specs: readonly string[], width: number): UPlot.Options {
   const dark = theme.value === "dark";
   const text = dark ? "#a5aebd" : "#5a6473";
   const grid = { stroke: dark ? "#2a313d" : "#e6e9ef", width: 1 };
-  const axis = { stroke: text, grid, ticks: grid, font: "11px system-ui, sans-serif" };
+  const axis = { stroke: text, grid, ticks: grid, font: "13px system-ui, sans-serif" };
   // uPlot leaves out the labels between powers of ten.
   return {
-    width, height: 230,
+    width, height: Math.round(Math.min(460, Math.max(300, 0.4 * width))),
+    padding: [null, 24, null, null],
     legend: { live: false },
     cursor: { drag: { x: false, y: false } },
     scales: { x: { distr: 3, time: false }, y: { distr: 3 } },
     axes: [
-      { ...axis, label: "boxes", labelFont: axis.font, labelSize: 16, values: (_, all) => all.map((one) => one === null ? "" : grouped(one)) },
-      { ...axis, size: 56, values: (_, all) => all.map((one) => one === null ? "" : duration(one)) },
+      { ...axis, label: "boxes", labelFont: axis.font, labelSize: 20, values: (_, all) => all.map((one) => one === null ? "" : grouped(one)) },
+      { ...axis, size: 70, values: (_, all) => all.map((one) => one === null ? "" : duration(one)) },
     ],
     series: [
       { label: "boxes" },
@@ -106,11 +107,12 @@ export function TimesCard() {
       return `${spec} from ${duration(known[0] ?? 0)} to ${duration(known[known.length - 1] ?? 0)}`;
     }).join("; ");
   return (
-    <Card title="Time against number">
-      <p class="note">Drag the number of boxes, or measure all numbers from 10 to 100,000, with each panel's algorithm.
-        Times are of this browser on this machine; both axes are logarithmic.</p>
+    <Card title="Time against the number of boxes" class="large">
+      <p class="note">How long does a search take, and how fast does that grow? Measure every algorithm above on 10 to
+        100,000 of these boxes, or drag the number of boxes yourself: each time shown becomes a point. Times are of this
+        browser on this machine; both axes are logarithmic.</p>
       <button type="button" disabled={measuring.value || state.value.scene.name === fileScene} onClick={start}>
-        {measuring.value ? "Measuring …" : "Measure"}</button>
+        {measuring.value ? "Measuring …" : "Measure 10 to 100,000 boxes"}</button>
       <div ref={element} class="times" role="img" aria-label={summary || "No times yet"} />
     </Card>
   );

@@ -1,11 +1,20 @@
-// Time: play, pause, step, scrub; the pointer's tool; recording.
-import { clock, dimension, duration, latest, patch, recording, say, state, told } from "../state/store.ts";
+// Time: play, pause, step, scrub; the pointer's tool; recording; another algorithm beside the others.
+import { nameOf } from "../state/spec.ts";
+import { maxPanels } from "../state/state.ts";
+import { addPanel, clock, dimension, duration, latest, patch, recording, say, state, told } from "../state/store.ts";
 import { Buttons, Slider, Switch } from "./field.tsx";
 import { stepTime, togglePlaying } from "./keys.ts";
 import { tool, tools } from "./tools.ts";
 import { view, wholeView, zoomBy } from "./view.ts";
 
 const frame = 1 / 30;
+
+/** An algorithm that no panel shows. */
+function nextSpec(): string {
+  const taken = new Set(state.value.panels.map(({ spec }) => nameOf(spec)));
+  const order = ["grid", "quadtree", "sweep_and_prune", "bvh", "auto", "brute_force"];
+  return order.find((name) => !taken.has(name)) ?? "auto";
+}
 
 /** A component of its own, because it changes often. */
 function TimeSlider() {
@@ -20,7 +29,7 @@ function TimeSlider() {
 }
 
 export function Transport() {
-  const { playing, pace, edits } = state.value;
+  const { playing, pace, edits, panels, mode } = state.value;
   const flat = dimension.value === 2;
   return (
     <div class="transport" role="group" aria-label="Time and tools">
@@ -29,14 +38,16 @@ export function Transport() {
         <button type="button" onClick={() => stepTime(-frame)} aria-label="One frame back">◂ back</button>
         <button type="button" onClick={() => stepTime(frame)} aria-label="One frame forward">forward ▸</button>
         <TimeSlider />
-        <Slider label="Pace" value={pace} min={0.1} max={4} logarithmic text={(value) => `${value.toFixed(1)}×`}
+        <Slider label="Speed of time" value={pace} min={0.1} max={4} logarithmic text={(value) => `${value.toFixed(1)}×`}
           onChange={(value) => patch({ pace: value })} />
       </div>
-      <div class="row">
+      {mode === "play" && <div class="row">
+        {panels.length < maxPanels &&
+          <button type="button" onClick={() => addPanel(nextSpec())}>Compare with another algorithm</button>}
         {flat && <Buttons label="What the pointer does" value={tool.value}
           options={tools.map(({ name, label, hint }) => ({ value: name, label, hint }))}
           onChange={(name) => { tool.value = name; }} />}
-        {flat && <Switch label="record drags" value={recording.value}
+        {flat && <Switch label="record drags for replay" value={recording.value}
           hint="Keep the way that a box is dragged, to scrub through it later"
           onChange={(value) => { recording.value = value; }} />}
         {edits.length > 0 && <button type="button" onClick={() => {
@@ -46,9 +57,9 @@ export function Transport() {
         <div class="buttons" role="group" aria-label="Camera">
           <button type="button" aria-label="Zoom in" onClick={() => zoomBy(1.25)}>+</button>
           <button type="button" aria-label="Zoom out" onClick={() => zoomBy(0.8)}>−</button>
-          <button type="button" aria-disabled={view.value.zoom === 1} onClick={wholeView}>whole</button>
+          <button type="button" aria-disabled={view.value.zoom === 1} onClick={wholeView}>Show all</button>
         </div>
-      </div>
+      </div>}
     </div>
   );
 }
