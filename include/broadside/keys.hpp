@@ -1,5 +1,5 @@
-// filters_of_keys(): filters that let boxes pair only if their keys are equal, or only if they differ. Both
-// at once, of two kinds of keys: only_different().
+// filters_of_keys(): filters that let boxes pair only if their keys are equal, or only if they differ.
+// only_different() combines both, for two kinds of keys.
 #pragma once
 
 #include <concepts>
@@ -128,9 +128,10 @@ requires std::same_as<std::ranges::range_value_t<Left>, std::ranges::range_value
   return {std::move(left_made), of_both.filters(right, right_filters)};
 }
 
-/// A sink that passes on to `target` the pairs whose boxes have different keys: left[pair.first] and
-/// right[pair.second], which are the same array for pairs of one set. Together with filters of other keys,
-/// it finds for example pairs in the same image of different classes. All must outlive the sink.
+/// A sink that passes a pair on to `target` if the keys of its boxes, left[pair.first] and
+/// right[pair.second], differ. For pairs of one set, pass the same array twice. With filters of other keys it
+/// finds, for example, pairs of different classes in the same image. The arrays and `target` must outlive
+/// the sink.
 ///
 ///     PairCollector found(pairs);
 ///     auto different = only_different(classes, classes, found);
@@ -149,7 +150,7 @@ template <typename Left, typename Right>
       target.commit(passed);
       pairs = pairs.subspan(count);
     }
-    target.flush();  // because a search flushes this sink alone
+    target.flush();  // because a search flushes only this sink
   });
 }
 

@@ -19,7 +19,7 @@
 
 namespace broadside {
 
-/// The times between which two boxes overlap in a step: 0 <= enter <= leave <= 1.
+/// The times at which two boxes begin and stop overlapping in a step: 0 <= enter <= leave <= 1.
 struct OverlapTime {
   double enter;
   double leave;
@@ -27,18 +27,18 @@ struct OverlapTime {
   friend constexpr bool operator==(const OverlapTime&, const OverlapTime&) = default;
 };
 
-/// When two present boxes overlap, if each bound moves at an even speed from its place in `from` at time 0 to
-/// its place in `to` at time 1; nothing if they never do. Boxes are closed, so a contact at one time alone
-/// counts, with enter = leave. A bound that is infinite at one of the two times is so all the time.
+/// Returns when two present boxes overlap, or nothing if they never do. Each bound moves at a constant speed
+/// from its position in `from` at time 0 to its position in `to` at time 1. Boxes are closed, so a contact at
+/// a single time counts, with enter = leave. A bound that is infinite at time 0 or 1 is infinite throughout.
 ///
-/// Two boxes overlap at some time unless a pair of bounds meets after another pair has parted. That is
-/// decided by the distances of the bounds at times 0 and 1, each rounded to double, and by comparing products
-/// of two of these, also rounded. So it is exact if the distances and products are, as with whole numbers
-/// below 2^25. If the distances are exact, as those of floats are unless they differ in size by a factor of
-/// 2^29, no pair is missed; one may count that misses by 2^-52 of a product. The times are quotients of the
-/// distances, rounded twice.
+/// Two boxes overlap at some time unless one pair of bounds meets only after another pair has parted. To
+/// decide this, the function computes the distances of the bounds at times 0 and 1, each rounded to double,
+/// and compares products of two distances, also rounded. The result is exact if the distances and products
+/// are exact, as with whole numbers below 2^25. If only the distances are exact, no pair is missed, but a
+/// pair that misses by 2^-52 of a product may count. The distances of floats are exact unless the floats
+/// differ in size by a factor of 2^29. The times are quotients of the distances, rounded twice.
 ///
-/// It is compiled into the library, so that every program rounds it in the same way.
+/// The function is compiled into the library, so that every program rounds in the same way.
 template <int D, typename Real>
 [[nodiscard]] BROADSIDE_PUBLIC std::optional<OverlapTime> overlap_time(const Box<D, Real>& from_a,
                                                                        const Box<D, Real>& to_a,
@@ -54,8 +54,8 @@ struct MovingBoxes {
   BoxView<D, Real> to;
 };
 
-/// Writes the pairs of one set if `right` is null, otherwise of two, and flushes. Lists invalid boxes in
-/// `quarantined`; if that is null, throws InvalidInput for the first one.
+/// Writes the pairs of one set if `right` is null, otherwise those of two sets, and flushes. Lists invalid
+/// boxes in `quarantined`; if that is null, throws InvalidInput for the first invalid box.
 template <int D, typename Real>
 BROADSIDE_PUBLIC void find_pairs_moving(const MovingBoxes<D, Real>& boxes, const MovingBoxes<D, Real>* right,
                                         PairSink& pairs, const Spec& algorithm, const Workers& workers,
@@ -76,7 +76,7 @@ BROADSIDE_CALLERS_VECTOR void find_pairs_moving(const MovingBoxes<D, Real>& boxe
   if (options.quarantined != nullptr) *options.quarantined = std::move(places);
 }
 
-/// Sets times[i] to the time of pairs[i]; infinity and -infinity for a pair that never overlaps.
+/// Sets times[i] to the overlap time of pairs[i]: {infinity, -infinity} for a pair that never overlaps.
 template <int D, typename Real>
 BROADSIDE_PUBLIC void set_overlap_times(const MovingBoxes<D, Real>& left, const MovingBoxes<D, Real>& right,
                                         std::span<const Pair> pairs, std::span<OverlapTime> times);
@@ -88,17 +88,17 @@ MovingBoxes<D, Real> moving(BoxView<D, Real> from, BoxView<D, Real> to) {
 
 }  // namespace detail
 
-/// Writes each pair of boxes that overlap at some time of a step once, as indexes into `from`, and flushes:
-/// the pairs with an overlap_time(), which `from` has at the beginning of the step and `to` at its end. Two
-/// boxes that pass through the same place one after the other are none. A box that is absent at one of the
-/// two times is absent.
+/// Writes each pair of boxes that overlap at some time of a step once, as indexes into `from`, and flushes.
+/// `from` has the boxes at the beginning of the step, `to` those at its end; overlap_time() defines which
+/// pairs overlap. Two boxes that pass through the same place one after the other are not a pair. A box that
+/// is absent at one of the two times pairs with nothing.
 ///
 ///     find_pairs_moving(positions, next_positions, [&](Pair pair) { ... });
 ///
-/// Finds the pairs of the swept boxes, merged(from[i], to[i]), and tests these. `pairs` and `options` are
-/// those of find_pairs(); the algorithm and the boxes determine the order of pairs. Throws what find_pairs()
-/// throws; InvalidFrame if `to` has another length than `from`; std::invalid_argument if options.touching is
-/// false. Nothing has been written then.
+/// Finds the pairs of the swept boxes, merged(from[i], to[i]), and tests each of them. `pairs` and `options`
+/// are those of find_pairs(); the algorithm and the boxes determine the order of pairs. Throws what
+/// find_pairs() throws; InvalidFrame if the lengths of `from` and `to` differ; std::invalid_argument if
+/// options.touching is false. Nothing has been written then.
 template <BoxRange From, BoxRange To, PairTarget Target>
 void find_pairs_moving(const From& from, const To& to, Target&& pairs, const FindOptions& options = {}) {
   using View = detail::ViewOf<From>;
@@ -137,8 +137,8 @@ template <BoxRange From, BoxRange To, BoxRange RightFrom, BoxRange RightTo>
   });
 }
 
-/// The overlap_time() of each pair; infinity and -infinity for one that never overlaps. Throws InvalidFrame
-/// if `to` has another length than `from`, or for an id that is out of range.
+/// Returns the overlap_time() of each pair: {infinity, -infinity} for a pair that never overlaps. Throws
+/// InvalidFrame if the lengths of `from` and `to` differ, or if an id is out of range.
 template <BoxRange From, BoxRange To>
 [[nodiscard]] std::vector<OverlapTime> overlap_times(const From& from, const To& to,
                                                      std::span<const Pair> pairs) {

@@ -22,7 +22,7 @@ struct Ray {
   Point<D, Real> origin;     ///< finite
   Point<D, Real> direction;  ///< finite
   Real t_max = std::numeric_limits<Real>::infinity();
-  bool entering = false;  ///< whether it hits only boxes that it enters: see enters()
+  bool entering = false;  ///< whether the ray hits only boxes that it enters: see enters()
 };
 
 /// A box that moves along a direction: at t it is `box` + t * direction, with 0 <= t <= t_max.
@@ -34,12 +34,13 @@ struct BoxCast {
   bool entering = false;  ///< as in Ray
 };
 
-/// Whether a cast that touches the box at some t >= 0 enters it: at the start it is outside, or touches the
-/// box and moves into it. A cast that starts inside the box, moves along a face that it touches, or leaves it
-/// does not. If nothing stopped it, it would touch the box from some t >= 0 to a t > 0.
+/// Whether a cast that touches the box at some t >= 0 enters it. It does if it starts outside the box, or
+/// touches the box at the start and moves into it. It does not if it starts inside the box, moves along a
+/// face that it touches, or leaves the box. A cast that enters would touch the box from some t >= 0 to some
+/// t > 0 if nothing stopped it.
 ///
-/// Exact, since it compares coordinates alone: on some axis the leading side of the cast box is at the near
-/// side of the other one or before it, and on no axis has it reached the far side with its trailing side.
+/// The result is exact, since only coordinates are compared. The cast enters if on some axis its leading side
+/// has not passed the near side of the box, and on no axis its trailing side has reached the far side.
 template <int D, typename Real>
 [[nodiscard]] constexpr bool enters(const BoxCast<D, Real>& cast, const Box<D, Real>& box) noexcept {
   bool is_outside = false;
@@ -55,7 +56,7 @@ template <int D, typename Real>
 }
 
 /// The least t at which the cast box touches a present box: 0 if they touch at the start, nothing if they do
-/// not touch up to `t_max`. With `cast.entering`, nothing if the cast does not enter the box.
+/// not touch up to `t_max`. With `cast.entering`, also nothing if the cast does not enter the box.
 ///
 /// Boxes are closed. The t of each bound is (bound - position) / direction, rounded twice. If the differences
 /// of coordinates are exact, as with whole numbers, a cast that grazes a face, an edge or a corner hits it. A

@@ -46,14 +46,15 @@ std::size_t frame_of(const PairsArguments& arguments) {
   return arguments.frame.empty() ? 0 : read_index("--frame", arguments.frame);
 }
 
-/// The column or property that read() takes from a file: the ids to write or else keys; empty without both.
+/// The column or property that read() takes from a file: the ids to write or, without --ids, the keys; empty
+/// without both.
 const std::string& labels_column(const PairsArguments& arguments, std::size_t file) {
   if (!arguments.ids.empty()) return arguments.ids[std::min(file, arguments.ids.size() - 1)];
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
-/// Which rows of tables may be boxes across the date line: with --longitude, and by the names of columns if
-/// space can repeat.
+/// Which rows of tables may be boxes across the date line: all with --longitude, otherwise those whose
+/// columns are named as longitudes, if space can repeat.
 lab::DateLine date_line_of(const PairsArguments& arguments, const lab::Entry& entry) {
   if (arguments.is_longitude) return lab::DateLine::always;
   const bool can_repeat = find_algorithm(entry.spec.name) != nullptr && !takes_all_frames(arguments) &&
@@ -464,21 +465,22 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
       ->type_name("LENGTHS");
   verb->add_flag(
       "--longitude", arguments->is_longitude,
-      "The first axis is in degrees of longitude: it repeats after 360, and a row of a table from 170 to "
-      "-170 is a box across the date line. Rows like that need no such option if the columns' names say "
-      "lon");
+      "The first axis is in degrees of longitude: space repeats after 360, and a table's row from 170 to "
+      "-170 is a box across the date line. Such rows are read so without this option if the names of "
+      "their columns contain lon or lng");
   verb->add_flag(
       "--no-touching", arguments->leaves_out_touching,
       "Leave out pairs of boxes that only touch. Boxes are half-open (min <= p < max); a point or line "
       "on a border belongs to the box that begins there");
   verb->add_option(
           "--same", arguments->same,
-          "Find only pairs of boxes with the same key, such as an image or a class: a table's column, or "
-          "a map's property")
+          "Find only pairs of boxes with the same key, such as an image or a class. NAME is a table's "
+          "column or a map's property")
       ->type_name("NAME");
   verb->add_option(
           "--different", arguments->different,
-          "Find only pairs of boxes with different keys, likewise; with --same as well, both must hold")
+          "Find only pairs of boxes with different keys; NAME as for --same. With both options, a pair "
+          "must meet both conditions")
       ->type_name("NAME");
   verb->add_flag(
       "--components", arguments->finds_components,
@@ -491,8 +493,9 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Threads to search with (0: as many as the machine has; default: the spec's, or 1); they "
                    "affect the time alone");
   verb->add_option("--frame", arguments->frame,
-                   "The frame of a file whose boxes move, counted from 0 (default: the first); all: every "
-                   "frame, with the frame's number before each pair. All frames are held in memory");
+                   "Which frame to search in a file whose boxes move, counted from 0 (default: the first). "
+                   "'all' searches every frame, and writes its number before each pair; all frames are held "
+                   "in memory");
   verb->add_option("-o,--output", arguments->output,
                    "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
                    "as CSV unless --to says otherwise")
