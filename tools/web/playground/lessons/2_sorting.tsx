@@ -20,7 +20,7 @@ export const sorting: Lesson = {
       <p>Sort the boxes by where they begin on x. Then go along: a box has to be tested only against those that begin
         before it ends. As soon as one begins later, so do all that follow, and the search for this box is over. This is{" "}
         <b>sweep and prune</b>: the sort takes n log n steps, or n with a radix sort, and the tests are those of boxes
-        whose shadows on x overlap. The bars below the picture are these shadows.</p>
+        whose shadows on x overlap. The bars below the picture show these shadows.</p>
       <p>On a street, few shadows overlap. In a tower nearly all do, and the sweep is brute force again. So the axis matters.</p>
     </>
   ),

@@ -23,10 +23,10 @@ export const coherence: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>Both panels show the same boxes; the second one reuses its last frame. Change how the boxes move, but keep <b>some moving</b>,
-      until that takes <b>less than half</b> of the search's tests.</p>,
+    task: <p>Both panels show the same boxes; the second one reuses its last frame. Change how many boxes move, but
+      keep <b>some moving</b>, until the second panel makes <b>less than half</b> of the first one's tests.</p>,
     control: () => <KnobSlider name="moving" />,
-    hint: <p>A tracker compares each mover with many boxes near it, so few may move.</p>,
+    hint: <p>A tracker compares each box that moves with many boxes near it, so let only a few move.</p>,
     check({ shown, state }) {
       const searching = shown.panels.find((_, at) => state.panels[at]?.follow === false);
       const following = shown.panels.find((_, at) => state.panels[at]?.follow === true);

@@ -37,7 +37,8 @@ export const choosing: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>For each of the three cases, choose an algorithm (not <code>auto</code>), then press <b>Race</b>. It has to take less than {enough} times as long as the fastest.</p>,
+    task: <p>For each of the three cases, choose an algorithm (not <code>auto</code>), then press <b>Race</b>. Your
+      algorithm has to take less than {enough} times as long as the fastest one.</p>,
     control: () => <><PanelAlgorithm panel={0} label="Algorithm" /><Race /></>,
     hint: <p>The list above has a line for each of the three.</p>,
     check({ state, duel }) {

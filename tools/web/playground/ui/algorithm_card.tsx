@@ -66,7 +66,7 @@ export function AlgorithmCard() {
   const explanation = told.value?.panels[panel]?.explanation ?? "";
   return (
     <Card title={panels.length > 1 ? `Algorithm ${panel + 1} of ${panels.length}` : "Algorithm"}>
-      {panels.length > 1 && <div class="row" role="group" aria-label="Algorithm to set">{panels.map((one, at) => (
+      {panels.length > 1 && <div class="row" role="group" aria-label="Algorithm to adjust">{panels.map((one, at) => (
         <button key={at} type="button" aria-pressed={at === panel} onClick={() => patch({ panel: at })}>
           {at + 1}: {nameOf(one.spec)}</button>
       ))}</div>}

@@ -3,7 +3,7 @@ import { algorithms, changePanel, dimension, state } from "../state/store.ts";
 import { nameOf } from "../state/spec.ts";
 import { Choice } from "./field.tsx";
 
-const groups: Record<string, string> = { own: "The library", paper: "As the paper lists them" };
+const groups: Record<string, string> = { own: "In the library", paper: "As listed in the paper" };
 
 export function PanelAlgorithm({ panel, label, bare = false }: { panel: number; label: string; bare?: boolean }) {
   const name = nameOf(state.value.panels[panel]?.spec ?? "");

@@ -89,8 +89,8 @@ export function App({ stage }: { stage: Stage }) {
           <>
             <header class="intro">
               <h1>Which boxes overlap?</h1>
-              <p>A broad phase finds every pair of boxes that overlap, and tests as few pairs as it can for that. Here are
-                Broadside's algorithms at work: drag a box, choose an algorithm, and see which boxes it compares.</p>
+              <p>A broad phase finds every pair of boxes that overlap, with as few tests as it can. Watch Broadside's
+                algorithms at work: drag a box, choose an algorithm, and see which boxes it compares.</p>
             </header>
             <Figure stage={stage} />
             <aside class="right" aria-label="Settings">

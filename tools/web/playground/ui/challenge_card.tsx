@@ -28,7 +28,7 @@ export function Race() {
       }}>{duelling.value ? "Racing …" : "Race"}</button>
       {result !== null && (
         <table>
-          <caption class="unseen">Times of a search</caption>
+          <caption class="unseen">Time of a search by each algorithm</caption>
           <tbody>
             <tr><th scope="row">auto</th><td>{duration(result.auto)}</td></tr>
             {result.others.map(({ spec, milliseconds }) =>

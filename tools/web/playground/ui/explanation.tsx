@@ -52,11 +52,12 @@ export function Explanation({ at, stage, window }: Props) {
       </header>
       {selection === undefined ? <p class="note">{result.unobserved ?? result.error ?? "…"}</p> : (
         <div class="selection">
-          <p>Compared with <b class="tested">{plural(selection.tested.length, "box")}</b>, of which{" "}
-            <b class="lit">{grouped(selection.hits)}</b> overlap it. {selection.untested.length === 0 ? "It was compared with all." : "Not compared:"}</p>
+          <p>Compared with <b class="tested">{plural(selection.tested.length, "box")}</b>; overlaps{" "}
+            <b class="lit">{grouped(selection.hits)}</b> of them.{" "}
+            {selection.untested.length === 0 ? "No box was left out." : "Not compared:"}</p>
           <ul>{selection.untested.map(({ why, count }) => <li key={why}><b>{grouped(count)}</b> {why}.</li>)}</ul>
-          {panels[at]?.follow && <p class="note">These are the tests of a search. With the last frame's pairs at hand,
-            only boxes that moved are compared.</p>}
+          {panels[at]?.follow && <p class="note">These are the tests of a search from scratch. This panel reuses
+            the last frame's pairs, and compares only boxes that moved.</p>}
         </div>
       )}
     </section>

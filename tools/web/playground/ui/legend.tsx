@@ -8,13 +8,13 @@ export function Legend() {
   return (
     <ul class="legend" aria-label="Legend">
       <li>{key("none")} overlaps no other box</li>
-      <li>{key("lit")} overlaps another</li>
+      <li>{key("lit")} overlaps another box</li>
       {selected >= 0 && <li>{key("tested")} compared with the selected box</li>}
-      <li><Switch label={<>{key("overlap")} where two overlap</>} value={overlaps}
+      <li><Switch label={<>{key("overlap")} where two boxes overlap</>} value={overlaps}
         onChange={(value) => patch({ overlaps: value })} /></li>
       <li><Switch label={<>{key("structure")} the algorithm's rows, cells or nodes</>} value={structure}
         onChange={(value) => patch({ structure: value })} /></li>
-      {selected < 0 && <li class="note">Click a box to see what it is compared with{dimension.value === 3 && ", drag to turn the camera"}.</li>}
+      {selected < 0 && <li class="note">Click a box to see what it is compared with{dimension.value === 3 && "; drag to turn the camera"}.</li>}
     </ul>
   );
 }

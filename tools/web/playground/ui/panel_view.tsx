@@ -26,7 +26,7 @@ export function PanelView({ at, stage }: { at: number; stage: Stage }) {
       <header>
         <PanelAlgorithm panel={at} label={`Algorithm of panel ${at + 1}`} bare />
         {!embed && <Switch label="reuse last frame" value={choice.follow}
-          hint="Update the pairs of the last frame by what moved, instead of searching anew"
+          hint="Update the last frame's pairs for the boxes that moved, instead of searching anew"
           onChange={(follow) => changePanel(at, { follow })} />}
         {panels.length > 1 && !embed &&
           <button type="button" class="quiet" aria-label={`Close panel ${at + 1}`} onClick={() => removePanel(at)}>×</button>}

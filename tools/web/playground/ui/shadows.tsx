@@ -40,8 +40,8 @@ export function Shadows({ stage }: { stage: Stage }) {
   return (
     <figure class="shadows">
       <canvas ref={element} aria-hidden="true" />
-      <figcaption class="note">The boxes' shadows on {"xy"[sweptAxis()]}, stacked where they overlap: a sweep along
-        it compares the boxes of shadows that overlap.</figcaption>
+      <figcaption class="note">The boxes' shadows on {"xy"[sweptAxis()]}, stacked where they overlap. A sweep along
+        this axis compares two boxes if their shadows overlap.</figcaption>
     </figure>
   );
 }

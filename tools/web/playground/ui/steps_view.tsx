@@ -77,8 +77,8 @@ export function StepsView() {
     <div class="steps" onKeyDown={onKey}>
       <header class="intro">
         <h1>An algorithm, one step at a time</h1>
-        <p>The box or pair at work is marked in the picture, and the line that does it in the listing, which is the
-          paper's. Step with the buttons or the arrow keys.</p>
+        <p>The picture marks the current box or pair, and the paper's listing marks the current line. Step with the
+          buttons or the arrow keys.</p>
       </header>
       <div class="steps-left">
         <Buttons label="Algorithm" value={algorithm} options={algorithms}

@@ -108,9 +108,9 @@ export function TimesCard() {
     }).join("; ");
   return (
     <Card title="Time against the number of boxes" class="large">
-      <p class="note">How long does a search take, and how fast does that grow? Measure every algorithm above on 10 to
-        100,000 of these boxes, or drag the number of boxes yourself: each time shown becomes a point. Times are of this
-        browser on this machine; both axes are logarithmic.</p>
+      <p class="note">How long does a search take, and how fast does the time grow? Measure every algorithm above on 10
+        to 100,000 of these boxes, or drag the number of boxes yourself: each time shown becomes a point. Times are
+        measured in this browser, on this machine; both axes are logarithmic.</p>
       <button type="button" disabled={measuring.value || state.value.scene.name === fileScene} onClick={start}>
         {measuring.value ? "Measuring …" : "Measure 10 to 100,000 boxes"}</button>
       <div ref={element} class="times" role="img" aria-label={summary || "No times yet"} />

@@ -6,7 +6,7 @@ export type Tool = "move" | "paint" | "remove";
 export const tool = signal<Tool>("move");
 
 export const tools: readonly { name: Tool; label: string; hint: string }[] = [
-  { name: "move", label: "Drag boxes", hint: "Drag a box and let go to throw it; double-click adds one" },
-  { name: "paint", label: "Add boxes", hint: "Drag to leave boxes behind" },
-  { name: "remove", label: "Remove boxes", hint: "Click a box to take it away" },
+  { name: "move", label: "Drag boxes", hint: "Drag a box and let go to throw it; double-click to add one" },
+  { name: "paint", label: "Add boxes", hint: "Drag to add boxes along the way" },
+  { name: "remove", label: "Remove boxes", hint: "Click a box to remove it" },
 ];

@@ -48,7 +48,7 @@ export function Transport() {
           options={tools.map(({ name, label, hint }) => ({ value: name, label, hint }))}
           onChange={(name) => { tool.value = name; }} />}
         {flat && <Switch label="record drags for replay" value={recording.value}
-          hint="Keep the way that a box is dragged, to scrub through it later"
+          hint="Keep the path of a dragged box, to scrub through it later"
           onChange={(value) => { recording.value = value; }} />}
         {edits.length > 0 && <button type="button" onClick={() => {
           patch({ edits: [], selected: -1 });
