@@ -151,7 +151,7 @@ def pairs(
             in any cell; one at least as long as the period is the whole axis. With `within`, the distance is that of
             the nearest images.
         to: The boxes move: `boxes` are at the beginning of a step and these, as many, at its end, and each bound moves
-            at an even speed. Two pair if they overlap at some time of the step; not if they pass through a place one
+            at a constant speed. Two pair if they overlap at some time of the step; not if they pass through a place one
             after the other. Of two sets, the ends of both as a tuple. `overlap_times` tells when pairs overlap.
 
     Returns:

@@ -46,7 +46,7 @@ CaseResult measured(const nlohmann::json& changes) {
 
 TEST(CaseList, JoinsTwoSetsAndTakesFilters) {
   const auto pairs = [](const nlohmann::json& changes) {
-    return measured(changes).measurements.at(0).counters.pairs;
+    return measured(changes).measurements.at(0).pairs.value();
   };
   const nlohmann::json grid = {{"specs", {"grid"}}, {"seeds", 1}};
   nlohmann::json joined = grid;
