@@ -185,6 +185,7 @@ compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
 paper experiments: setup_options := --paper
 
 published: setup_options := --peers --paper
+published: RUST_PEERS := ENGINES
 
 deb: setup_options := --deb
 
