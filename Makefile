@@ -63,17 +63,16 @@ abi: setup-ci ## Update the ABI dump that tests compare the C interface with
 	  -D DUMP=$(CURDIR)/bindings/c/abi/broadside.abi -P bindings/c/abi/dump.cmake
 
 release_files := build/release_files
-release: build/static/build.ninja ## Build what a release carries (wheel, npm package, playground, static program): build/release_files/
+release: ## Build what a release carries (wheel, npm package, playground, Debian packages): build/release_files/
 	$(MAKE) python
 	$(MAKE) wasm
 	$(MAKE) playground
-	@test -f $< || cmake --preset static
-	cmake --build --preset static --target broadside
+	$(MAKE) deb
 	rm -rf $(release_files)
 	mkdir $(release_files)
 	cp $(python_folder)/wheels/*.whl $(release_files)
 	cp build/playground/index.html $(release_files)/broadside-playground.html
-	strip -o $(release_files)/broadside-linux-$$(uname -m) build/static/broadside
+	cp build/deb/packages/*.deb $(release_files)
 	cd $(release_files) && npm pack --silent $(CURDIR)/$(wasm_folder)/package && sha256sum * >SHA256SUMS
 
 # CMake's build folder and two virtual environments are kept: one builds the wheel, the other tests it.

@@ -112,8 +112,12 @@ struct FinderImpl {
                           const broadside_find_options& options, PairSink& found, const FindOptions& which) {
     if (has_reach(options))
       throw std::invalid_argument("distance, radii or periods are given with to; expected 0 and null");
-    if (options.to == nullptr || (right == nullptr) != (options.right_to == nullptr))
-      throw std::invalid_argument("expected to and, for two sets alone, right_to");
+    if (options.to == nullptr)
+      throw std::invalid_argument("right_to is given and to is null; expected both, or neither");
+    if ((right == nullptr) != (options.right_to == nullptr))
+      throw std::invalid_argument(right == nullptr
+                                      ? "right_to is given for one set of boxes; expected null"
+                                      : "right_to is null and to is given; expected both for two sets");
     const BoxView<D, Real> to = view_of<D, Real>(*options.to);
     if (right == nullptr)
       find_pairs_moving(boxes, to, found, which);
@@ -259,7 +263,9 @@ broadside_status broadside_overlap_times(const broadside_boxes* boxes, const bro
   return guarded(error, [&] {
     array_of(times, count, "times");
     if ((right == nullptr) != (right_to == nullptr))
-      throw std::invalid_argument("expected right and right_to, or neither");
+      throw std::invalid_argument(right == nullptr
+                                      ? "right is null and right_to is given; expected both, or neither"
+                                      : "right_to is null and right is given; expected both, or neither");
     std::vector<Pair> which;
     copy_as(array_of(pairs, count, "pairs"), which);
     const std::vector<OverlapTime> found =

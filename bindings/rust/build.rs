@@ -60,6 +60,8 @@ fn link_file(path: &Path) {
 
 fn build(root: &Path) {
     let folder = PathBuf::from(env::var_os("OUT_DIR").unwrap()).join("cmake");
+    // CMake would take the compiler and the flags of the last build from it.
+    let _ = fs::remove_file(folder.join("CMakeCache.txt"));
     run(
         Command::new("cmake")
             .arg("-S")

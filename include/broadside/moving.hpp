@@ -36,7 +36,9 @@ struct OverlapTime {
 /// and compares products of two distances, also rounded. The result is exact if the distances and products
 /// are exact, as with whole numbers below 2^25. If only the distances are exact, no pair is missed, but a
 /// pair that misses by 2^-52 of a product may count. The distances of floats are exact unless the floats
-/// differ in size by a factor of 2^29. The times are quotients of the distances, rounded twice.
+/// differ in size by a factor of 2^29. The times are quotients of the distances, rounded twice. No distance
+/// is too large or too small for this, unless two bounds are 2^1500 times as far apart at one time as at the
+/// other.
 ///
 /// The function is compiled into the library, so that every program rounds in the same way.
 template <int D, typename Real>

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double largest_double = std::numeric_limits<double>::max();
 
-/// How many boxes are sampled to fit an origin and a scale: one in sixteen. With 256 of them, the medians
+/// How many boxes are sampled to fit an origin and a scale: one in 64. With 256 of a few boxes, the medians
 /// took three times as long as a search of 100 boxes.
-constexpr std::size_t boxes_per_fitted = 16;
-constexpr std::size_t min_fitted = 16;
+constexpr std::size_t boxes_per_fitted = 64;
+constexpr std::size_t min_fitted = 5;
 constexpr std::size_t max_fitted = 256;
 
 /// One box in sixteen provides knots, so that about sixteen coordinates lie between two knots.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 #include "broadside/error.hpp"
 
@@ -18,13 +20,41 @@
 namespace broadside {
 namespace {
 
-/// Two bounds that meet or part in a step: how far they are from each other before and after they do.
+/// Two bounds that meet or part in a step: how far they are from each other before and after they do, in a
+/// unit of its own, so that the product of two of these neither overflows nor underflows.
 struct Crossing {
   double before;
   double after;
 
+  Crossing() = default;
+  Crossing(double before_it, double after_it) {
+    int exponent = 0;
+    std::ignore = std::frexp(std::max(before_it, after_it), &exponent);
+    before = std::ldexp(before_it, 500 - exponent);
+    after = std::ldexp(after_it, 500 - exponent);
+  }
+
   double time() const { return before / (before + after); }
 };
+
+/// How far a max is beyond a min at the start and at the end of a step.
+struct Distances {
+  double at_start;
+  double at_end;
+};
+
+Distances distances_between(double max, double min, double max_at_end, double min_at_end) {
+  Distances found{max - min, max_at_end - min_at_end};
+  if (std::isfinite(found.at_start) && std::isfinite(found.at_end)) return found;
+  if (std::isfinite(max) && std::isfinite(min) && std::isfinite(max_at_end) && std::isfinite(min_at_end))
+    return {max / 2 - min / 2, max_at_end / 2 - min_at_end / 2};  // it has overflowed
+  // What is infinite at one of the two times is so throughout.
+  if (std::isinf(found.at_start))
+    found.at_end = found.at_start;
+  else if (std::isinf(found.at_end))
+    found.at_start = found.at_end;
+  return found;
+}
 
 template <int D, typename Real>
 std::optional<OverlapTime> time_of(const Box<D, Real>& from_a, const Box<D, Real>& to_a,
@@ -35,7 +65,8 @@ std::optional<OverlapTime> time_of(const Box<D, Real>& from_a, const Box<D, Real
   std::size_t partings = 0;
   // Takes how far a max is beyond a min at both times. False if it never reaches it. A NaN, of bounds at
   // infinity, is no obstacle.
-  const auto take = [&](double at_start, double at_end) {
+  const auto take = [&](const Distances& distances) {
+    const auto [at_start, at_end] = distances;
     if (at_start < 0) {
       if (at_end < 0) return false;
       meeting[meetings++] = {-at_start, at_end};
@@ -47,8 +78,7 @@ std::optional<OverlapTime> time_of(const Box<D, Real>& from_a, const Box<D, Real
   for (std::size_t axis = 0; axis < D; ++axis) {
     const auto overlaps = [&](const Box<D, Real>& from, const Box<D, Real>& to,
                               const Box<D, Real>& from_other, const Box<D, Real>& to_other) {
-      return take(static_cast<double>(from.max[axis]) - static_cast<double>(from_other.min[axis]),
-                  static_cast<double>(to.max[axis]) - static_cast<double>(to_other.min[axis]));
+      return take(distances_between(from.max[axis], from_other.min[axis], to.max[axis], to_other.min[axis]));
     };
     if (!overlaps(from_a, to_a, from_b, to_b) || !overlaps(from_b, to_b, from_a, to_a)) return std::nullopt;
   }

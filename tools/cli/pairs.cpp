@@ -496,9 +496,10 @@ Verb add_pairs(CLI::App& program, const lab::Catalogue& catalogue) {
                    "Which frame to search in a file whose boxes move, counted from 0 (default: the first). "
                    "'all' searches every frame, and writes its number before each pair; all frames are held "
                    "in memory");
-  verb->add_option("-o,--output", arguments->output,
-                   "A .csv file with a pair a line, or an .npy file of n x 2 numbers; - is standard output, "
-                   "as CSV unless --to says otherwise")
+  verb->add_option(
+          "-o,--output", arguments->output,
+          "A .csv file with a pair a line, or an .npy file of n x 2 numbers (n x 3 with --frame all); "
+          "- is standard output, as CSV unless --to says otherwise")
       ->capture_default_str();
   verb->add_option("--to", arguments->to, "csv or npy, whatever the extension")->type_name("NAME");
   verb->add_option("--order", arguments->order,

@@ -71,6 +71,8 @@ pub struct FindOptions {
     pub radii: *const f64,
     pub right_radii: *const f64,
     pub periods: *const f64,
+    pub to: *const Boxes,
+    pub right_to: *const Boxes,
 }
 
 #[repr(C)]

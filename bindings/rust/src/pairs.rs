@@ -192,6 +192,10 @@ impl FindOptions<'_> {
         all._filters = filters;
         all.raw.ignored = self.ignored.as_ptr();
         all.raw.ignored_count = self.ignored.len();
+        if !self.touching && !matches!(self.reach, Reach::Overlapping) {
+            let text = "touching is false with a distance or radii; expected true";
+            return Err(Error::InvalidArgument(text.into()));
+        }
         match self.reach {
             Reach::Overlapping => {}
             Reach::Distance(distance) => all.raw.distance = distance,

@@ -542,11 +542,12 @@ impl<B: Bounds> World<B> {
     /// # Ok::<(), broadside::Error>(())
     /// ```
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), Error> {
-        self.events = NO_EVENTS;
         // SAFETY: the bytes live through the call, which checks them.
         self.change(|world, error| unsafe {
             ffi::broadside_world_restore(world, snapshot.as_ptr().cast(), snapshot.len(), error)
-        })
+        })?;
+        self.events = NO_EVENTS;
+        Ok(())
     }
 
     /// Asks about the boxes as they are now, also between updates: see [`Query`].

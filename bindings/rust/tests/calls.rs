@@ -110,6 +110,9 @@ fn give_events_that_outlive_other_changes() {
     assert_eq!(world.events().begun.len(), 3);
     assert_eq!(world.box_of(world.events().begun[0].first), Ok(ORIGIN));
     let then = world.snapshot().unwrap();
+    let events = world.events().begun.len() + world.events().ended.len();
+    assert!(world.restore(b"no snapshot").is_err());
+    assert_eq!(world.events().begun.len() + world.events().ended.len(), events);
     world.restore(&then).unwrap();
     assert!(world.events().begun.is_empty());
     assert_eq!(world.update().unwrap().ended.len(), 2);

@@ -386,7 +386,9 @@ TEST(PairsVerb, TakesRowsFromEastToWestAsAcrossTheDateLine) {
   EXPECT_EQ(run({"pairs", none, "--count"}).output, "0\n") << "no box is across";
   EXPECT_EQ(run({"pairs", none, "--longitude", "--count"}).output, "1\n");
   EXPECT_EQ(run({"pairs", named, "--within", "1", "--euclidean", "--count"}).output, "4\n");
-  expect_refused("pairs", {{{plain}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
+  const std::string swapped = folder.put("swapped.csv", "min_lon,min_lat,max_lon,max_lat\n10,0,5,1\n");
+  expect_refused("pairs", {{{swapped}, {"min (10, 0) and max (5, 1)"}},
+                           {{plain}, {"min (170, 0) and max (-170, 1)", "or --longitude of pairs"}},
                            {{named, "--no-touching"}, {"min (170, 0) and max (-170, 1)"}},
                            {{named, "--longitude", "--no-touching"}, {"--no-touching with --longitude"}},
                            {{named, "--longitude", "--period", "360,-"}, {"--longitude with --period"}},

@@ -150,7 +150,7 @@ class TheComparison(unittest.TestCase):
     @unittest.skipUnless(PROGRAM, "BROADSIDE_PROGRAM is not set; expected the program")
     def test_lists_cases_that_the_program_takes(self):
         listed = subprocess.run([PROGRAM, "list"], capture_output=True, text=True, check=True).stdout
-        known = re.findall(r"^  (\w+) +(?:own|peer) ", listed, re.MULTILINE)
+        known = re.findall(r"^  (\w+) +(?:own|peer) +[23]D", listed, re.MULTILINE)
         cases = [case.listed(1) for case in COMPARISON.cases() if case.scene.split(":")[0] not in
                  ("bunny", "counties", "coastlines")]  # those are of files
         for case in cases:  # this build may lack peers

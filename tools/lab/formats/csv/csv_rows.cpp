@@ -80,9 +80,9 @@ void CsvRows::check_count() const {
 namespace {
 
 /// Whether only the first axis descends, by degrees of longitude from east to west of the date line, or from
-/// 359 to 1.
+/// 359 to 1: by half the earth or more, since a row that descends by less has its bounds exchanged.
 bool is_across_date_line(std::span<const double> min, std::span<const double> max) {
-  return min[0] <= 360 && max[0] >= -180 && min[0] > max[0] && min[0] - max[0] <= 360 &&
+  return min[0] <= 360 && max[0] >= -180 && min[0] - max[0] >= 180 && min[0] - max[0] <= 360 &&
          std::equal(min.begin() + 1, min.end(), max.begin() + 1, std::less_equal<>());
 }
 
