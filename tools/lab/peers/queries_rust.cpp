@@ -57,8 +57,13 @@ class RustQueryPeer final : public QueryPeer<D> {
   }
 
   Answers ask(RustQueries kind, std::span<const Ray<D>> rays) {
-    static_assert(sizeof(Ray<D>) == (2 * D + 1) * sizeof(float));
-    return ask(kind, rays.empty() ? nullptr : rays.front().origin.data(), rays.size());
+    rays_.clear();
+    for (const Ray<D>& ray : rays) {
+      rays_.insert(rays_.end(), ray.origin.begin(), ray.origin.end());
+      rays_.insert(rays_.end(), ray.direction.begin(), ray.direction.end());
+      rays_.push_back(ray.t_max);
+    }
+    return ask(kind, rays_.data(), rays.size());
   }
 
   Answers ask(RustQueries kind, const float* queries, std::size_t count) {
@@ -70,6 +75,7 @@ class RustQueryPeer final : public QueryPeer<D> {
   std::string name_;
   bool has_rays_;
   std::unique_ptr<RustIndex, Free> index_;
+  std::vector<float> rays_;  // origin, direction and t_max of each, as the crates' code reads them
 };
 
 }  // namespace
