@@ -88,8 +88,8 @@ TEST(AdviseVerb, TakesNoBoxesAndOneBox) {
 
 TEST(AdviseVerb, ReadsStandardInputAndRoundsWhereAsked) {
   const TemporaryFolder folder;
-  const Ended ended =
-      shell("cat " + boxes_csv(folder) + " | $BROADSIDE advise - --allow-busy --budget 0.05 --precision float");
+  const Ended ended = shell("cat " + boxes_csv(folder) +
+                            " | $BROADSIDE advise - --allow-busy --budget 0.05 --precision float");
   EXPECT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, AllOf(HasSubstr("standard input: 3 boxes in 2D, as floats."),
                                   HasSubstr("std::vector<broadside::Box2>&")));
