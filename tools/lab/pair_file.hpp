@@ -36,9 +36,9 @@ struct PairIds {
 class PairFile {
  public:
   /// Begins the file. The stream must outlive this object; the caller checks it for errors. With
-  /// `is_between`, pairs are of a left and a right set, and the columns are named so. Ids, which must outlive
-  /// this object, are for CSV only. A `header` names the columns of rows other than pairs, of which there are
-  /// `columns`.
+  /// `is_between`, pairs are of a left and a right set, and the columns are named so. CSV alone takes ids,
+  /// which must outlive this object. For rows other than pairs, `header` names the columns, and `columns` is
+  /// their number.
   PairFile(std::ostream& stream, PairFormat format, bool is_between, PairIds ids = {},
            bool has_large_numbers = false, std::string_view header = {}, std::size_t columns = 2);
 

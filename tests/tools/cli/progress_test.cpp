@@ -24,7 +24,7 @@ using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
 
-/// A terminal of 80 columns that nobody looks at.
+/// A pseudo-terminal of 80 columns.
 class Terminal {
  public:
   Terminal() : descriptor_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {

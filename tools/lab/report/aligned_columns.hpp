@@ -14,7 +14,8 @@ namespace broadside::lab {
 /// A table of cells, added row by row; each column is as wide as its widest cell.
 class AlignedColumns {
  public:
-  /// One character per column, of which there are at least two: '<' aligns it to the left, '>' to the right.
+  /// `alignment` has one character for each column: '<' aligns it to the left, '>' to the right. There are at
+  /// least two columns.
   /// Cells of the last column may have any length and are not padded.
   explicit AlignedColumns(std::string_view alignment) : alignment_(alignment) {}
 
