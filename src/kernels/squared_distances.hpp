@@ -42,8 +42,8 @@ inline double squared_distance(const std::array<Real, D>& a, const std::array<Re
   return sum;
 }
 
-/// Sets squares[i] to the squared_distance() of two shapes, which are boxes or points: those of pairs[i], one in
-/// `left` and one in `right`.
+/// Sets squares[i] to the squared_distance() of two shapes, which are boxes or points: those of pairs[i], one
+/// in `left` and one in `right`.
 template <typename Shape>
 void set_squared_distances(const Shape* left, const Shape* right, std::span<const Pair> pairs,
                            double* squares);

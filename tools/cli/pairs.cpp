@@ -53,8 +53,8 @@ const std::string& labels_column(const PairsArguments& arguments, std::size_t fi
   return arguments.same.empty() ? arguments.different : arguments.same;
 }
 
-/// Which rows of tables may be boxes across the date line. With --longitude these are all rows. Otherwise they
-/// are the rows of tables whose columns have names of longitudes, if space can repeat.
+/// Which rows of tables may be boxes across the date line. With --longitude these are all rows. Otherwise
+/// they are the rows of tables whose columns have names of longitudes, if space can repeat.
 lab::DateLine date_line_of(const PairsArguments& arguments, const lab::Entry& entry) {
   if (arguments.is_longitude) return lab::DateLine::always;
   const bool can_repeat = find_algorithm(entry.spec.name) != nullptr && !takes_all_frames(arguments) &&
