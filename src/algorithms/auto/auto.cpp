@@ -235,9 +235,12 @@ class AutoSearcher final : public Searcher<D> {
     for (int axis = 0; axis < D; ++axis) overlaps_ *= sample_[axis].overlap;
     if (overlaps_ >= tests_) return AutoReason::intervals;  // all boxes overlap on the other axes
     if (overlaps_ >= Limits::dense_pair_share * count / 2) return AutoReason::one_place;
-    if (overlaps_ >= Limits::many_overlaps) return AutoReason::dense;
+    const bool is_tile = boxes.size() <= Limits::boxes_of_an_even_tile;
+    if (overlaps_ >= (is_tile ? Limits::many_overlaps_in_a_tile : Limits::many_overlaps))
+      return AutoReason::dense;
     if (smaller_set_ > 0 && static_cast<double>(smaller_set_) <= Limits::share_of_a_small_set * count)
       return AutoReason::uneven_sets;
+    if (is_tile) return AutoReason::tile;
     std::array<float, D> reach;
     for (int axis = 0; axis < D; ++axis)
       reach[axis] = static_cast<float>(double{Limits::near} *

@@ -17,6 +17,9 @@ struct AutoThresholds {
   /// Up to this many, the grid needs no sample: they are one tile of it, however unevenly they are spread.
   static constexpr std::size_t boxes_of_a_tile = 4096;
 
+  /// Up to this many they are one tile as well, unless they are too uneven for its cells: a tile holds no more.
+  static constexpr std::size_t boxes_of_an_even_tile = D == 2 ? 32768 : 16384;
+
   /// Up to this many tests per box, a sweep along one axis beats all other algorithms.
   static constexpr double tests_of_a_good_axis = 4;
 
@@ -29,6 +32,9 @@ struct AutoThresholds {
   /// From this many overlaps per box on, most tests in a cell find a pair, and inserting boxes into several
   /// cells only repeats tests.
   static constexpr double many_overlaps = D == 2 ? 6 : 200;
+
+  /// The same where the boxes are one tile of the grid.
+  static constexpr double many_overlaps_in_a_tile = D == 2 ? 16 : 200;
 
   /// Up to this share of the boxes in one of two sets, most of the others end their search high up in a tree.
   static constexpr double share_of_a_small_set = 0.25;

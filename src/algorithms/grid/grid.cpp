@@ -39,7 +39,7 @@ namespace {
 constexpr std::size_t max_uneven_tile = 4096;
 
 /// The unevenness up to which they are, with more boxes.
-constexpr double max_unevenness_of_a_tile = 5;
+constexpr double max_unevenness_of_a_tile = 8;
 
 /// Places of a tile that a thread sweeps at a time.
 constexpr std::size_t places_at_once = 64;
@@ -56,8 +56,8 @@ class GridSearcher final : public Searcher<D> {
     const std::size_t boxes = input.boxes.size();
     if (is_tile(input.boxes)) {
       if (sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
-      if (input.successor != nullptr && boxes <= max_uneven_tile) {
-        // Cells of one size suit so few boxes badly if they are so uneven. Nothing has been written yet.
+      if (input.successor != nullptr) {
+        // Cells of one size suit boxes badly that are so uneven. Nothing has been written yet.
         input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
         return Statistics{};
       }
