@@ -47,7 +47,7 @@ TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
   EXPECT_EQ(chosen_for<3>("one_point", 500, 1), "grid") << "all overlap, which one row shows";
   EXPECT_EQ(chosen_for("uniform", 5'000, 1), "grid");
   EXPECT_EQ(chosen_for("clustered", 10'000, 1), "grid") << "these clusters are even enough for a tile";
-  EXPECT_EQ(chosen_for("clustered", 50'000, 1), "bvh");
+  EXPECT_EQ(chosen_for<3>("clustered", 50'000, 1), "bvh");
   // One overlap by chance among the sampled boxes would stand for a dozen tests a box.
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6})
     EXPECT_EQ(chosen_for("one_line", 100'000, seed), "sweep_and_prune") << seed;

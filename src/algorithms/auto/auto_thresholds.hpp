@@ -17,7 +17,8 @@ struct AutoThresholds {
   /// Up to this many, the grid needs no sample: they are one tile of it, however unevenly they are spread.
   static constexpr std::size_t boxes_of_a_tile = 4096;
 
-  /// Up to this many they are one tile as well, unless they are too uneven for its cells: a tile holds no more.
+  /// Up to this many they are one tile as well, unless they are too uneven for its cells: a tile holds no
+  /// more.
   static constexpr std::size_t boxes_of_an_even_tile = D == 2 ? 32768 : 16384;
 
   /// Up to this many tests per box, a sweep along one axis beats all other algorithms.
