@@ -61,11 +61,11 @@ struct SearchInput {
 
   /// Not null if the search may give up when it makes far more tests than its boxes and pairs account for. A
   /// search that gives up calls finish() at its end. Whether and where it gives up must depend on the boxes
-  /// alone. You can ignore it.
+  /// alone. A searcher can ignore it.
   Successor<D>* successor = nullptr;
 
-  /// The threads to use, and the checkpoint, which a Checkpoint calls so that a long search can be cancelled.
-  /// An algorithm without the tunable `threads` uses the calling thread alone.
+  /// The threads to use: without the tunable `threads`, the calling thread alone. By `workers.checkpoint` the
+  /// caller can cancel a long search: count tests with a Checkpoint, which calls it.
   const Workers& workers = default_workers;
 };
 
@@ -74,7 +74,6 @@ struct SearchInput {
 ///
 /// Finder does the rest: it checks the boxes, drops absent ones, rounds doubles, applies filters and flushes
 /// the sink. A searcher may keep memory between calls, but must find the same pairs as without it. Only one
-/// thread at a time calls it.
 /// thread at a time calls it.
 template <int D>
 class BROADSIDE_PUBLIC Searcher {

@@ -92,7 +92,7 @@ inline constexpr LanesInSet<4, 4> bytes_of_4;
 template <typename Tag>
 HWY_INLINE hn::Vec<Tag> compress(Tag tag, hn::Vec<Tag> numbers, hn::Mask<Tag> mask) {
   static_assert(sizeof(hn::TFromD<Tag>) == 4);
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET == HWY_AVX3
   constexpr std::size_t vector_size = 0;  // an instruction does it
 #else
   constexpr std::size_t vector_size = hn::MaxLanes(Tag());

@@ -1,4 +1,4 @@
-// The SIMD kernels: they sweep a sorted run against itself or another run, or compare all boxes of a run.
+// Kernels that sweep a sorted run against itself or another run, or compare all boxes of a run.
 //
 // Written once with Highway, compiled for every instruction set it knows, chosen when the program runs. Hits
 // are written without a branch, since no predictor can know whether two candidates overlap: ids are

@@ -76,7 +76,8 @@ class FirstHit final : public kernels::FoundBoxes {
   int exponent_;
 };
 
-/// The nearest boxes so far, at most `count`: few are sorted, on the stack; more are a max-heap.
+/// The nearest boxes so far, at most `count`; of two at the same distance, that of the lower id is nearer. Few are
+/// kept sorted, on the stack; more are a max-heap.
 class NearestBoxes {
  public:
   NearestBoxes(const NearestBoxes&) = delete;
@@ -86,7 +87,7 @@ class NearestBoxes {
 
   /// A box with a greater squared distance is not among the nearest.
   double limit() const noexcept {
-    return size_ < count_ ? max_distance_squared_ : heap_[is_sorted() ? size_ - 1 : 0].distance_squared;
+    return size_ < count_ ? max_distance_squared_ : heap_[keeps_sorted() ? size_ - 1 : 0].distance_squared;
   }
 
   std::size_t count() const noexcept { return count_; }
@@ -99,8 +100,8 @@ class NearestBoxes {
 
   void offer(const Neighbour& one) {
     if (!(one.distance_squared <= max_distance_squared_)) return;
-    if (size_ == count_ && !is_before(one, heap_[is_sorted() ? size_ - 1 : 0])) return;
-    if (is_sorted()) {
+    if (size_ == count_ && !is_before(one, heap_[keeps_sorted() ? size_ - 1 : 0])) return;
+    if (keeps_sorted()) {
       std::size_t at = size_ < count_ ? size_++ : size_ - 1;
       for (; at > 0 && is_before(one, few_[at - 1]); --at) few_[at] = few_[at - 1];
       few_[at] = one;
@@ -119,7 +120,7 @@ class NearestBoxes {
   /// All of them, the nearest first. This destroys the heap.
   std::span<const Neighbour> sorted() {
     const std::span<Neighbour> heap = heap_.first(size_);
-    if (!is_sorted()) std::sort_heap(heap.begin(), heap.end(), is_before);
+    if (!keeps_sorted()) std::sort_heap(heap.begin(), heap.end(), is_before);
     return heap;
   }
 
@@ -128,7 +129,7 @@ class NearestBoxes {
     return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
   }
 
-  bool is_sorted() const noexcept { return count_ <= few_.size(); }
+  bool keeps_sorted() const noexcept { return count_ <= few_.size(); }
 
   void grow() {
     if (many_.empty()) many_.assign(few_.begin(), few_.end());
