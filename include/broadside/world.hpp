@@ -133,7 +133,8 @@ struct WorldOptions {
   /// reused after two updates.
   std::uint32_t max_boxes = 0;
 
-  /// The first handles' generation. Worlds with first generations far apart refuse each other's handles.
+  /// The first handles' generation. Give each world another, such as a multiple of 1 << 20, so that a handle
+  /// used in the wrong world throws; with equal ones it may name a box there.
   std::uint32_t first_generation = 0;
 
   /// Whether boxes that only touch overlap. If false, the world stores half_open(box), so box() returns the
@@ -317,9 +318,9 @@ class BROADSIDE_PUBLIC World {
   using NearestOptions = broadside::NearestOptions<Handle>;
 
   /// Queries about the boxes as they are now, with the costs and exceptions of BoxIndex. Margins, ignored
-  /// pairs and predicates have no effect. `function` takes a Handle, or a Handle and its t_enter, and ends
-  /// the search by returning false. `except` has no effect if it is not in the world. Rays and cast boxes are
-  /// Ray and BoxCast.
+  /// pairs and predicates have no effect. `function` takes a Handle, or a Handle and its t_enter; it may
+  /// return a bool, and false ends the search. `except` has no effect if it is not in the world. Rays and
+  /// cast boxes are Ray and BoxCast.
   ///
   /// If the algorithm has an index of these boxes, as `bvh` has after an update of boxes that are not
   /// enlarged, queries use it. Otherwise the first query builds one, and each later query updates it with the
