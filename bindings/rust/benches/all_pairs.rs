@@ -51,7 +51,7 @@ fn sorted(pairs: Vec<Pair>) -> Vec<Pair> {
 fn all_pairs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("all pairs, 3D");
     group.sample_size(20);
-    for count in [1_000, 100_000] {
+    for count in [10, 1_000, 100_000] {
         let boxes = uniform(count, &mut random());
         let colliders = Colliders::new(count);
         let expected = sorted(find_pairs(&boxes).unwrap());
