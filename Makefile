@@ -110,7 +110,7 @@ sanitize-rust: export RUSTDOCFLAGS = $(RUSTFLAGS)
 sanitize-rust: export BROADSIDE_LIB_DIR := $(CURDIR)/build/asan/src
 sanitize-rust: build/asan/build.ninja ## Test the Rust crate with the address sanitizer in Rust and C++
 	@test -f $< || cmake --preset asan
-	cmake --build --preset asan --target broadside
+	cmake --build --preset asan --target src/libbroadside.a
 	cmake -E make_directory build/asan/src/pkgconfig
 	cmake -E copy build/asan/broadside.pc build/asan/src/pkgconfig
 	cargo test --quiet --target-dir build/asan/rust --target "$$(rustc -vV | sed -n 's/^host: //p')"
