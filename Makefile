@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust sanitize-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -101,6 +101,19 @@ test-rust: | setup ## Test the Rust crate, and build what `cargo package` packs;
 	cargo test --quiet --all-features
 	cargo run --quiet --example falling_boxes
 	cargo package --quiet --allow-dirty
+	cargo test --quiet --manifest-path bindings/rust/bevy/Cargo.toml
+
+# The options instrument Rust's code too. They are of nightly compilers, but others take them with RUSTC_BOOTSTRAP.
+sanitize-rust: export RUSTC_BOOTSTRAP := 1
+sanitize-rust: export RUSTFLAGS := -Zsanitizer=address -Zexternal-clangrt -Clinker=clang++ -Clink-arg=-fsanitize=address,undefined
+sanitize-rust: export RUSTDOCFLAGS = $(RUSTFLAGS)
+sanitize-rust: export BROADSIDE_LIB_DIR := $(CURDIR)/build/asan/src
+sanitize-rust: build/asan/build.ninja ## Test the Rust crate with the address sanitizer in Rust and C++
+	@test -f $< || cmake --preset asan
+	cmake --build --preset asan --target src/libbroadside.a
+	cmake -E make_directory build/asan/src/pkgconfig
+	cmake -E copy build/asan/broadside.pc build/asan/src/pkgconfig
+	cargo test --quiet --target-dir build/asan/rust --target "$$(rustc -vV | sed -n 's/^host: //p')"
 
 # CMake's build folders: one for each dimension.
 wasm_folder := build/wasm

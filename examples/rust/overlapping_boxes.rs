@@ -1,5 +1,6 @@
 // Finds overlapping boxes from Rust: hand-written declarations of the functions of broadside.h, and a safe wrapper.
-use std::ffi::{c_char, c_int, c_void, CStr};
+use std::ffi::CStr;
+use std::os::raw::{c_char, c_int, c_void}; // in std::ffi since Rust 1.64
 use std::ptr;
 
 // As in broadside.h.

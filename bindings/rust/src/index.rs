@@ -23,16 +23,7 @@ pub struct Index<B: Bounds> {
     boxes: PhantomData<B>,
 }
 
-// SAFETY: an index belongs to no thread, and several threads may ask it at the same time.
-unsafe impl<B: Bounds> Send for Index<B> {}
-unsafe impl<B: Bounds> Sync for Index<B> {}
-
-impl<B: Bounds> Drop for Index<B> {
-    fn drop(&mut self) {
-        // SAFETY: made by broadside_index_create(), and destroyed once.
-        unsafe { ffi::broadside_index_destroy(self.raw.as_ptr()) }
-    }
-}
+owns!(Index, broadside_index_destroy);
 
 impl<B: Bounds> Index<B> {
     /// An index of these boxes, which are copied.

@@ -26,6 +26,22 @@
 //! Features: `bytemuck` makes boxes, pairs and handles `Pod`; `glam` converts pairs of vectors to boxes.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
+/// What the types that own an object of the library have in common.
+macro_rules! owns {
+    ($owner:ident, $destroy:ident) => {
+        // SAFETY: the object belongs to no thread. Several threads may call what takes it as const, which `&self` does.
+        unsafe impl<B: Bounds> Send for $owner<B> {}
+        unsafe impl<B: Bounds> Sync for $owner<B> {}
+
+        impl<B: Bounds> Drop for $owner<B> {
+            fn drop(&mut self) {
+                // SAFETY: the owner made it, and it is destroyed once.
+                unsafe { ffi::$destroy(self.raw.as_ptr()) }
+            }
+        }
+    };
+}
+
 mod boxes;
 mod error;
 #[allow(dead_code)] // structs have all their fields

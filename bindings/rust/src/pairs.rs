@@ -97,6 +97,15 @@ pub(crate) fn raw_text(name: &str, text: &str) -> Result<CString, Error> {
 }
 
 /// Which boxes pair: see [`find_pairs_within`]. Distances and radii are finite and at least 0.
+///
+/// ```
+/// use broadside::{Box2, FindOptions, Reach};
+///
+/// let boxes = [0.0, 3.0, 9.0].map(|x| Box2::point([x, 0.0]));
+/// let options = FindOptions { reach: Reach::Radii(&[1.0, 2.0, 3.0]), ..Default::default() };
+/// assert_eq!(options.count_pairs(&boxes, None)?, 1); // the first two
+/// # Ok::<(), broadside::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach<'a> {
     /// Boxes that overlap: the default.
@@ -456,6 +465,12 @@ pub fn find_pairs_batch<B: Bounds>(boxes: &[B], offsets: &[usize]) -> Result<Bat
 }
 
 /// The pairs of many worlds: see [`find_pairs_batch`].
+///
+/// ```
+/// let found = broadside::find_pairs_batch(&[broadside::Box2::point([0.0, 0.0]); 4], &[0, 2, 4])?;
+/// assert_eq!((found.pairs.len(), found.offsets.as_slice()), (2, &[0, 1, 2][..]));
+/// # Ok::<(), broadside::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchPairs {
     /// The pairs, world by world.

@@ -103,16 +103,7 @@ pub struct Tracker<B: Bounds> {
     boxes: PhantomData<B>,
 }
 
-// SAFETY: a tracker belongs to no thread, and no method takes it as shared.
-unsafe impl<B: Bounds> Send for Tracker<B> {}
-unsafe impl<B: Bounds> Sync for Tracker<B> {}
-
-impl<B: Bounds> Drop for Tracker<B> {
-    fn drop(&mut self) {
-        // SAFETY: made by broadside_tracker_create(), and destroyed once.
-        unsafe { ffi::broadside_tracker_destroy(self.raw.as_ptr()) }
-    }
-}
+owns!(Tracker, broadside_tracker_destroy);
 
 impl<B: Bounds> Tracker<B> {
     /// A tracker by `auto`.

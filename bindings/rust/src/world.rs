@@ -143,16 +143,7 @@ pub struct World<B: Bounds> {
     boxes: PhantomData<B>,
 }
 
-// SAFETY: a world belongs to no thread, and several threads may call what takes it as shared at the same time.
-unsafe impl<B: Bounds> Send for World<B> {}
-unsafe impl<B: Bounds> Sync for World<B> {}
-
-impl<B: Bounds> Drop for World<B> {
-    fn drop(&mut self) {
-        // SAFETY: made by broadside_world_create(), and destroyed once.
-        unsafe { ffi::broadside_world_destroy(self.raw.as_ptr()) }
-    }
-}
+owns!(World, broadside_world_destroy);
 
 const NO_EVENTS: ffi::Events = ffi::Events { begun: ptr::null(), begun_count: 0, ended: ptr::null(), ended_count: 0 };
 
