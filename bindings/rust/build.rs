@@ -1,6 +1,6 @@
 //! Builds the C++ library, which the package carries, by CMake; or links an installed one: see docs/rust.md.
 use std::path::{Path, PathBuf};
-use std::process::{exit, Command};
+use std::process::{exit, Command, Stdio};
 use std::{env, fs};
 
 const NEEDED: &str = "\
@@ -17,18 +17,16 @@ fn fail(reason: &str, help: &str) -> ! {
     exit(1);
 }
 
-/// Runs a command and returns what it prints. If it fails, prints that, and exits.
-fn run(command: &mut Command, help: &str) -> String {
-    let output = match command.output() {
+/// Runs a command and returns what it prints to stdout, if that is a pipe. Exits if it fails; Cargo then shows the rest.
+fn run(command: &mut Command, stdout: Stdio, help: &str) -> String {
+    let output = match command.stdout(stdout).stderr(Stdio::inherit()).output() {
         Ok(output) => output,
         Err(error) => fail(&format!("{:?} could not be run: {error}", command.get_program()), help),
     };
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
     if !output.status.success() {
-        eprintln!("{text}{}", String::from_utf8_lossy(&output.stderr));
-        fail(&format!("{command:?} failed; its output is above"), help);
+        fail(&format!("{command:?} failed; Cargo shows its output"), help);
     }
-    text
+    String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 /// Links an installed library, by its pkg-config file.
@@ -39,7 +37,7 @@ fn link_installed(folder: &str) {
     let mut command = Command::new("pkg-config");
     command.args(["--libs", "broadside"]).env("PKG_CONFIG_PATH", file);
     println!("cargo:rustc-link-search=native={folder}");
-    for flag in run(&mut command, help).split_whitespace() {
+    for flag in run(&mut command, Stdio::piped(), help).split_whitespace() {
         if let Some(folder) = flag.strip_prefix("-L") {
             println!("cargo:rustc-link-search=native={folder}");
         } else if let Some(name) = flag.strip_prefix("-l") {
@@ -69,11 +67,12 @@ fn build(root: &Path) {
             .arg("-B")
             .arg(&folder)
             .arg("-DCMAKE_BUILD_TYPE=Release"),
+        Stdio::inherit(),
         NEEDED,
     );
     let jobs = env::var("NUM_JOBS").unwrap_or_else(|_| "1".into());
     let target = ["--target", "broadside", "--config", "Release", "--parallel", &jobs];
-    run(Command::new("cmake").arg("--build").arg(&folder).args(target), NEEDED);
+    run(Command::new("cmake").arg("--build").arg(&folder).args(target), Stdio::inherit(), NEEDED);
     let files = fs::read_to_string(folder.join("link-Release.txt")).expect("CMake has written it");
     for file in files.lines() {
         link_file(Path::new(file));
@@ -92,8 +91,15 @@ fn main() {
     for path in ["CMakeLists.txt", "bindings/c", "bindings/rust/CMakeLists.txt", "cmake", "include", "src"] {
         println!("cargo:rerun-if-changed={}", root.join(path).display());
     }
-    for name in ["BROADSIDE_LIB_DIR", "CXX", "CXXFLAGS", "CMAKE_PREFIX_PATH", "CMAKE_GENERATOR", "CMAKE_TOOLCHAIN_FILE"]
-    {
+    for name in [
+        "DOCS_RS",
+        "BROADSIDE_LIB_DIR",
+        "CXX",
+        "CXXFLAGS",
+        "CMAKE_PREFIX_PATH",
+        "CMAKE_GENERATOR",
+        "CMAKE_TOOLCHAIN_FILE",
+    ] {
         println!("cargo:rerun-if-env-changed={name}");
     }
     if env::var_os("DOCS_RS").is_some() {

@@ -116,6 +116,13 @@ macro_rules! bounds {
             }
         }
 
+        impl<Vector: Into<[$real; $dimensions]>> From<(Vector, Vector)> for Aabb<$dimensions, $real> {
+            /// The minima and the maxima, as arrays or as vectors of glam, nalgebra or mint.
+            fn from((min, max): (Vector, Vector)) -> Self {
+                Aabb { min: min.into(), max: max.into() }
+            }
+        }
+
         // SAFETY: repr(C), of floats alone, without padding.
         #[cfg(feature = "bytemuck")]
         unsafe impl bytemuck::Zeroable for Aabb<$dimensions, $real> {}
@@ -127,26 +134,6 @@ bounds!(2, f32, BROADSIDE_FLOAT_2D);
 bounds!(3, f32, BROADSIDE_FLOAT_3D);
 bounds!(2, f64, BROADSIDE_DOUBLE_2D);
 bounds!(3, f64, BROADSIDE_DOUBLE_3D);
-
-#[cfg(feature = "glam")]
-macro_rules! from_glam {
-    ($($vector:ident, $bounds:ident;)*) => {
-        $(impl From<(glam::$vector, glam::$vector)> for $bounds {
-            /// The minima and the maxima.
-            fn from((min, max): (glam::$vector, glam::$vector)) -> Self {
-                Aabb { min: min.into(), max: max.into() }
-            }
-        })*
-    };
-}
-#[cfg(feature = "glam")]
-from_glam! {
-    Vec2, Box2;
-    Vec3, Box3;
-    Vec3A, Box3;
-    DVec2, DoubleBox2;
-    DVec3, DoubleBox3;
-}
 
 /// The boxes as the C interface takes them. The result is valid as long as the slice.
 pub(crate) fn raw_boxes<B: Bounds>(boxes: &[B]) -> ffi::Boxes {

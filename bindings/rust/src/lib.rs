@@ -23,7 +23,7 @@
 //! same order for any number of threads. A call that fails has changed nothing. No call panics because of its
 //! arguments.
 //!
-//! Features: `bytemuck` makes boxes, pairs and handles `Pod`; `glam` converts pairs of vectors to boxes.
+//! The feature `bytemuck` makes boxes, pairs and handles `Pod`.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 
 /// What the types that own an object of the library have in common.

@@ -194,10 +194,10 @@ impl<'a, Q: Queried> Query<'a, Q> {
     pub fn hits(
         &self,
         from: Q::Bounds,
-        direction: <Q::Bounds as Bounds>::Point,
+        direction: impl Into<<Q::Bounds as Bounds>::Point>,
         t_max: f64,
     ) -> Result<Vec<Hit<Q::Id>>, Error> {
-        let query = self.raw();
+        let (query, direction) = (self.raw(), direction.into());
         // SAFETY: as above.
         let hits = collect(64, |hits, room, count, error| unsafe {
             let (from, direction) = (address_of(&from), address_of(&direction));
@@ -218,10 +218,10 @@ impl<'a, Q: Queried> Query<'a, Q> {
     pub fn first_hit(
         &self,
         from: Q::Bounds,
-        direction: <Q::Bounds as Bounds>::Point,
+        direction: impl Into<<Q::Bounds as Bounds>::Point>,
         t_max: f64,
     ) -> Result<Option<Hit<Q::Id>>, Error> {
-        let query = self.raw();
+        let (query, direction) = (self.raw(), direction.into());
         let mut hit = ffi::Hit { handle: Handle::default(), t_enter: 0.0 };
         let mut found = 0;
         // SAFETY: as above.

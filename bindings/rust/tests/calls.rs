@@ -170,11 +170,14 @@ fn take_rows_of_floats_as_boxes() {
     assert_eq!(bytemuck::cast_slice::<Pair, u32>(&pairs), [0, 1]);
 }
 
-#[cfg(feature = "glam")]
 #[test]
-fn take_vectors_of_glam() {
-    use broadside::{Box3, DoubleBox2};
-    assert_eq!(Box2::from((glam::Vec2::ZERO, glam::Vec2::ONE)), Box2::new([0.0; 2], [1.0; 2]));
-    assert_eq!(Box3::from((glam::Vec3A::ZERO, glam::Vec3A::X)), Box3::new([0.0; 3], [1.0, 0.0, 0.0]));
-    assert_eq!(DoubleBox2::from((glam::DVec2::ZERO, glam::DVec2::ONE)), DoubleBox2::new([0.0; 2], [1.0; 2]));
+fn take_vectors_of_other_crates() {
+    struct Vec2(f32, f32);
+    impl From<Vec2> for [f32; 2] {
+        fn from(vector: Vec2) -> Self {
+            [vector.0, vector.1]
+        }
+    }
+    assert_eq!(Box2::from((Vec2(0.0, 1.0), Vec2(2.0, 3.0))), Box2::new([0.0, 1.0], [2.0, 3.0]));
+    assert_eq!(Box2::from(([0.0; 2], [1.0; 2])), Box2::new([0.0; 2], [1.0; 2]));
 }
