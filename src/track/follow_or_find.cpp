@@ -174,7 +174,7 @@ std::string FollowOrFind<D, Real>::explanation() const {
   const std::string by = find_anew_ ? find_anew_->explanation() : std::string();
   text += "all pairs found anew" + (by.empty() ? "" : " by " + by);
   if (is_asked_for) return text;
-  return text + "; " + changed + ", and following pays for up to " + break_even;
+  return text + "; " + changed + ", and following them would pay for at most " + break_even;
 }
 
 template class FollowOrFind<2, float>;
