@@ -100,7 +100,6 @@ struct NearGroup {
   float limit;
 
   std::size_t count;
-  std::size_t boxes;  ///< how many have a number
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
   std::array<std::uint32_t, number_mask> ids;  ///< of the boxes, by number
   std::array<Box<D>, number_mask> found;       ///< the boxes, as the tree has them
