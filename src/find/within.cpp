@@ -171,14 +171,11 @@ double enlargement(double radius) {
   return radius == 0 ? 0 : std::min(enlarged, std::numeric_limits<double>::max());
 }
 
-/// A Real below every number that rounds to the double `rounded`: the next one or the one before that, or
-/// -infinity. Its branches are predictable.
+/// A Real below every number that rounds to the double `rounded`.
 template <typename Real>
 Real less_than(double rounded) {
-  constexpr Real greatest = std::numeric_limits<Real>::max();
-  const Real number = std::min(static_cast<Real>(rounded), greatest);
-  return number - (std::min(std::abs(number), greatest) * std::numeric_limits<Real>::epsilon() +
-                   std::numeric_limits<Real>::denorm_min());
+  const auto number = static_cast<Real>(rounded);
+  return number == -std::numeric_limits<Real>::infinity() ? number : detail::next_below(number);
 }
 
 /// Writes to `to`, since a copy of what has just been stored would wait for it.
