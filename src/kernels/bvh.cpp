@@ -96,6 +96,15 @@ class DistanceFrom {
     }
   }
 
+  /// From the box in a lane of a node.
+  HWY_INLINE DistanceFrom(const Block<D>& node, std::size_t lane, const std::array<float, D>& weight) {
+    for (int axis = 0; axis < D; ++axis) {
+      low_[axis] = all(node.min[axis][lane]);
+      high_[axis] = all(node.max[axis][lane]);
+      weight_[axis] = all(weight[axis]);
+    }
+  }
+
   /// Which children from `at` on are within the squared distance `limit`. Sets `sum` to the distances.
   HWY_INLINE FloatMask within(const Block<D>& node, std::size_t at, float limit, FloatVector& sum) const {
     sum = hn::Zero(Floats());
@@ -117,6 +126,33 @@ class DistanceFrom {
   FloatVector weight_[D];
 };
 
+using Keys = hn::RebindToSigned<Floats>;
+
+/// Copies `size` children, of which at most sixteen are, by descending distance. Each is counted to its
+/// place, since no processor could predict the branches of a sort.
+HWY_INLINE void push_sorted(const std::uint32_t* children, float* distances, std::size_t size,
+                            std::uint32_t* children_to, float* distances_to) {
+  const Keys tag;
+  // The place as the last bits tells equal distances apart.
+  const auto last_bits = hn::Set(tag, static_cast<std::int32_t>(fan_out - 1));
+  HWY_ALIGN std::int32_t keys[fan_out];
+  for (std::size_t at = 0; at < fan_out; at += lanes) {
+    const auto place = hn::Iota(tag, static_cast<std::int32_t>(at));
+    const auto key =
+        hn::Or(hn::AndNot(last_bits, hn::BitCast(tag, hn::Load(Floats(), distances + at))), place);
+    const auto is_there = hn::Lt(place, hn::Set(tag, static_cast<std::int32_t>(size)));
+    hn::Store(hn::IfThenElse(is_there, key, hn::Set(tag, -1)), tag, keys + at);
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto key = hn::Set(tag, keys[i]);
+    std::size_t to = 0;
+    for (std::size_t at = 0; at < fan_out; at += lanes)
+      to += count_true(tag, hn::Gt(hn::Load(tag, keys + at), key));
+    children_to[to] = children[i];
+    distances_to[to] = distances[i];
+  }
+}
+
 /// A depth-first traversal of what is near, of a node's children the nearest one first. limit() is the
 /// greatest squared distance that counts; leaf(number) searches a leaf, and may lower it.
 template <int D, typename Limit, typename Leaf>
@@ -134,23 +170,16 @@ HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& fro
       leaf(number & ~leaf_bit);
       continue;
     }
-    const std::size_t begin = count;
+    HWY_ALIGN std::uint32_t children[2 * fan_out];
+    HWY_ALIGN float nearness[2 * fan_out];
+    std::size_t size = 0;
     for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector sum;
       const FloatMask mask = from.within(tree.nodes[number], at, limit(), sum);
-      count += append_entries(tree.nodes[number], at, mask, sum, waiting + count, distances + count);
+      size += append_entries(tree.nodes[number], at, mask, sum, children + size, nearness + size);
     }
-    for (std::size_t i = begin + 1; i < count; ++i) {
-      const float distance = distances[i];
-      const std::uint32_t child = waiting[i];
-      std::size_t to = i;
-      for (; to > begin && distances[to - 1] < distance; --to) {
-        distances[to] = distances[to - 1];
-        waiting[to] = waiting[to - 1];
-      }
-      distances[to] = distance;
-      waiting[to] = child;
-    }
+    push_sorted(children, nearness, size, waiting + count, distances + count);
+    count += size;
   }
 }
 
@@ -175,28 +204,35 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
       });
 }
 
-using Keys = hn::RebindToSigned<Floats>;
+/// Up to this length, inserting a box into lists that it is too far for costs less than a branch, which no
+/// processor could predict.
+constexpr std::size_t max_unasked = 4;
 
-/// Inserts a box into the lists of the queries from `at` on: `sum` are its distances. Returns whether it is
-/// in any.
+/// Inserts a box into the lists of the queries from `at` on, which have `count` boxes each: `sum` are its
+/// distances. Returns 1 if it is in any, else 0.
 template <int D>
-HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum, std::size_t number) {
+HWY_INLINE unsigned insert_near(NearGroup<D>& group, std::size_t count, std::size_t at, FloatVector sum,
+                                std::size_t number) {
   const Keys tag;
   const auto rounded = hn::And(hn::BitCast(tag, sum), hn::Set(tag, ~NearGroup<D>::number_mask));
   auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
-  if (all_false(tag, hn::Lt(key, hn::Load(tag, group.keys[group.count - 1].data() + at)))) return false;
-  for (std::size_t i = 0; i < group.count; ++i) {
+  const auto is_near = hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at));
+  const unsigned inserts = all_false(tag, is_near) ? 0 : 1;
+  if ((inserts | (count <= max_unasked ? 1U : 0U)) == 0) return 0;
+  for (std::size_t i = 0; i < count; ++i) {
     std::int32_t* const place = group.keys[i].data() + at;
     const auto other = hn::Load(tag, place);
     hn::Store(hn::Min(key, other), tag, place);
     key = hn::Max(key, other);
   }
-  return true;
+  return inserts;
 }
 
 template <int D>
 void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
   float limit = group.limit;
+  const std::size_t count = group.count;
+  std::size_t boxes = 0;
   const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
   traverse_near(
       tree, from_all, [&] { return limit; },
@@ -207,32 +243,37 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
         for (std::size_t at = 0; at < fan_out; at += lanes)
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
         for (; near != 0; near &= near - 1) {
-          if (group.boxes == group.slots.size()) {
-            group.is_complete = false;
+          if (boxes == group.ids.size()) {
             limit = -1;  // ends the traversal
             return;
           }
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-          const DistanceFrom<D> from({leaf.box(lane), group.weight});
-          bool is_near = false;
+          const DistanceFrom<D> from(leaf, lane, group.weight);
+          unsigned is_near = 0;
           for (std::size_t at = 0; at < fan_out; at += lanes) {
             from.within(group.queries, at, infinity, sum);
             // Finite, so that a list with room takes it.
             sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
-            is_near |= insert_near(group, at, sum, group.boxes);
+            is_near |= insert_near(group, count, at, sum, boxes);
           }
-          group.slots[group.boxes] = static_cast<std::uint32_t>(number * fan_out + lane);
-          group.boxes += is_near ? 1 : 0;
+          group.ids[boxes] = leaf.id[lane];
+          for (int axis = 0; axis < D; ++axis) {
+            group.found[boxes].min[axis] = leaf.min[axis][lane];
+            group.found[boxes].max[axis] = leaf.max[axis][lane];
+          }
+          boxes += is_near;
         }
         const Keys tag;
         auto farthest = hn::Zero(tag);
         for (std::size_t at = 0; at < fan_out; at += lanes)
-          farthest = hn::Max(farthest, hn::Load(tag, group.keys[group.count - 1].data() + at));
+          farthest = hn::Max(farthest, hn::Load(tag, group.keys[count - 2].data() + at));
         farthest = hn::MaxOfLanes(tag, farthest);
         if (hn::GetLane(farthest) == NearGroup<D>::no_key) return;
         const auto rounded_up = hn::Or(farthest, hn::Set(tag, NearGroup<D>::number_mask));
-        limit = std::min(group.limit, hn::GetLane(hn::BitCast(Floats(), rounded_up)));
+        limit = std::min(group.limit,
+                         hn::GetLane(hn::BitCast(Floats(), rounded_up)) * (1 + 0x1p-17F) + 0x1p-125F);
       });
+  group.limit = limit;
 }
 
 }  // namespace
@@ -311,8 +352,6 @@ void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
 template <int D>
 void NearGroup<D>::start(std::size_t size) {
   count = size;
-  is_complete = true;
-  boxes = 0;
   for (std::size_t lane = 0; lane < fan_out; ++lane)
     keys[0][lane] = queries.min[0][lane] <= queries.max[0][lane] ? no_key : 0;
   for (std::size_t i = 1; i < count; ++i) keys[i] = keys[0];

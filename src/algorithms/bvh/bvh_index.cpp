@@ -16,6 +16,7 @@
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "kernels/squared_distances.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -281,10 +282,11 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // The kernel finds two boxes more than asked for: one may be left out, and the farthest shows that no other
-  // box is as near.
+  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no other
+  // box is as near as those.
+  const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
   using Group = kernels::NearGroup<D>;
-  const bool in_groups = options.filters.empty() && count + 2 <= Group::max_count;
+  const bool in_groups = options.filters.empty() && wanted + 1 <= Group::max_count;
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
@@ -298,25 +300,27 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
           group.queries.set(lane, in_tree(boxes[some[lane]]));
         group.weight = weight;
         group.limit = limit_in_tree(max_squared * unit);
-        group.start(count + 2);
+        group.start(wanted + 1);
         kernels::find_near(tree_.view(), group);
       }
       for (std::size_t lane = 0; lane < some.size(); ++lane) {
         const std::size_t query = some[lane];
         const Box<D, Real> box = boxes[query];
-        NearestBoxes nearest(count + 1, max_squared);
+        NearestBoxes nearest(wanted, max_squared);
         bool is_sure = false;
         if (in_groups) {
           for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
-            const std::uint32_t slot =
-                group.slots[static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask)];
-            const BoxId id = id_at(slot);
-            nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+            const auto at = static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask);
+            const BoxId id{group.ids[at]};
+            if constexpr (is_float<Real>)
+              nearest.offer({id, kernels::squared_distance(box, group.found[at])});
+            else
+              nearest.offer({id, kernels::squared_distance(box, exact_[id])});
           }
-          const std::int32_t last = group.keys[count + 1][lane];
-          is_sure = group.is_complete &&
-                    (last == Group::no_key || limit_in_tree(nearest.limit() * unit) <
-                                                  core::bit_cast<float>(last & ~Group::number_mask));
+          const float reached = limit_in_tree(nearest.limit() * unit);
+          const std::int32_t last = group.keys[wanted][lane];
+          is_sure = reached <= group.limit &&
+                    (last == Group::no_key || reached < core::bit_cast<float>(last & ~Group::number_mask));
         }
         if (!is_sure) {
           QueryOptions eligible;
