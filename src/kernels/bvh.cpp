@@ -201,11 +201,17 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
   traverse_near(
       tree, from_all, [&] { return limit; },
       [&](std::uint32_t number) HWY_ATTR {
+        if (group.tested > NearGroup<D>::max_tested) {
+          group.is_complete = false;
+          limit = -1;  // ends the traversal
+          return;
+        }
         const Block<D>& leaf = tree.nodes[number];
         std::uint32_t near = 0;
         FloatVector sum;
         for (std::size_t at = 0; at < fan_out; at += lanes)
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
+        group.tested += static_cast<std::size_t>(std::popcount(near));
         for (; near != 0; near &= near - 1) {
           if (group.boxes == group.slots.size()) {
             group.is_complete = false;
@@ -313,6 +319,7 @@ void NearGroup<D>::start(std::size_t size) {
   count = size;
   is_complete = true;
   boxes = 0;
+  tested = 0;
   for (std::size_t lane = 0; lane < fan_out; ++lane)
     keys[0][lane] = queries.min[0][lane] <= queries.max[0][lane] ? no_key : 0;
   for (std::size_t i = 1; i < count; ++i) keys[i] = keys[0];

@@ -84,6 +84,7 @@ template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
   static constexpr std::int32_t number_mask = 0x7ff;  ///< the bits of a key that are a number
+  static constexpr std::size_t max_tested = 1024;     ///< a leaf more may be tested
   static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
   /// Empties the lists, of which each will have `size` boxes, up to max_count.
@@ -93,8 +94,9 @@ struct NearGroup {
   std::array<float, D> weight;
   float limit;  ///< boxes that are farther away need not be found
   std::size_t count;
-  bool is_complete;   ///< false if there were too many boxes to number
-  std::size_t boxes;  ///< how many have a number
+  bool is_complete;    ///< false if there were too many boxes to number, or to test
+  std::size_t boxes;   ///< how many have a number
+  std::size_t tested;  ///< boxes whose distance from each query was computed
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
   std::array<std::uint32_t, number_mask> slots;  ///< in the tree, by number
 };

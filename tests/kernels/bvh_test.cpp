@@ -120,6 +120,36 @@ TEST(BvhNear, FindsTheBoxesWithinADistance) {
   });
 }
 
+TEST(BvhNear, GivesUpAGroupBeforeItTestsManyBoxes) {
+  on_each_instruction_set([]<int D>() {
+    const auto at = [](float x) {
+      Point<D> point{};
+      point[0] = x;
+      return Box<D>{point, point};
+    };
+    std::vector<Box<D>> boxes;
+    for (int i = 0; i < 8000; ++i) boxes.push_back(at(static_cast<float>(i)));
+    algorithm::DynamicBvh<D> tree;
+    tree.build(boxes);
+    const auto searched = [&](float spacing) {
+      NearGroup<D> group;
+      for (std::size_t lane = 0; lane < fan_out; ++lane)
+        group.queries.set(lane, at(spacing * static_cast<float>(lane)));
+      group.weight.fill(1);
+      group.limit = infinity;
+      group.start(3);
+      find_near(tree.view(), group);
+      return group;
+    };
+    const NearGroup<D> near = searched(1);
+    EXPECT_TRUE(near.is_complete);
+    EXPECT_LT(near.tested, 100U);
+    const NearGroup<D> far = searched(500);
+    EXPECT_FALSE(far.is_complete);
+    EXPECT_LE(far.tested, NearGroup<D>::max_tested + fan_out);
+  });
+}
+
 /// Collects a query's boxes, and lowers t_max to the least entry where the nearest one is looked for.
 struct Collector final : FoundBoxes {
   bool take() override {

@@ -222,6 +222,18 @@ namespace {
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
+/// Below so many queries, bringing them into an order costs more than it saves.
+constexpr std::size_t min_ordered_queries = 256;
+
+/// With more boxes per query, queries of a group are so far apart that one search for all of them meets more
+/// boxes than a search for each.
+constexpr std::size_t max_boxes_per_grouped_query = 32;
+
+/// After a group with too many boxes near, so many groups are searched query by query before the next is
+/// tried as one: twice as many after each further failure, so that trying costs little where all would fail.
+constexpr std::size_t min_pause = 8;
+constexpr std::size_t max_pause = 64;
+
 /// Whether the queries are the tree's own boxes: by all ids, and by some boxes.
 template <int D>
 bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree) {
@@ -241,9 +253,13 @@ bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>&
 template <int D>
 std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree,
                                          core::Parallel& parallel) {
-  if (are_own_boxes(queries, tree)) return tree.ids_by_leaf();
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
+  if (queries.size() < min_ordered_queries) {
+    for (const NumberedBox<D>& query : queries) order.push_back(query.number);
+    return order;
+  }
+  if (are_own_boxes(queries, tree)) return tree.ids_by_leaf();
   std::vector<Box<D>> boxes;
   boxes.reserve(queries.size());
   for (const NumberedBox<D>& query : queries) boxes.push_back(query.box);
@@ -284,12 +300,19 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   // The kernel finds two boxes more than asked for: one may be left out, and the farthest shows that no other
   // box is as near.
   using Group = kernels::NearGroup<D>;
-  const bool in_groups = options.filters.empty() && count + 2 <= Group::max_count;
+  const bool may_group = options.filters.empty() && count + 2 <= Group::max_count &&
+                         order.size() >= min_ordered_queries &&
+                         tree_.size() / max_boxes_per_grouped_query <= order.size();
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
     Group group;
+    std::size_t paused = 0;  // groups to go until the next is searched as one
+    std::size_t pause = min_pause;
     for (std::size_t number = range.begin; number < range.end; ++number) {
+      const bool in_groups = may_group && paused == 0;
+      paused -= paused > 0 ? 1 : 0;
+      std::size_t tests = 0;
       const std::span<const std::uint32_t> some =
           std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
       if (in_groups) {
@@ -300,13 +323,18 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         group.limit = limit_in_tree(max_squared * unit);
         group.start(count + 2);
         kernels::find_near(tree_.view(), group);
+        tests += fan_out * group.tested;
+        if (!group.is_complete) paused = pause;
+        pause = group.is_complete ? min_pause : std::min(2 * pause, max_pause);
       }
       for (std::size_t lane = 0; lane < some.size(); ++lane) {
         const std::size_t query = some[lane];
         const Box<D, Real> box = boxes[query];
-        NearestBoxes nearest(count + 1, max_squared);
+        const BoxId except = options.except.empty() ? no_box : options.except[query];
+        const bool in_group = in_groups && group.is_complete;
+        NearestBoxes nearest(in_group ? count + 1 : count, max_squared);
         bool is_sure = false;
-        if (in_groups) {
+        if (in_group) {
           for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
             const std::uint32_t slot =
                 group.slots[static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask)];
@@ -314,17 +342,17 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
             nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
           }
           const std::int32_t last = group.keys[count + 1][lane];
-          is_sure = group.is_complete &&
-                    (last == Group::no_key || limit_in_tree(nearest.limit() * unit) <
-                                                  core::bit_cast<float>(last & ~Group::number_mask));
+          is_sure = last == Group::no_key ||
+                    limit_in_tree(nearest.limit() * unit) < core::bit_cast<float>(last & ~Group::number_mask);
         }
         if (!is_sure) {
           QueryOptions eligible;
           if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          if (except != no_box) eligible.except = except;
           nearest.start_over();
+          tests += fan_out * (fan_out + count);
           search_nearest(box, eligible, nearest);
         }
-        const BoxId except = options.except.empty() ? no_box : options.except[query];
         std::size_t to = query * count;
         for (const Neighbour& one : nearest.sorted()) {
           if (one.box == except || to == (query + 1) * count) continue;
@@ -332,7 +360,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
           distances_squared[to++] = one.distance_squared;
         }
       }
-      if (checkpoint != nullptr) checkpoint->count(fan_out * fan_out * (fan_out + count));
+      if (checkpoint != nullptr) checkpoint->count(tests);
     }
   });
 }
