@@ -117,6 +117,33 @@ class DistanceFrom {
   FloatVector weight_[D];
 };
 
+using Keys = hn::RebindToSigned<Floats>;
+
+/// Copies `size` children, of which at most sixteen are, by descending distance. Each is counted to its
+/// place, since no processor could predict the branches of a sort.
+HWY_INLINE void push_sorted(const std::uint32_t* children, float* distances, std::size_t size,
+                            std::uint32_t* children_to, float* distances_to) {
+  const Keys tag;
+  // The place as the last bits tells equal distances apart.
+  const auto last_bits = hn::Set(tag, static_cast<std::int32_t>(fan_out - 1));
+  HWY_ALIGN std::int32_t keys[fan_out];
+  for (std::size_t at = 0; at < fan_out; at += lanes) {
+    const auto place = hn::Iota(tag, static_cast<std::int32_t>(at));
+    const auto key =
+        hn::Or(hn::AndNot(last_bits, hn::BitCast(tag, hn::Load(Floats(), distances + at))), place);
+    const auto is_there = hn::Lt(place, hn::Set(tag, static_cast<std::int32_t>(size)));
+    hn::Store(hn::IfThenElse(is_there, key, hn::Set(tag, -1)), tag, keys + at);
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto key = hn::Set(tag, keys[i]);
+    std::size_t to = 0;
+    for (std::size_t at = 0; at < fan_out; at += lanes)
+      to += count_true(tag, hn::Gt(hn::Load(tag, keys + at), key));
+    children_to[to] = children[i];
+    distances_to[to] = distances[i];
+  }
+}
+
 /// A depth-first traversal of what is near, of a node's children the nearest one first. limit() is the
 /// greatest squared distance that counts; leaf(number) searches a leaf, and may lower it.
 template <int D, typename Limit, typename Leaf>
@@ -134,23 +161,16 @@ HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& fro
       leaf(number & ~leaf_bit);
       continue;
     }
-    const std::size_t begin = count;
+    HWY_ALIGN std::uint32_t children[2 * fan_out];
+    HWY_ALIGN float nearness[2 * fan_out];
+    std::size_t size = 0;
     for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector sum;
       const FloatMask mask = from.within(tree.nodes[number], at, limit(), sum);
-      count += append_entries(tree.nodes[number], at, mask, sum, waiting + count, distances + count);
+      size += append_entries(tree.nodes[number], at, mask, sum, children + size, nearness + size);
     }
-    for (std::size_t i = begin + 1; i < count; ++i) {
-      const float distance = distances[i];
-      const std::uint32_t child = waiting[i];
-      std::size_t to = i;
-      for (; to > begin && distances[to - 1] < distance; --to) {
-        distances[to] = distances[to - 1];
-        waiting[to] = waiting[to - 1];
-      }
-      distances[to] = distance;
-      waiting[to] = child;
-    }
+    push_sorted(children, nearness, size, waiting + count, distances + count);
+    count += size;
   }
 }
 
@@ -174,8 +194,6 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
         if (found.count >= found.full) found.take();
       });
 }
-
-using Keys = hn::RebindToSigned<Floats>;
 
 /// Inserts a box into the lists of the queries from `at` on: `sum` are its distances. Returns whether it is
 /// in any.
@@ -202,7 +220,6 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
       tree, from_all, [&] { return limit; },
       [&](std::uint32_t number) HWY_ATTR {
         if (group.tested > NearGroup<D>::max_tested) {
-          group.is_complete = false;
           limit = -1;  // ends the traversal
           return;
         }
@@ -213,13 +230,9 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
         group.tested += static_cast<std::size_t>(std::popcount(near));
         for (; near != 0; near &= near - 1) {
-          if (group.boxes == group.slots.size()) {
-            group.is_complete = false;
-            limit = -1;  // ends the traversal
-            return;
-          }
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-          const DistanceFrom<D> from({leaf.box(lane), group.weight});
+          const Box<D> box = leaf.box(lane);
+          const DistanceFrom<D> from({box, group.weight});
           bool is_near = false;
           for (std::size_t at = 0; at < fan_out; at += lanes) {
             from.within(group.queries, at, infinity, sum);
@@ -227,18 +240,21 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
             sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
             is_near |= insert_near(group, at, sum, group.boxes);
           }
-          group.slots[group.boxes] = static_cast<std::uint32_t>(number * fan_out + lane);
+          group.ids[group.boxes] = leaf.id[lane];
+          group.found[group.boxes] = box;
           group.boxes += is_near ? 1 : 0;
         }
         const Keys tag;
         auto farthest = hn::Zero(tag);
         for (std::size_t at = 0; at < fan_out; at += lanes)
-          farthest = hn::Max(farthest, hn::Load(tag, group.keys[group.count - 1].data() + at));
+          farthest = hn::Max(farthest, hn::Load(tag, group.keys[group.count - 2].data() + at));
         farthest = hn::MaxOfLanes(tag, farthest);
         if (hn::GetLane(farthest) == NearGroup<D>::no_key) return;
         const auto rounded_up = hn::Or(farthest, hn::Set(tag, NearGroup<D>::number_mask));
-        limit = std::min(group.limit, hn::GetLane(hn::BitCast(Floats(), rounded_up)));
+        limit = std::min(group.limit,
+                         hn::GetLane(hn::BitCast(Floats(), rounded_up)) * (1 + 0x1p-17F) + 0x1p-125F);
       });
+  group.limit = limit;
 }
 
 }  // namespace
@@ -317,7 +333,6 @@ void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
 template <int D>
 void NearGroup<D>::start(std::size_t size) {
   count = size;
-  is_complete = true;
   boxes = 0;
   tested = 0;
   for (std::size_t lane = 0; lane < fan_out; ++lane)

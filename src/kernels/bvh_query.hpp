@@ -80,6 +80,9 @@ void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes
 /// Sixteen queries that are close to each other, and the boxes nearest to each: lists, one per lane, of keys
 /// in ascending order. A key is a squared distance as in DistanceQuery, rounded down, with the box's number
 /// as its last bits. So one minimum and one maximum take a box a step down a list.
+///
+/// A list's last key tells how near a box may be that is in none of the places before it: no such box is
+/// nearer if it is within `limit`.
 template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
@@ -87,18 +90,23 @@ struct NearGroup {
   static constexpr std::size_t max_tested = 1024;     ///< a leaf more may be tested
   static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
-  /// Empties the lists, of which each will have `size` boxes, up to max_count.
+  /// Empties the lists, which each will have `size` boxes, from 2 to max_count.
   void start(std::size_t size);
 
   Block<D> queries;  ///< lanes without a query hold nan_box()
   std::array<float, D> weight;
-  float limit;  ///< boxes that are farther away need not be found
+
+  /// Boxes that are farther away need not be found. A search lowers it to how far it has looked: at least a
+  /// little beyond all boxes of a list but the last; below 0 if it gave up since it had tested max_tested
+  /// boxes.
+  float limit;
+
   std::size_t count;
-  bool is_complete;    ///< false if there were too many boxes to number, or to test
   std::size_t boxes;   ///< how many have a number
   std::size_t tested;  ///< boxes whose distance from each query was computed
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
-  std::array<std::uint32_t, number_mask> slots;  ///< in the tree, by number
+  std::array<std::uint32_t, max_tested + fan_out> ids;  ///< of the boxes, by number
+  std::array<Box<D>, max_tested + fan_out> found;       ///< the boxes, as the tree has them
 };
 
 /// Fills the lists, by one traversal for all queries.

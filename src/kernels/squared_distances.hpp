@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 #include "broadside/box.hpp"
 #include "broadside/pair.hpp"
+
+#include "core/bit_cast.hpp"
 
 namespace broadside::kernels {
 
@@ -17,7 +20,9 @@ inline double gap(const Box<D, Real>& a, const Box<D, Real>& b, std::size_t axis
   const double above = static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]);
   const double below = static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]);
   const double greater = above > below ? above : below;
-  return greater > 0 ? greater : 0;  // 0 for NaN
+  // 0 for NaN. g++ 12 makes an unpredictable branch of the conditional operator.
+  return core::bit_cast<double>(core::bit_cast<std::uint64_t>(greater) &
+                                (std::uint64_t{0} - static_cast<std::uint64_t>(greater > 0)));
 }
 
 /// The sum of the squared gaps in order of the axes. Squares may overflow or vanish.

@@ -142,10 +142,10 @@ TEST(BvhNear, GivesUpAGroupBeforeItTestsManyBoxes) {
       return group;
     };
     const NearGroup<D> near = searched(1);
-    EXPECT_TRUE(near.is_complete);
+    EXPECT_GE(near.limit, 0);
     EXPECT_LT(near.tested, 100U);
     const NearGroup<D> far = searched(500);
-    EXPECT_FALSE(far.is_complete);
+    EXPECT_LT(far.limit, 0);
     EXPECT_LE(far.tested, NearGroup<D>::max_tested + fan_out);
   });
 }

@@ -14,6 +14,7 @@
 #include "core/input_check.hpp"
 #include "core/message.hpp"
 #include "core/number_text.hpp"
+#include "kernels/squared_distances.hpp"
 
 namespace broadside {
 namespace {
@@ -75,7 +76,7 @@ class CallersVisitor final : public Visitor<Found> {
 template <int D, typename Real>
 double distance_squared(const Box<D, Real>& a, const std::type_identity_t<Box<D, Real>>& b) noexcept {
   const core::DefaultEnvironment environment;
-  const volatile double result = algorithm::squared_distance<D, Real>(a, b);
+  const volatile double result = kernels::squared_distance(a, b);
   return result;
 }
 

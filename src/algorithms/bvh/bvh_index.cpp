@@ -16,6 +16,7 @@
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "kernels/squared_distances.hpp"
 
 namespace broadside::algorithm {
 namespace {
@@ -297,8 +298,8 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // The kernel finds two boxes more than asked for: one may be left out, and the farthest shows that no other
-  // box is as near.
+  // The kernel finds two boxes more than asked for: one may be left out, and the last shows that no other box
+  // is as near.
   using Group = kernels::NearGroup<D>;
   const bool may_group = options.filters.empty() && count + 2 <= Group::max_count &&
                          order.size() >= min_ordered_queries &&
@@ -324,26 +325,29 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         group.start(count + 2);
         kernels::find_near(tree_.view(), group);
         tests += fan_out * group.tested;
-        if (!group.is_complete) paused = pause;
-        pause = group.is_complete ? min_pause : std::min(2 * pause, max_pause);
+        if (group.limit < 0) paused = pause;
+        pause = group.limit < 0 ? std::min(2 * pause, max_pause) : min_pause;
       }
       for (std::size_t lane = 0; lane < some.size(); ++lane) {
         const std::size_t query = some[lane];
         const Box<D, Real> box = boxes[query];
         const BoxId except = options.except.empty() ? no_box : options.except[query];
-        const bool in_group = in_groups && group.is_complete;
+        const bool in_group = in_groups && group.limit >= 0;
         NearestBoxes nearest(in_group ? count + 1 : count, max_squared);
         bool is_sure = false;
         if (in_group) {
           for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
-            const std::uint32_t slot =
-                group.slots[static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask)];
-            const BoxId id = id_at(slot);
-            nearest.offer({id, squared_distance<D, Real>(box, exact(slot, id))});
+            const auto at = static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask);
+            const BoxId id{group.ids[at]};
+            if constexpr (is_float<Real>)
+              nearest.offer({id, kernels::squared_distance(box, group.found[at])});
+            else
+              nearest.offer({id, kernels::squared_distance(box, exact_[id])});
           }
+          const float reached = limit_in_tree(nearest.limit() * unit);
           const std::int32_t last = group.keys[count + 1][lane];
-          is_sure = last == Group::no_key ||
-                    limit_in_tree(nearest.limit() * unit) < core::bit_cast<float>(last & ~Group::number_mask);
+          is_sure = reached <= group.limit &&
+                    (last == Group::no_key || reached < core::bit_cast<float>(last & ~Group::number_mask));
         }
         if (!is_sure) {
           QueryOptions eligible;

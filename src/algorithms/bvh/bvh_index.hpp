@@ -23,21 +23,6 @@ namespace broadside::algorithm {
 template <typename Real>
 inline constexpr bool is_float = std::is_same_v<Real, float>;
 
-/// distance_squared() for code that is in a DefaultEnvironment already.
-template <int D, typename Real>
-double squared_distance(const Box<D, Real>& a, const Box<D, Real>& b) noexcept {
-  double sum = 0;
-  for (int axis = 0; axis < D; ++axis) {
-    // Without branches, since no processor could predict them. Equal infinities are no gap, but NaN.
-    const double before = double{b.min[axis]} - double{a.max[axis]};
-    const double behind = double{a.min[axis]} - double{b.max[axis]};
-    double gap = before > 0 ? before : 0;
-    gap = behind > gap ? behind : gap;
-    sum += gap * gap;
-  }
-  return sum;
-}
-
 class NearestBoxes;
 
 /// The kernels search floats exactly. Boxes of doubles are in the tree as floats about an origin, by

@@ -17,6 +17,7 @@
 #include "algorithms/bvh/bvh_index.hpp"
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "kernels/bvh_query.hpp"
+#include "kernels/squared_distances.hpp"
 
 namespace broadside::algorithm {
 
@@ -187,7 +188,7 @@ class NearestSearch final : public kernels::FoundBoxes {
   void offer(std::uint32_t slot) {
     const BoxId id = boxes_.id_at(slot);
     if (!boxes_.may_find(id, options_)) return;
-    found_.offer({id, squared_distance<D, Real>(box_, boxes_.exact(slot, id))});
+    found_.offer({id, kernels::squared_distance(box_, boxes_.exact(slot, id))});
   }
 
   void set_limit() { t_max = limit_in_tree(found_.limit() * unit_); }
