@@ -9,6 +9,8 @@
 
 #include <nanobind/stl/string.h>
 
+#include "broadside/sinks.hpp"
+
 namespace broadside::python {
 namespace {
 
@@ -43,9 +45,20 @@ char native_format(const Py_buffer& buffer) {
 /// From an array that broadside._convert made.
 std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
   const PythonBuffer buffer(array, PyBUF_C_CONTIGUOUS);
-  // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
   std::vector<Filter> filters;
   filters.reserve(count);
+  detail::prefer_large_pages(filters.data(), count * sizeof(Filter));
+  if (buffer.text().size() == count * sizeof(std::int64_t)) {
+    // Groups alone: equal positive ones collide and, with the default bits, unequal negative ones.
+    const auto* groups = reinterpret_cast<const std::int64_t*>(buffer.text().data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto group = static_cast<std::int32_t>(groups[i]);
+      filters.push_back(group > 0 ? Filter{.category = 0, .mask = 0, .group = group}
+                                  : Filter{.group = group});
+    }
+    return filters;
+  }
+  // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
   const auto* numbers = reinterpret_cast<const std::uint64_t*>(buffer.text().data());
   for (std::size_t i = 0; i < count; ++i, numbers += 4)
     filters.push_back({numbers[0], numbers[1], static_cast<std::int32_t>(numbers[2]), numbers[3] != 0});

@@ -171,22 +171,27 @@ double enlargement(double radius) {
   return radius == 0 ? 0 : std::min(enlarged, std::numeric_limits<double>::max());
 }
 
-/// A Real below every number that rounds to the double `rounded`.
+/// A Real below every number that rounds to the double `rounded`: the next one or the one before that, or
+/// -infinity. Its branches are predictable.
 template <typename Real>
 Real less_than(double rounded) {
-  const auto number = static_cast<Real>(rounded);
-  return number == -std::numeric_limits<Real>::infinity() ? number : detail::next_below(number);
+  constexpr Real greatest = std::numeric_limits<Real>::max();
+  const Real number = std::min(static_cast<Real>(rounded), greatest);
+  return number - (std::min(std::abs(number), greatest) * std::numeric_limits<Real>::epsilon() +
+                   std::numeric_limits<Real>::denorm_min());
 }
 
+/// Writes to `to`, since a copy of what has just been stored would wait for it.
 template <typename Real, int D, typename Given>
-Box<D, Real> enlarged_outwards(const Box<D, Given>& box, double by) {
-  if (!is_present(box)) return absent_box<D, Real>();
-  Box<D, Real> enlarged;
-  for (int axis = 0; axis < D; ++axis) {
-    enlarged.min[axis] = less_than<Real>(static_cast<double>(box.min[axis]) - by);
-    enlarged.max[axis] = -less_than<Real>(-static_cast<double>(box.max[axis]) - by);
+void enlarge_outwards(const Box<D, Given>& box, double by, Box<D, Real>& to) {
+  if (!is_present(box)) {
+    to = absent_box<D, Real>();
+    return;
   }
-  return enlarged;
+  for (int axis = 0; axis < D; ++axis) {
+    to.min[axis] = less_than<Real>(static_cast<double>(box.min[axis]) - by);
+    to.max[axis] = -less_than<Real>(-static_cast<double>(box.max[axis]) - by);
+  }
 }
 
 /// From this number of boxes on, which no cache of a core holds, sorting them by place pays: a search writes
@@ -226,19 +231,21 @@ struct Set {
     if (sorts && reach.has_radii()) core::renew(sorted_radii, count);
     const auto by = enlargements(reach);
     parallel.for_ranges(count, [&](core::Range range, std::size_t) {
-      std::array<Box<D, Real>, gathered_at_once> some;
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        const std::size_t at = (i - range.begin) % gathered_at_once;
-        for (std::size_t k = 0; at == 0 && k < std::min(gathered_at_once, range.end - i); ++k)
-          some[k] = boxes[sorts ? order[i + k].place : i + k];
-        const std::size_t place = sorts ? order[i].place : i;
-        const Box<D, Real>& box = some[at];
-        enlarged[i] = enlarged_outwards<Real>(box, by(place));
-        if (as_points) points[i] = box.min;
-        if (!sorts) continue;
-        ids[i] = BoxId(place);
-        if (!as_points) sorted[i] = box;
-        if (reach.has_radii()) sorted_radii[i] = radii[place];
+      std::array<Box<D, Real>, gathered_at_once> gathered;
+      for (std::size_t begin = range.begin; begin < range.end; begin += gathered_at_once) {
+        const std::size_t end = std::min(begin + gathered_at_once, range.end);
+        for (std::size_t i = begin; sorts && i < end; ++i) gathered[i - begin] = boxes[order[i].place];
+        const Box<D, Real>* const some = sorts ? gathered.data() : boxes.data() + begin;
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::size_t place = sorts ? order[i].place : i;
+          const Box<D, Real>& box = some[i - begin];
+          enlarge_outwards(box, by(place), enlarged[i]);
+          if (as_points) points[i] = box.min;
+          if (!sorts) continue;
+          ids[i] = BoxId(place);
+          if (!as_points) sorted[i] = box;
+          if (reach.has_radii()) sorted_radii[i] = radii[place];
+        }
       }
     });
     if (!sorts) return;
@@ -292,7 +299,11 @@ std::optional<Statistics> find_periodic(const Set<D, Real>& left, const Set<D, R
   for (const std::span<const double> radii : {left.radii, right.radii}) {
     for (const double radius : radii) most = std::max(most, enlargement(radius));
   }
-  const auto enlarge = [](const Box<D, double>& box, double by) { return enlarged_outwards<Real>(box, by); };
+  const auto enlarge = [](const Box<D, double>& box, double by) {
+    Box<D, Real> enlarged;
+    enlarge_outwards(box, by, enlarged);
+    return enlarged;
+  };
   find::PeriodicSet<D, Real> left_places(left.boxes, periods);
   left_places.make_places(left.enlargements(reach), most, enlarge);
   find::PeriodicSet<D, Real> right_places(is_between ? right.boxes : std::span<const Box<D, Real>>(),

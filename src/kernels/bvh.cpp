@@ -96,6 +96,15 @@ class DistanceFrom {
     }
   }
 
+  /// From the box in a lane of a node.
+  HWY_INLINE DistanceFrom(const Block<D>& node, std::size_t lane, const std::array<float, D>& weight) {
+    for (int axis = 0; axis < D; ++axis) {
+      low_[axis] = all(node.min[axis][lane]);
+      high_[axis] = all(node.max[axis][lane]);
+      weight_[axis] = all(weight[axis]);
+    }
+  }
+
   /// Which children from `at` on are within the squared distance `limit`. Sets `sum` to the distances.
   HWY_INLINE FloatMask within(const Block<D>& node, std::size_t at, float limit, FloatVector& sum) const {
     sum = hn::Zero(Floats());
@@ -195,15 +204,16 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
       });
 }
 
-/// Inserts a box into the lists of the queries from `at` on: `sum` are its distances. Returns whether it is
-/// in any.
+/// Inserts a box into the lists of the queries from `at` on, which have `count` boxes each: `sum` are its
+/// distances. Returns whether it is in any.
 template <int D>
-HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum, std::size_t number) {
+HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t count, std::size_t at, FloatVector sum,
+                            std::size_t number) {
   const Keys tag;
   const auto rounded = hn::And(hn::BitCast(tag, sum), hn::Set(tag, ~NearGroup<D>::number_mask));
   auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
-  if (all_false(tag, hn::Lt(key, hn::Load(tag, group.keys[group.count - 1].data() + at)))) return false;
-  for (std::size_t i = 0; i < group.count; ++i) {
+  if (all_false(tag, hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at)))) return false;
+  for (std::size_t i = 0; i < count; ++i) {
     std::int32_t* const place = group.keys[i].data() + at;
     const auto other = hn::Load(tag, place);
     hn::Store(hn::Min(key, other), tag, place);
@@ -215,6 +225,8 @@ HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t at, FloatVector sum
 template <int D>
 void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
   float limit = group.limit;
+  const std::size_t count = group.count;
+  std::size_t boxes = 0;
   const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
   traverse_near(
       tree, from_all, [&] { return limit; },
@@ -231,23 +243,25 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
         group.tested += static_cast<std::size_t>(std::popcount(near));
         for (; near != 0; near &= near - 1) {
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-          const Box<D> box = leaf.box(lane);
-          const DistanceFrom<D> from({box, group.weight});
+          const DistanceFrom<D> from(leaf, lane, group.weight);
           bool is_near = false;
           for (std::size_t at = 0; at < fan_out; at += lanes) {
             from.within(group.queries, at, infinity, sum);
             // Finite, so that a list with room takes it.
             sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
-            is_near |= insert_near(group, at, sum, group.boxes);
+            is_near |= insert_near(group, count, at, sum, boxes);
           }
-          group.ids[group.boxes] = leaf.id[lane];
-          group.found[group.boxes] = box;
-          group.boxes += is_near ? 1 : 0;
+          group.ids[boxes] = leaf.id[lane];
+          for (int axis = 0; axis < D; ++axis) {
+            group.found[boxes].min[axis] = leaf.min[axis][lane];
+            group.found[boxes].max[axis] = leaf.max[axis][lane];
+          }
+          boxes += is_near ? 1 : 0;
         }
         const Keys tag;
         auto farthest = hn::Zero(tag);
         for (std::size_t at = 0; at < fan_out; at += lanes)
-          farthest = hn::Max(farthest, hn::Load(tag, group.keys[group.count - 2].data() + at));
+          farthest = hn::Max(farthest, hn::Load(tag, group.keys[count - 2].data() + at));
         farthest = hn::MaxOfLanes(tag, farthest);
         if (hn::GetLane(farthest) == NearGroup<D>::no_key) return;
         const auto rounded_up = hn::Or(farthest, hn::Set(tag, NearGroup<D>::number_mask));
@@ -333,7 +347,6 @@ void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
 template <int D>
 void NearGroup<D>::start(std::size_t size) {
   count = size;
-  boxes = 0;
   tested = 0;
   for (std::size_t lane = 0; lane < fan_out; ++lane)
     keys[0][lane] = queries.min[0][lane] <= queries.max[0][lane] ? no_key : 0;

@@ -102,7 +102,6 @@ struct NearGroup {
   float limit;
 
   std::size_t count;
-  std::size_t boxes;   ///< how many have a number
   std::size_t tested;  ///< boxes whose distance from each query was computed
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
   std::array<std::uint32_t, max_tested + fan_out> ids;  ///< of the boxes, by number

@@ -112,7 +112,7 @@ TEST(BvhNear, FindsTheBoxesWithinADistance) {
       std::ranges::sort(ids);
       std::vector<std::uint32_t> expected;
       for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (algorithm::squared_distance<D, float>(query.box, boxes[i]) <= found.t_max)
+        if (distance_squared(query.box, boxes[i]) <= found.t_max)
           expected.push_back(static_cast<std::uint32_t>(i));
       }
       EXPECT_EQ(ids, expected);

@@ -412,8 +412,8 @@ def _integers(array: Rows, name: str, most: int) -> NDArray[np.uint64]:
     return np.ascontiguousarray(array, dtype=np.uint64)
 
 
-def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
-    """The fields of broadside.filters() as four uint64 a row."""
+def filters(found: Any, count: int, name: str) -> NDArray[np.uint64 | np.int64]:
+    """The fields of broadside.filters() as four uint64 a row; those of keys as these have them."""
     if isinstance(found, Keyed):
         if len(found.packed) != count:
             raise ValueError(f"{found.name} has {len(found.packed)} keys for {count} boxes; expected one for each box")
@@ -431,7 +431,7 @@ def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     return packed
 
 
-def query_filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
+def query_filters(found: Any, count: int, name: str) -> NDArray[np.uint64 | np.int64]:
     """Likewise, or one for all queries."""
     array = np.asarray(found)
     return filters(np.broadcast_to(array, (count,)) if array.shape in ((), (1,)) else array, count, name)

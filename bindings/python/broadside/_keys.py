@@ -16,10 +16,10 @@ _MOST = 2**31 - 2
 
 @dataclass(frozen=True)
 class Keyed:
-    """Filters made of keys, as the extension module takes them: four uint64 a row."""
+    """Filters made of keys, as the extension module takes them: four uint64 a row, or an int64, a group alone."""
 
     name: str
-    packed: NDArray[np.uint64]
+    packed: NDArray[np.uint64 | np.int64]
 
 
 def with_keys(filters: Any, other_filters: Any, same: Any, different: Any, is_between: bool) -> tuple[Any, Any, Any]:
@@ -110,20 +110,17 @@ def _counted_from(array: NDArray[Any], least: int) -> NDArray[np.int64]:
 
 
 def _keyed(groups: NDArray[np.int64], filters: Any, name: str) -> Keyed:
-    packed = np.zeros((len(groups), 4), np.uint64)
-    if filters is not None:
-        from broadside import _convert
+    groups = groups if name == "same" else -groups
+    if filters is None:
+        return Keyed(name, groups)
+    from broadside import _convert
 
-        packed[:] = _convert.filters(filters, len(groups), "filters")
-        if packed[:, 2].any():
-            raise ValueError(f"filters with groups are given with {name}; expected filters of group 0, since keys are groups")
-    elif name == "different":
-        packed[:, 0], packed[:, 1] = 1, 2**64 - 1
-    if name == "different":
-        packed[:, 2] = (-groups).view(np.uint64)
-        return Keyed(name, packed)
-    if filters is not None and ((packed[:, 0] != 1) | (packed[:, 1] != 2**64 - 1)).any():
-        raise ValueError("filters with categories or masks are given with same; expected one of the two")
-    packed[:, :2] = 0
+    packed = _convert.filters(filters, len(groups), "filters")
+    if packed[:, 2].any():
+        raise ValueError(f"filters with groups are given with {name}; expected filters of group 0, since keys are groups")
+    if name == "same":
+        if ((packed[:, 0] != 1) | (packed[:, 1] != 2**64 - 1)).any():
+            raise ValueError("filters with categories or masks are given with same; expected one of the two")
+        packed[:, :2] = 0
     packed[:, 2] = groups.view(np.uint64)
     return Keyed(name, packed)

@@ -298,10 +298,11 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // The kernel finds two boxes more than asked for: one may be left out, and the last shows that no other box
-  // is as near.
+  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
+  // other box is as near as those.
+  const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
   using Group = kernels::NearGroup<D>;
-  const bool may_group = options.filters.empty() && count + 2 <= Group::max_count &&
+  const bool may_group = options.filters.empty() && wanted + 1 <= Group::max_count &&
                          order.size() >= min_ordered_queries &&
                          tree_.size() / max_boxes_per_grouped_query <= order.size();
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
@@ -322,7 +323,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
           group.queries.set(lane, in_tree(boxes[some[lane]]));
         group.weight = weight;
         group.limit = limit_in_tree(max_squared * unit);
-        group.start(count + 2);
+        group.start(wanted + 1);
         kernels::find_near(tree_.view(), group);
         tests += fan_out * group.tested;
         if (group.limit < 0) paused = pause;
@@ -333,7 +334,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         const Box<D, Real> box = boxes[query];
         const BoxId except = options.except.empty() ? no_box : options.except[query];
         const bool in_group = in_groups && group.limit >= 0;
-        NearestBoxes nearest(in_group ? count + 1 : count, max_squared);
+        NearestBoxes nearest(in_group ? wanted : count, max_squared);
         bool is_sure = false;
         if (in_group) {
           for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
@@ -345,7 +346,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
               nearest.offer({id, kernels::squared_distance(box, exact_[id])});
           }
           const float reached = limit_in_tree(nearest.limit() * unit);
-          const std::int32_t last = group.keys[count + 1][lane];
+          const std::int32_t last = group.keys[wanted][lane];
           is_sure = reached <= group.limit &&
                     (last == Group::no_key || reached < core::bit_cast<float>(last & ~Group::number_mask));
         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace broadside::algorithm {
@@ -37,21 +38,37 @@ core::CellAxis cell_axis(float low, float high, float cells) {
 
 template <int D>
 TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
-  TileStats stats;
-  stats.low.fill(max_float);
-  stats.high.fill(-max_float);
-  stats.side.fill(0);
   const std::size_t count = std::min(boxes.size(), max_looked_at);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Box<D>& box = boxes[core::sampled_place(i, count, boxes.size())];
-    for (int axis = 0; axis < D; ++axis) {
-      const float min = box.min[axis];
-      const float side = box.max[axis] - min;
-      // What is infinite does not count.
-      stats.low[axis] = min < stats.low[axis] && min >= -max_float ? min : stats.low[axis];
-      stats.high[axis] = min > stats.high[axis] && min <= max_float ? min : stats.high[axis];
-      stats.side[axis] += side <= max_float ? side : 0;
+  const auto look = [&]<bool OnlyFinite>(std::bool_constant<OnlyFinite>) {
+    TileStats stats;
+    stats.low.fill(max_float);
+    stats.high.fill(-max_float);
+    stats.side.fill(0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Box<D>& box = boxes[core::sampled_place(i, count, boxes.size())];
+      for (int axis = 0; axis < D; ++axis) {
+        const float min = box.min[axis];
+        const float side = box.max[axis] - min;
+        if constexpr (OnlyFinite) {
+          stats.low[axis] = min < stats.low[axis] && min >= -max_float ? min : stats.low[axis];
+          stats.high[axis] = min > stats.high[axis] && min <= max_float ? min : stats.high[axis];
+          stats.side[axis] += side <= max_float ? side : 0;
+        } else {
+          stats.low[axis] = std::min(stats.low[axis], min);
+          stats.high[axis] = std::max(stats.high[axis], min);
+          stats.side[axis] += side;
+        }
+      }
     }
+    return stats;
+  };
+  // Without branches; again if something was infinite, which does not count.
+  TileStats stats = look(std::false_type());
+  for (int axis = 0; axis < D; ++axis) {
+    if (stats.low[axis] >= -max_float && stats.high[axis] <= max_float && stats.side[axis] <= max_float)
+      continue;
+    stats = look(std::true_type());
+    break;
   }
   for (float& side : stats.side) side = std::min(side / static_cast<float>(count), max_float);
   return stats;
