@@ -204,22 +204,28 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
       });
 }
 
+/// Up to this length, inserting a box into lists that it is too far for costs less than a branch, which no
+/// processor could predict.
+constexpr std::size_t max_unasked = 4;
+
 /// Inserts a box into the lists of the queries from `at` on, which have `count` boxes each: `sum` are its
-/// distances. Returns whether it is in any.
+/// distances. Returns 1 if it is in any, else 0.
 template <int D>
-HWY_INLINE bool insert_near(NearGroup<D>& group, std::size_t count, std::size_t at, FloatVector sum,
-                            std::size_t number) {
+HWY_INLINE unsigned insert_near(NearGroup<D>& group, std::size_t count, std::size_t at, FloatVector sum,
+                                std::size_t number) {
   const Keys tag;
   const auto rounded = hn::And(hn::BitCast(tag, sum), hn::Set(tag, ~NearGroup<D>::number_mask));
   auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
-  if (all_false(tag, hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at)))) return false;
+  const auto is_near = hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at));
+  const unsigned inserts = all_false(tag, is_near) ? 0 : 1;
+  if ((inserts | (count <= max_unasked ? 1U : 0U)) == 0) return 0;
   for (std::size_t i = 0; i < count; ++i) {
     std::int32_t* const place = group.keys[i].data() + at;
     const auto other = hn::Load(tag, place);
     hn::Store(hn::Min(key, other), tag, place);
     key = hn::Max(key, other);
   }
-  return true;
+  return inserts;
 }
 
 template <int D>
@@ -244,7 +250,7 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
         for (; near != 0; near &= near - 1) {
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
           const DistanceFrom<D> from(leaf, lane, group.weight);
-          bool is_near = false;
+          unsigned is_near = 0;
           for (std::size_t at = 0; at < fan_out; at += lanes) {
             from.within(group.queries, at, infinity, sum);
             // Finite, so that a list with room takes it.
@@ -256,7 +262,7 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
             group.found[boxes].min[axis] = leaf.min[axis][lane];
             group.found[boxes].max[axis] = leaf.max[axis][lane];
           }
-          boxes += is_near ? 1 : 0;
+          boxes += is_near;
         }
         const Keys tag;
         auto farthest = hn::Zero(tag);
