@@ -223,12 +223,11 @@ namespace {
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
-/// Below so many queries, bringing them into an order costs more than it saves.
-constexpr std::size_t min_ordered_queries = 256;
-
-/// With more boxes per query, queries of a group are so far apart that one search for all of them meets more
-/// boxes than a search for each.
-constexpr std::size_t max_boxes_per_grouped_query = 32;
+/// Fewer queries, or with more boxes per query, are searched one by one in their own order: bringing them
+/// into another takes longer than it saves, and one search for a group of queries that are far apart meets
+/// more boxes than a search for each.
+constexpr std::size_t min_dense_queries = 256;
+constexpr std::size_t max_boxes_per_dense_query = 32;
 
 /// After a group with too many boxes near, so many groups are searched query by query before the next is
 /// tried as one: twice as many after each further failure, so that trying costs little where all would fail.
@@ -250,13 +249,14 @@ bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>&
   });
 }
 
-/// The queries in an order in which neighbours in space follow one another: that of a packed tree's leaves.
+/// The queries in an order in which neighbours in space follow one another, that of a packed tree's leaves,
+/// if they are dense.
 template <int D>
 std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree,
-                                         core::Parallel& parallel) {
+                                         bool is_dense, core::Parallel& parallel) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
-  if (queries.size() < min_ordered_queries) {
+  if (!is_dense) {
     for (const NumberedBox<D>& query : queries) order.push_back(query.number);
     return order;
   }
@@ -295,16 +295,16 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const double max_squared = options.max_distance * options.max_distance;
   core::Parallel parallel;
   parallel.start(options.workers, queries.size());
-  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
+  const bool is_dense =
+      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
   // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
   // other box is as near as those.
   const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
   using Group = kernels::NearGroup<D>;
-  const bool may_group = options.filters.empty() && wanted + 1 <= Group::max_count &&
-                         order.size() >= min_ordered_queries &&
-                         tree_.size() / max_boxes_per_grouped_query <= order.size();
+  const bool may_group = is_dense && options.filters.empty() && wanted + 1 <= Group::max_count;
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
