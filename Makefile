@@ -205,7 +205,8 @@ docs: setup_options := --docs
 
 systems windows: setup_options := --systems
 python test-python: setup_options := --python
-wasm test-wasm test-installed compare-web playground: setup_options := --web
+playground: setup_options := --web
+wasm test-wasm test-installed compare-web: setup_options := $(if $(filter test-installed compare-web,$(MAKECMDGOALS)),--web,--wasm)
 
 setup:
 	@tools/setup/setup $(setup_options)

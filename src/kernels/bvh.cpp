@@ -237,16 +237,17 @@ void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
   traverse_near(
       tree, from_all, [&] { return limit; },
       [&](std::uint32_t number) HWY_ATTR {
+        if (group.tested > NearGroup<D>::max_tested) {
+          limit = -1;  // ends the traversal
+          return;
+        }
         const Block<D>& leaf = tree.nodes[number];
         std::uint32_t near = 0;
         FloatVector sum;
         for (std::size_t at = 0; at < fan_out; at += lanes)
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
+        group.tested += static_cast<std::size_t>(std::popcount(near));
         for (; near != 0; near &= near - 1) {
-          if (boxes == group.ids.size()) {
-            limit = -1;  // ends the traversal
-            return;
-          }
           const auto lane = static_cast<std::size_t>(std::countr_zero(near));
           const DistanceFrom<D> from(leaf, lane, group.weight);
           unsigned is_near = 0;
@@ -352,6 +353,7 @@ void find_near(const BvhView<3>& tree, NearGroup<3>& group) {
 template <int D>
 void NearGroup<D>::start(std::size_t size) {
   count = size;
+  tested = 0;
   for (std::size_t lane = 0; lane < fan_out; ++lane)
     keys[0][lane] = queries.min[0][lane] <= queries.max[0][lane] ? no_key : 0;
   for (std::size_t i = 1; i < count; ++i) keys[i] = keys[0];

@@ -87,6 +87,7 @@ template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
   static constexpr std::int32_t number_mask = 0x7ff;  ///< the bits of a key that are a number
+  static constexpr std::size_t max_tested = 1024;     ///< a leaf more may be tested
   static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
   /// Empties the lists, which each will have `size` boxes, from 2 to max_count.
@@ -96,13 +97,15 @@ struct NearGroup {
   std::array<float, D> weight;
 
   /// Boxes that are farther away need not be found. A search lowers it to how far it has looked: at least a
-  /// little beyond all boxes of a list but the last; below 0 if there were too many boxes to number.
+  /// little beyond all boxes of a list but the last; below 0 if it gave up since it had tested max_tested
+  /// boxes.
   float limit;
 
   std::size_t count;
+  std::size_t tested;  ///< boxes whose distance from each query was computed
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
-  std::array<std::uint32_t, number_mask> ids;  ///< of the boxes, by number
-  std::array<Box<D>, number_mask> found;       ///< the boxes, as the tree has them
+  std::array<std::uint32_t, max_tested + fan_out> ids;  ///< of the boxes, by number
+  std::array<Box<D>, max_tested + fan_out> found;       ///< the boxes, as the tree has them
 };
 
 /// Fills the lists, by one traversal for all queries.

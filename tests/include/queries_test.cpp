@@ -376,6 +376,24 @@ TEST(BoxIndex, WritesTheNearestOfEachQueryInARow) {
   EXPECT_THAT(found, ElementsAre(no_box, no_box, no_box, no_box, no_box, no_box, BoxId(1), no_box, no_box));
 }
 
+TEST(BoxIndex, TestsFewBoxesForEachOfManyQueriesThatAreFarFromAll) {
+  std::vector<Box2> boxes;
+  std::vector<Box2> queries;
+  const auto point = [](float x, float y) { return Box2{{x, y}, {x, y}}; };
+  for (int i = 0; i < 16'000; ++i) {
+    const auto x = static_cast<float>(i % 127);
+    const auto y = static_cast<float>(i / 127);
+    boxes.push_back(point(x / 1024, y / 1024));
+    queries.push_back(point(100 + 8 * x, 8 * y));
+  }
+  std::vector<BoxId> found(queries.size());
+  std::vector<double> distances(queries.size());
+  std::size_t checkpoints = 0;  // passed once per some million tests of a query and a box
+  index_of(boxes).nearest_of_each(queries, 1, found, distances,
+                                  {.workers = {.checkpoint = [&checkpoints] { ++checkpoints; }}});
+  EXPECT_LT(checkpoints, 10U);
+}
+
 TEST(BoxIndex, RefusesBadQueriesOfManyAndWritesNothing) {
   const auto index = index_of(row(2));
   const std::vector<Box2> bad = {{{0, 0}, {1, 1}}, {{0, nan}, {1, 1}}};

@@ -112,11 +112,41 @@ TEST(BvhNear, FindsTheBoxesWithinADistance) {
       std::ranges::sort(ids);
       std::vector<std::uint32_t> expected;
       for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (algorithm::squared_distance<D, float>(query.box, boxes[i]) <= found.t_max)
+        if (distance_squared(query.box, boxes[i]) <= found.t_max)
           expected.push_back(static_cast<std::uint32_t>(i));
       }
       EXPECT_EQ(ids, expected);
     }
+  });
+}
+
+TEST(BvhNear, GivesUpAGroupBeforeItTestsManyBoxes) {
+  on_each_instruction_set([]<int D>() {
+    const auto at = [](float x) {
+      Point<D> point{};
+      point[0] = x;
+      return Box<D>{point, point};
+    };
+    std::vector<Box<D>> boxes;
+    for (int i = 0; i < 8000; ++i) boxes.push_back(at(static_cast<float>(i)));
+    algorithm::DynamicBvh<D> tree;
+    tree.build(boxes);
+    const auto searched = [&](float spacing) {
+      NearGroup<D> group;
+      for (std::size_t lane = 0; lane < fan_out; ++lane)
+        group.queries.set(lane, at(spacing * static_cast<float>(lane)));
+      group.weight.fill(1);
+      group.limit = infinity;
+      group.start(3);
+      find_near(tree.view(), group);
+      return group;
+    };
+    const NearGroup<D> near = searched(1);
+    EXPECT_GE(near.limit, 0);
+    EXPECT_LT(near.tested, 100U);
+    const NearGroup<D> far = searched(500);
+    EXPECT_LT(far.limit, 0);
+    EXPECT_LE(far.tested, NearGroup<D>::max_tested + fan_out);
   });
 }
 

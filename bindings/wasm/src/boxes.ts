@@ -1,5 +1,5 @@
 // Boxes in the module's memory, and boxes and filters as a call takes them.
-import type { Boxes, Dimension, Filter, Filters } from "../types/types.d.ts";
+import type { Boxes, Dimension, Filter, Filters, Float32s, Float64s, Uint32s } from "../types/types.d.ts";
 import type { Core } from "./core.ts";
 import { checkOptions, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
@@ -8,7 +8,7 @@ export class KeptBoxes extends Kept implements Boxes {
   readonly #core: Core;
   readonly count: number;
   readonly dimension: Dimension;
-  #data: Float32Array;
+  #data: Float32s;
 
   constructor(core: Core, count: number) {
     const { exports, dimension } = core;
@@ -25,11 +25,11 @@ export class KeptBoxes extends Kept implements Boxes {
     }
   }
 
-  #view(): Float32Array {
+  #view(): Float32s {
     return new Float32Array(this.#core.exports.memory.buffer, this.address, 2 * this.dimension * this.count);
   }
 
-  get data(): Float32Array {
+  get data(): Float32s {
     // Memory that has grown has taken the view's.
     if (this.#data.length === 0 || this.address === 0) this.#data = this.#view();
     return this.#data;
@@ -51,6 +51,11 @@ export function countOf(core: Core, boxes: unknown, name = "boxes"): number {
     if (!boxes.isOf(core)) refuse(name, boxes, "boxes of this module; these are another one's");
     return boxes.count;
   }
+  const first = (boxes as ArrayLike<unknown> | undefined)?.[0];
+  if (typeof first === "object") {
+    refuse(`${name}[0]`, first, `a number: one array has all boxes, ${dimension === 2 ? "minX, minY, maxX, maxY" :
+      "minX, minY, minZ, maxX, maxY, maxZ"} of each`);
+  }
   return countIn(boxes, 2 * dimension, name);
 }
 
@@ -71,6 +76,20 @@ export function bytesOf(boxes: Given): number {
 /** Where the module finds the boxes. */
 export function put(core: Core, boxes: Given): number {
   return boxes instanceof KeptBoxes ? boxes.address : putFloats(core, boxes);
+}
+
+/** Up to this number of numbers, a loop copies faster than slice(). */
+const maxLoop = 16;
+
+/** A copy of `count` numbers of an array from `begin` on. */
+export function copyOf<Numbers extends Uint32s | Float64s>(
+  from: ArrayLike<number> & { slice(begin: number, end: number): Numbers }, begin: number, count: number,
+  Made: new (length: number) => Numbers,
+): Numbers {
+  if (count > maxLoop) return from.slice(begin, begin + count);
+  const copy = new Made(count);
+  for (let i = 0; i < count; ++i) copy[i] = from[begin + i] as number;
+  return copy;
 }
 
 export function putFloats(core: Core, numbers: ArrayLike<number>): number {
@@ -96,11 +115,10 @@ export function putDoubles(core: Core, numbers: ArrayLike<number>): number {
 
 export const bytesOfFilter = 24;
 const allBits = 0xffffffff;
-const properties = ["category", "mask", "group", "isStatic"] as const;
+export const properties = ["category", "mask", "group", "isStatic"] as const;
 
 export function checkFilters(filters: Filters, count: number, name = "filters"): void {
-  if (typeof filters !== "object" || filters === null) refuse(name, filters, "an object of arrays");
-  checkOptions(filters, properties);
+  checkOptions(filters, properties, name);
   for (const property of properties) {
     const values = filters[property];
     if (values === undefined) continue;
@@ -128,8 +146,8 @@ export function putFilters(core: Core, filters: Filters | undefined, count: numb
   return address;
 }
 
-export function putFilter(core: Core, filter: Filter): number {
-  checkOptions(filter, properties);
+export function putFilter(core: Core, filter: Filter, name = "filter"): number {
+  checkOptions(filter, properties, name);
   const address = core.take(bytesOfFilter);
   writeFilter(core.u32, address / 4, filter.category ?? 1, filter.mask, filter.group ?? 0, filter.isStatic ?? false);
   return address;

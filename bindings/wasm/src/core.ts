@@ -1,5 +1,5 @@
 // Core: an instance of a module, its memory as arrays, and room in it for what a call takes. Cores: one a dimension.
-import type { Dimension } from "../types/types.d.ts";
+import type { Dimension, Float32s, Float64s, Uint32s } from "../types/types.d.ts";
 import { BroadsideError, checkDimension, errorOf, refuse } from "./error.ts";
 import { importsOf } from "./imports.ts";
 
@@ -47,9 +47,9 @@ const aligned = (bytes: number) => Math.ceil(bytes / alignment) * alignment;
 
 export class Core {
   readonly exports: Exports;
-  f32!: Float32Array;
-  f64!: Float64Array;
-  u32!: Uint32Array;
+  f32!: Float32s;
+  f64!: Float64s;
+  u32!: Uint32s;
   readonly reply: number;     // in elements of u32
   readonly question: number;  // in elements of f32
   readonly algorithms: readonly string[];
@@ -84,11 +84,11 @@ export class Core {
   }
 
   /**
-   * The algorithm for so many boxes where none is named. The smaller module has no `auto`, so this is its rule:
-   * below, comparing all of them costs less than cells.
+   * The algorithm for so many boxes. The smaller module has no `auto`, so this is its rule: below, comparing all of them
+   * costs less than cells.
    */
-  algorithmFor(count: number): string {
-    if (this.algorithms.includes("auto")) return "auto";
+  algorithmFor(count: number, named = "auto"): string {
+    if (named !== "auto" || this.algorithms.includes("auto")) return named;
     return count <= 64 ? "brute_force" : "grid";
   }
 

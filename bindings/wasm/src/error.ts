@@ -8,6 +8,8 @@ const codes: Readonly<Record<number, BroadsideErrorCode>> = {
 };
 
 export class BroadsideError extends Error {
+  /** Not what a minifier makes of it. */
+  static override readonly name = "BroadsideError";
   override readonly name = "BroadsideError";
   readonly code: BroadsideErrorCode;
   readonly index: number | undefined;
@@ -17,19 +19,35 @@ export class BroadsideError extends Error {
     this.code = code;
     this.index = index;
   }
+
+  /** Each entry has a class of its own, and its errors are those of the others too. */
+  static override [Symbol.hasInstance](value: unknown): boolean {
+    return value instanceof Error && value.name === "BroadsideError";
+  }
+}
+
+/** A message of the library with this language's names instead of those of C++. */
+function translated(message: string): string {
+  return message.replace(/WorldOptions::|, first_generation/g, "").replace("unknown tunable", "unknown option")
+    .replace("find_pairs", "pairs").replace(/_([a-z])/g, (_, letter: string) => letter.toUpperCase());
 }
 
 export function errorOf(status: number, message: string, index: number): BroadsideError {
   const code = codes[status] ?? "FAILED";
-  return new BroadsideError(code, message, code === "INVALID_INPUT" ? index : undefined);
+  // A spec is written as in C++.
+  return new BroadsideError(code, code === "INVALID_SPEC" ? message : translated(message),
+    code === "INVALID_INPUT" ? index : undefined);
 }
 
 /** What a value is, for messages. */
 function described(value: unknown): string {
   if (value === null || value === undefined) return String(value);
   if (typeof value === "string") return `'${value}'`;
-  if (typeof value === "object") return Object.prototype.toString.call(value).slice(8, -1);
   if (typeof value === "function") return "a function";
+  if (typeof value === "object") {
+    const kind = Object.prototype.toString.call(value).slice(8, -1);
+    return kind === "Object" ? "an object" : kind === "Array" ? "an array" : kind;
+  }
   return String(value);
 }
 
@@ -39,12 +57,12 @@ export function refuse(name: string, value: unknown, expected: string): never {
 }
 
 /** Refuses options other than these. */
-export function checkOptions(options: object, known: readonly string[]): void {
-  if (typeof options !== "object" || options === null) refuse("options", options, "an object");
-  for (const name in options) {
-    if (!known.includes(name)) {
+export function checkOptions(options: object, known: readonly string[], name = "options"): void {
+  if (typeof options !== "object" || options === null) refuse(name, options, `an object of ${known.join(", ")}`);
+  for (const option in options) {
+    if (!known.includes(option)) {
       throw new BroadsideError("INVALID_ARGUMENT",
-        `unknown option '${name}'; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
+        `unknown option '${option}'; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
     }
   }
 }

@@ -1,8 +1,8 @@
 // The face of the smaller modules: pairs, trackers and worlds.
 import type {
-  BoxArray, Boxes, ComponentsOptions, CountJoinOptions, CountOptions, Dimension, JoinOptions, NeighbourLists,
-  NeighboursOptions, PairFinding, PairsOptions, Tracker,
-  TrackerOptions, World, WorldOptions,
+  BoxArray, Boxes, ComponentsOptions, CountJoinOptions, CountOptions, Dimension, JoinOptions,
+  NeighbourLists, NeighboursOptions, PairFinding, PairsOptions, Tracker, TrackerOptions, Uint32s, World,
+  WorldOptions,
 } from "../types/types.d.ts";
 import { type Given, KeptBoxes } from "./boxes.ts";
 import { Cores } from "./core.ts";
@@ -37,14 +37,14 @@ export class PairFindingFace implements PairFinding {
     return this.#main;
   }
 
-  pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array {
+  pairs(boxes: BoxArray, options?: PairsOptions): Uint32s {
     if (options === undefined) return this.#main.pairs(boxes as Given, undefined);
     // Not by #of(): for a box or two, another call would be felt.
     const space = options?.dimension === 3 ? this.#space : undefined;
     return (space ?? this.#of(options)).pairs(boxes as Given, options);
   }
 
-  join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array {
+  join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32s {
     return this.#of(options).join(left as Given, right as Given, options);
   }
 
@@ -52,7 +52,7 @@ export class PairFindingFace implements PairFinding {
     return this.#of(options).count(boxes as Given, options);
   }
 
-  components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array {
+  components(boxes: BoxArray, options?: ComponentsOptions): Uint32s {
     return this.#of(options).components(boxes as Given, options);
   }
 

@@ -1,9 +1,11 @@
 // All pairs of boxes of one dimension: by finders that stay in the module, one for each algorithm, so that calls ask for no memory.
 import type {
-  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, NeighbourLists, NeighboursOptions,
-  PairsOptions,
+  ComponentsOptions, CountJoinOptions, CountOptions, Filters, JoinOptions, NeighbourLists,
+  NeighboursOptions, PairsOptions, Uint32s,
 } from "../types/types.d.ts";
-import { type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putDoubles, putFilters } from "./boxes.ts";
+import {
+  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, put, putDoubles, putFilters,
+} from "./boxes.ts";
 import type { Core } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { fewPairs2, fewPairs3, maxFew } from "./few.ts";
@@ -21,9 +23,6 @@ const joinOptions = [...pairsOptions, ...rightOptions];
 /** Views of fewer ids than this are kept: making one costs as much as comparing ten boxes. */
 const maxKept = 256;
 
-/** Up to this number of ids, a loop copies faster than slice(). */
-const maxLoop = 16;
-
 /** Finders of so many kinds are kept; those of a program that makes up more go. */
 const maxFinders = 16;
 
@@ -33,13 +32,13 @@ export class Pairs {
   #lastAlgorithm = "";
   #lastFinder = 0;
   #lastChecked: object | undefined;  // options that were looked through for unknown ones
-  #lastView: Uint32Array = new Uint32Array(0);
+  #lastView: Uint32s = new Uint32Array(0);
 
   readonly #isFlat: boolean;
   readonly #maxOfFew: number;  // numbers in an array of few boxes
   readonly #maxFewIds: number;
-  #fewPairs: Uint32Array;  // room for all pairs of few boxes
-  readonly #views: Uint32Array[] = [];  // of its first ids, by their number
+  #fewPairs: Uint32s;  // room for all pairs of few boxes
+  readonly #views: Uint32s[] = [];  // of its first ids, by their number
   readonly #forFew: string;  // the algorithm that few boxes get where none is named
 
   constructor(core: Core) {
@@ -52,7 +51,7 @@ export class Pairs {
     this.#forFew = core.algorithmFor(0);
   }
 
-  pairs(boxes: Given, options?: PairsOptions): Uint32Array {
+  pairs(boxes: Given, options?: PairsOptions): Uint32s {
     // Short, so that engines compile it and the loops that it calls as one function. What #meansFew() says of usual
     // options is looked at here, for calling it would take as long as comparing two boxes.
     if (boxes instanceof Float32Array && boxes.length <= this.#maxOfFew && (options === undefined ||
@@ -67,7 +66,7 @@ export class Pairs {
     return this.#pairsByModule(boxes, options);
   }
 
-  #pairsByModule(boxes: Given, options: PairsOptions | undefined): Uint32Array {
+  #pairsByModule(boxes: Given, options: PairsOptions | undefined): Uint32s {
     if (options === undefined) return this.#find(boxes, undefined, {}, 0);
     if (options !== this.#lastChecked) this.#check(options, pairsOptions);
     return this.#find(boxes, undefined, options, options.sorted === true ? Mode.sorts : 0);
@@ -79,7 +78,7 @@ export class Pairs {
     this.#views.length = 0;
   }
 
-  #viewOfFew(ids: number): Uint32Array {
+  #viewOfFew(ids: number): Uint32s {
     const kept = this.#views[ids];
     if (kept !== undefined) return kept;
     const view = this.#fewPairs.subarray(0, ids);
@@ -87,12 +86,8 @@ export class Pairs {
     return view;
   }
 
-  #copyOfFew(ids: number): Uint32Array {
-    const room = this.#fewPairs;
-    if (ids > maxLoop) return room.slice(0, ids);
-    const copy = new Uint32Array(ids);
-    for (let i = 0; i < ids; ++i) copy[i] = room[i] as number;
-    return copy;
+  #copyOfFew(ids: number): Uint32s {
+    return copyOf(this.#fewPairs, 0, ids, Uint32Array);
   }
 
   /** Whether few boxes may be compared in JavaScript. */
@@ -104,12 +99,12 @@ export class Pairs {
       (algorithm === undefined || algorithm === "brute_force" || algorithm === this.#forFew);
   }
 
-  join(left: Given, right: Given, options: JoinOptions = {}): Uint32Array {
+  join(left: Given, right: Given, options: JoinOptions = {}): Uint32s {
     this.#check(options, joinOptions);
     return this.#find(left, right, options, Mode.joins | (options.sorted === true ? Mode.sorts : 0));
   }
 
-  components(boxes: Given, options: ComponentsOptions = {}): Uint32Array {
+  components(boxes: Given, options: ComponentsOptions = {}): Uint32s {
     this.#check(options, componentsOptions);
     return this.#find(boxes, undefined, options, Mode.labels);
   }
@@ -134,7 +129,7 @@ export class Pairs {
     this.#lastChecked = known === pairsOptions ? options : undefined;
   }
 
-  #find(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): Uint32Array {
+  #find(boxes: Given, right: Given | undefined, options: JoinOptions, mode: number): Uint32s {
     this.#search(boxes, right, options, mode);
     const { u32, reply } = this.#core;
     const address = u32[reply] as number;
@@ -163,7 +158,7 @@ export class Pairs {
     if (filters !== undefined) checkFilters(filters, count);
     if (rightFilters !== undefined) checkFilters(rightFilters, rightCount, "rightFilters");
     const [reach, within, rightWithin] = periodicReachOf(options, core.dimension, count, right === undefined ? undefined : rightCount);
-    const finder = this.#finder(options.algorithm ?? core.algorithmFor(Math.max(count, rightCount)));
+    const finder = this.#finder(core.algorithmFor(Math.max(count, rightCount), options.algorithm));
     core.stage(bytesOf(boxes) + (right === undefined ? 0 : bytesOf(right)) +
       (filters === undefined && rightFilters === undefined ? 0 : bytesOfFilter * (count + rightCount + 2)) +
       8 * (within.length + rightWithin.length + different.length));

@@ -1,9 +1,9 @@
 // Queries: indexes of arrays of boxes, and worlds that are asked as well.
 import type {
-  BoxArray, Dimension, Filters, FrameOptions, Hit, Index, NearestOfEachOptions, NearestOptions, Neighbours, OverlappingOptions,
-  QueriedWorld, Queries, QueryOptions, RayOptions, WorldOptions,
+  BoxArray, Dimension, Filters, Float64s, FrameOptions, Hit, Index, NearestOfEachOptions, NearestOptions,
+  Neighbours, OverlappingOptions, QueriedWorld, Queries, QueryOptions, RayOptions, Uint32s, WorldOptions,
 } from "../types/types.d.ts";
-import { type Given, bytesOfFilter, countIn, putFilter } from "./boxes.ts";
+import { type Given, bytesOfFilter, countIn, countOf, putFilter } from "./boxes.ts";
 import type { Core, Cores, Exports } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
 import { Kept } from "./kept.ts";
@@ -32,6 +32,7 @@ const queryOptions = ["filter", "except"];
 const foundOptions = [...queryOptions, "view"];
 const nearestOptions = [...foundOptions, "maxDistance"];
 const rayOptions = [...queryOptions, "tMax", "halfExtent", "entering"];
+const noExtent = [0, 0, 0];
 const nothing = -1;  // the `except` of a query that leaves none out
 
 function checkK(k: unknown, least: number): void {
@@ -64,36 +65,35 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
   }
 
   /** Puts numbers of a question into the module, and returns where the next ones go. */
-  #ask(at: number, numbers: unknown, count: number, name: string): number {
-    if (countIn(numbers, 1, name) !== count)
-      refuse(`the length of ${name}`, (numbers as ArrayLike<number>).length, String(count));
-    this.#core.f32.set(numbers as ArrayLike<number>, this.#core.question + at);
+  #ask(at: number, numbers: ArrayLike<number>, count: number, name: string): number {
+    if (countIn(numbers, 1, name) !== count) refuse(`the length of ${name}`, numbers.length, String(count));
+    const core = this.#core;
+    core.refresh();
+    // For so few numbers, set() takes longer.
+    for (let i = 0; i < count; ++i) core.f32[core.question + at + i] = numbers[i] as number;
     return at + count;
   }
 
-  #options(options: QueryOptions, known: readonly string[]): { filter: number; except: number } {
-    checkOptions(options, known);
-    const { filter, except = nothing } = options;
-    if (typeof except !== "number") refuse("except", except, "a number");
+  /** Where the module finds the filter. */
+  #filter({ filter, except }: QueryOptions): number {
+    if (except !== undefined && typeof except !== "number") refuse("except", except, "a number");
+    if (filter === undefined) return 0;
     this.#core.stage(bytesOfFilter);
-    return { filter: filter === undefined ? 0 : putFilter(this.#core, filter), except };
+    return putFilter(this.#core, filter);
   }
 
   overlapping(box: ArrayLike<number>, options: OverlappingOptions = {}): Numbers {
     const address = this.#address();
-    const { filter, except } = this.#options(options, foundOptions);
-    const view = asksForView(options);
     this.#ask(0, box, 2 * this.#dimension, "box");
-    this.#core.check(this.#exports.query_overlapping(this.#isWorld, address, filter, except));
+    checkOptions(options, foundOptions);
+    const view = asksForView(options);
+    this.#core.check(this.#exports.query_overlapping(this.#isWorld, address, this.#filter(options),
+      options.except ?? nothing));
     return this.#found(view);
   }
 
   nearest(from: ArrayLike<number>, k: number, options: NearestOptions = {}): Neighbours<Numbers> {
     const address = this.#address();
-    checkK(k, 0);
-    const maxDistance = maxDistanceOf(options);
-    const { filter, except } = this.#options(options, nearestOptions);
-    const view = asksForView(options);
     const core = this.#core;
     const dimension = this.#dimension;
     if (countIn(from, 1, "point") === 2 * dimension) {
@@ -102,23 +102,29 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
       this.#ask(0, from, dimension, "point");
       this.#ask(dimension, from, dimension, "point");
     }
-    core.check(this.#exports.query_nearest(this.#isWorld, address, filter, except, k, maxDistance));
+    checkK(k, 0);
+    checkOptions(options, nearestOptions);
+    const maxDistance = maxDistanceOf(options);
+    const view = asksForView(options);
+    core.check(this.#exports.query_nearest(this.#isWorld, address, this.#filter(options), options.except ?? nothing, k,
+      maxDistance));
     return { ids: this.#found(view), distances: handlesOf(core, 1, 1, view) };
   }
 
   firstHit(origin: ArrayLike<number>, direction: ArrayLike<number>, options: RayOptions = {}): Hit | undefined {
     const address = this.#address();
-    const { tMax = Infinity, halfExtent, entering = false } = options;
-    if (typeof tMax !== "number") refuse("tMax", tMax, "a number");
-    checkSwitch("entering", entering);
-    const { filter, except } = this.#options(options, rayOptions);
+    const core = this.#core;
     const dimension = this.#dimension;
     let at = this.#ask(0, origin, dimension, "origin");
     at = this.#ask(at, direction, dimension, "direction");
-    const core = this.#core;
+    checkOptions(options, rayOptions);
+    const { tMax = Infinity, halfExtent, entering = false } = options;
+    if (typeof tMax !== "number") refuse("tMax", tMax, "a number");
+    checkSwitch("entering", entering);
     core.f32[core.question + at++] = tMax;
-    this.#ask(at, halfExtent ?? new Float32Array(dimension), dimension, "halfExtent");
-    core.check(this.#exports.query_first_hit(this.#isWorld, address, filter, except, entering ? 1 : 0));
+    this.#ask(at, halfExtent ?? noExtent.slice(0, dimension), dimension, "halfExtent");
+    core.check(this.#exports.query_first_hit(this.#isWorld, address, this.#filter(options), options.except ?? nothing,
+      entering ? 1 : 0));
     const found = this.#found(true);
     return found.length === 0 ? undefined : { id: found[0] as number, t: core.f32[core.question] as number };
   }
@@ -126,14 +132,15 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
 
 export class KeptIndex extends Kept implements Index {
   readonly #core: Core;
-  readonly #asker: Asker<Uint32Array>;
+  readonly #asker: Asker<Uint32s>;
   readonly dimension: Dimension;
 
   constructor(cores: Cores, boxes: BoxArray,
     options: { readonly dimension?: Dimension; readonly filters?: Filters } = {}) {
-    const { dimension, ...rest } = options;
+    const core = cores.of(options?.dimension);
+    countOf(core, boxes);
     checkOptions(options, ["dimension", "filters"]);
-    const core = cores.of(dimension);
+    const { dimension: _, ...rest } = options;
     const exports = core.exports as QueryExports;
     core.check(exports.index_make());
     super(core.u32[core.reply] as number, (address) => exports.index_free(address));
@@ -151,25 +158,27 @@ export class KeptIndex extends Kept implements Index {
   update(boxes: BoxArray, options: FrameOptions = {}): void {
     const core = this.#core;
     const index = this.address;
+    countOf(core, boxes);
     checkOptions(options, frameOptions);
     const frame = putFrame(core, boxes as Given, options);
     core.check((core.exports as QueryExports).index_update(index, frame.at, frame.count, frame.changed,
       frame.changedCount, frame.filters));
   }
 
-  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Uint32Array {
+  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Uint32s {
     return this.#asker.overlapping(box, options);
   }
 
-  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Uint32Array> {
+  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Uint32s> {
     return this.#asker.nearest(from, k, options);
   }
 
-  nearestOfEach(boxes: BoxArray, k: number, options: NearestOfEachOptions = {}): Neighbours<Uint32Array> {
+  nearestOfEach(boxes: BoxArray, k: number, options: NearestOfEachOptions = {}): Neighbours<Uint32s> {
     const core = this.#core;
     const index = this.address;
-    checkOptions(options, ["except", "filters", "maxDistance", "view"]);
+    countOf(core, boxes);
     checkK(k, 1);
+    checkOptions(options, ["except", "filters", "maxDistance", "view"]);
     const maxDistance = maxDistanceOf(options);
     const view = asksForView(options);
     const { except: changed, filters } = options;
@@ -185,7 +194,7 @@ export class KeptIndex extends Kept implements Index {
 }
 
 export class AskedWorld extends KeptWorld implements QueriedWorld {
-  readonly #asker: Asker<Float64Array>;
+  readonly #asker: Asker<Float64s>;
 
   constructor(cores: Cores, options?: WorldOptions) {
     super(cores, options);
@@ -193,11 +202,11 @@ export class AskedWorld extends KeptWorld implements QueriedWorld {
     this.#asker = new Asker(core, true, () => this.address, (view) => handlesOf(core, 0, 1, view));
   }
 
-  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Float64Array {
+  overlapping(box: ArrayLike<number>, options?: OverlappingOptions): Float64s {
     return this.#asker.overlapping(box, options);
   }
 
-  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Float64Array> {
+  nearest(from: ArrayLike<number>, k: number, options?: NearestOptions): Neighbours<Float64s> {
     return this.#asker.nearest(from, k, options);
   }
 

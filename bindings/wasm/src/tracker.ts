@@ -1,9 +1,9 @@
 // Trackers of arrays of boxes.
 import type {
-  BoxArray, Dimension, Events, FrameOptions, Tracker, TrackerOptions, TrackerUpdateOptions,
+  BoxArray, Dimension, Events, FrameOptions, Tracker, TrackerOptions, TrackerUpdateOptions, Uint32s,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilters, putWords,
+  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, put, putFilters, putWords,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
@@ -14,7 +14,7 @@ export function specOf(cores: Cores, options: TrackerOptions): { core: Core; alg
   checkOptions(options, ["dimension", "algorithm", "touching"]);
   checkSwitch("touching", options.touching);
   const core = cores.of(options.dimension);
-  const { algorithm = core.algorithmFor(Infinity) } = options;
+  const algorithm = core.algorithmFor(Infinity, options.algorithm);
   if (typeof algorithm !== "string") refuse("algorithm", algorithm, "a text such as 'auto'");
   return { core, algorithm };
 }
@@ -38,12 +38,14 @@ export function putFrame(core: Core, boxes: Given, options: FrameOptions, listNa
 }
 
 const noOptions: TrackerUpdateOptions = {};
+const updateOptions = [...frameOptions, "view"];
+
 /** The ids, or pairs of them, in the `number`-th array of the module's reply: a copy, or a view of its memory. */
-export function idsOf(core: Core, number: number, each: number, view: boolean): Uint32Array {
+export function idsOf(core: Core, number: number, each: number, view: boolean): Uint32s {
   const { u32, reply } = core;
-  const count = u32[reply + 2 * number + 1] as number;
-  const ids = new Uint32Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
-  return view ? ids : ids.slice();
+  const address = u32[reply + 2 * number] as number;
+  const count = each * (u32[reply + 2 * number + 1] as number);
+  return view ? new Uint32Array(u32.buffer, address, count) : copyOf(u32, address / 4, count, Uint32Array);
 }
 
 export class KeptTracker extends Kept implements Tracker {
@@ -59,10 +61,11 @@ export class KeptTracker extends Kept implements Tracker {
     this.dimension = dimension;
   }
 
-  update(boxes: BoxArray, options: TrackerUpdateOptions = noOptions): Events<Uint32Array> {
+  update(boxes: BoxArray, options: TrackerUpdateOptions = noOptions): Events<Uint32s> {
     const core = this.#core;
     const tracker = this.address;
-    checkOptions(options, [...frameOptions, "view"]);
+    countOf(core, boxes);
+    checkOptions(options, updateOptions);
     const view = asksForView(options);
     const frame = putFrame(core, boxes as Given, options);
     core.check(core.exports.tracker_update(tracker, frame.at, frame.count, frame.changed, frame.changedCount,

@@ -1,9 +1,11 @@
 // Worlds.
 import type {
-  BoxArray, Dimension, Events, Filter, Filters, Handle, Handles, ResultOptions, TrackerOptions, World, WorldOptions,
+  BoxArray, Dimension, Events, Filter, Filters, Float32s, Float64s, Handle, Handles, ResultOptions,
+  TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilters, countIn, countOf, put, putFilter, putFilters, putFloats,
+  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, properties, put, putFilter, putFilters,
+  putFloats,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
 import { asksForView, checkOptions, refuse } from "./error.ts";
@@ -14,11 +16,11 @@ import { specOf } from "./tracker.ts";
 const maxSlots = 2 ** 24;
 
 /** The handles, or other doubles, in the `number`-th array of the module's reply: a copy, or a view of its memory. */
-export function handlesOf(core: Core, number: number, each: number, view: boolean): Float64Array {
-  const { u32, reply } = core;
-  const count = u32[reply + 2 * number + 1] as number;
-  const handles = new Float64Array(u32.buffer, u32[reply + 2 * number] as number, each * count);
-  return view ? handles : handles.slice();
+export function handlesOf(core: Core, number: number, each: number, view: boolean): Float64s {
+  const { u32, f64, reply } = core;
+  const address = u32[reply + 2 * number] as number;
+  const count = each * (u32[reply + 2 * number + 1] as number);
+  return view ? new Float64Array(u32.buffer, address, count) : copyOf(f64, address / 8, count, Float64Array);
 }
 
 function countOfHandles(handles: Handles): number {
@@ -71,11 +73,11 @@ export class KeptWorld extends Kept implements World {
     return this.core.exports.world_size(this.address) >>> 0;
   }
 
-  add(boxes: BoxArray, options: { readonly filters?: Filters } = {}): Float64Array {
+  add(boxes: BoxArray, options: { readonly filters?: Filters } = {}): Float64s {
     const { core } = this;
     const world = this.address;
-    checkOptions(options, ["filters"]);
     const count = countOf(core, boxes);
+    checkOptions(options, ["filters"]);
     const { filters } = options;
     if (filters !== undefined) checkFilters(filters, count);
     core.stage(bytesOf(boxes as Given) + 8 * count + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
@@ -85,12 +87,23 @@ export class KeptWorld extends Kept implements World {
     return core.f64.slice(handles / 8, handles / 8 + count);
   }
 
+  addOne(box: BoxArray, options: { readonly filter?: Filter } = {}): Handle {
+    const count = countOf(this.core, box, "box");
+    if (count !== 1) refuse("the number of boxes", count, "1; add() takes several");
+    checkOptions(options, ["filter"]);
+    const { filter } = options;
+    if (filter === undefined) return this.add(box)[0] as number;
+    checkOptions(filter, properties, "filter");
+    const filters = Object.fromEntries(Object.entries(filter).map(([name, value]) => [name, [value]]));
+    return this.add(box, { filters })[0] as number;
+  }
+
   move(handles: Handles, boxes: BoxArray, options: { readonly velocities?: ArrayLike<number> } = {}): void {
     const { core } = this;
     const world = this.address;
-    checkOptions(options, ["velocities"]);
-    const count = countOf(core, boxes);
     const given = countOfHandles(handles);
+    const count = countOf(core, boxes);
+    checkOptions(options, ["velocities"]);
     if (given !== count) refuse("the number of handles", given, `${count}, one for each box`);
     const { velocities } = options;
     if (velocities !== undefined && countIn(velocities, this.dimension, "velocities") !== count)
@@ -108,7 +121,7 @@ export class KeptWorld extends Kept implements World {
     core.check(core.exports.world_remove(world, putHandles(core, handles, count), count));
   }
 
-  update(options: ResultOptions = {}): Events<Float64Array> {
+  update(options: ResultOptions = {}): Events<Float64s> {
     const { core } = this;
     const world = this.address;
     const view = viewAlone(options);
@@ -116,7 +129,7 @@ export class KeptWorld extends Kept implements World {
     return { begun: handlesOf(core, 0, 1, view), ended: handlesOf(core, 1, 1, view) };
   }
 
-  pairs(options: ResultOptions = {}): Float64Array {
+  pairs(options: ResultOptions = {}): Float64s {
     const { core } = this;
     const world = this.address;
     const view = viewAlone(options);
@@ -128,7 +141,7 @@ export class KeptWorld extends Kept implements World {
     return this.core.exports.world_contains(this.address, checked(handle)) !== 0;
   }
 
-  box(handle: Handle): Float32Array {
+  box(handle: Handle): Float32s {
     const { core } = this;
     core.check(core.exports.world_box(this.address, checked(handle)));
     return core.f32.slice(core.question, core.question + 2 * this.dimension);

@@ -1,10 +1,18 @@
 // The types that all entries of the package share.
 /// <reference lib="esnext.disposable" />
 
+// The arrays of results, over an `ArrayBuffer`: `slice()` says so in every version of TypeScript.
+export type Uint32s = ReturnType<Uint32Array["slice"]>;
+export type Float32s = ReturnType<Float32Array["slice"]>;
+export type Float64s = ReturnType<Float64Array["slice"]>;
+
 /** The dimension of boxes. */
 export type Dimension = 2 | 3;
 
-/** An algorithm, perhaps with tunables: `"auto"`, `"grid"`, `"grid:cell=2.5"`. */
+/**
+ * An algorithm, perhaps with tunables: `"auto"`, `"grid"`, `"grid:cell=2.5"`. In `broadside/pairs`, `"auto"` chooses
+ * `brute_force` or `grid` by the number of boxes.
+ */
 export type AlgorithmSpec =
   | "auto" | "brute_force" | "grid" | (string & {});
 
@@ -41,7 +49,7 @@ export type Keys = ArrayLike<number | string>;
 export interface CountOptions {
   /** If left out, the dimension that was loaded alone, or 2. */
   readonly dimension?: Dimension;
-  /** If left out, `"auto"`. `broadside/pairs` has only `brute_force` and `grid`, and chooses by the number of boxes. */
+  /** If left out, `"auto"`. */
   readonly algorithm?: AlgorithmSpec;
   readonly filters?: Filters;
   /** Only boxes with the same key pair. Instead of filters. */
@@ -102,14 +110,14 @@ export interface NeighboursOptions {
 
 /** The neighbours of box i, ascending, are `ids.subarray(offsets[i], offsets[i + 1])`. */
 export interface NeighbourLists {
-  readonly offsets: Uint32Array;
-  readonly ids: Uint32Array;
+  readonly offsets: Uint32s;
+  readonly ids: Uint32s;
 }
 
 export interface TrackerOptions {
   readonly dimension?: Dimension;
   readonly algorithm?: AlgorithmSpec;
-  /** As in `CountOptions`. A world then keeps and returns each maximum as the next lower number. */
+  /** As in `CountOptions`. If false, a world stores the next lower float of each maximum, and returns it as such. */
   readonly touching?: boolean;
 }
 
@@ -126,8 +134,10 @@ export interface WorldOptions extends TrackerOptions {
   readonly keepPairs?: boolean;
   /** Whether invalid boxes count as absent instead of being refused. */
   readonly quarantine?: boolean;
-  /** Any other option of the library's table (`world_tunables()`), in camel case. */
-  readonly [option: string]: number | string | boolean | undefined;
+  /** The most boxes that the world may hold. */
+  readonly maxBoxes?: number;
+  /** Whether each update is checked by brute force, for debugging. */
+  readonly shadow?: boolean;
 }
 
 /** An object with memory in the module. `free` releases it; so does the garbage collector, but later. */
@@ -143,7 +153,7 @@ export interface Boxes extends Freeable {
   /** How many boxes there are. */
   readonly count: number;
   /** The coordinates, to be read and written. Get it again after other calls: they may move the module's memory. */
-  readonly data: Float32Array;
+  readonly data: Float32s;
 }
 
 /** The events of one update, sorted: two numbers per pair. */
@@ -161,7 +171,7 @@ export interface Tracker extends Freeable {
    * It compares the boxes with those of the frame before. If you know which ones differ, list them: a change that is
    * not listed is not seen.
    */
-  update(boxes: BoxArray, options?: TrackerUpdateOptions): Events<Uint32Array>;
+  update(boxes: BoxArray, options?: TrackerUpdateOptions): Events<Uint32s>;
 }
 
 export interface FrameOptions {
@@ -183,18 +193,20 @@ export interface World extends Freeable {
   /** How many boxes there are. */
   readonly size: number;
   /** Adds boxes, and returns a handle for each. */
-  add(boxes: BoxArray, options?: { readonly filters?: Filters }): Float64Array;
+  add(boxes: BoxArray, options?: { readonly filters?: Filters }): Float64s;
+  /** Adds one box, and returns its handle. */
+  addOne(box: BoxArray, options?: { readonly filter?: Filter }): Handle;
   /** Replaces boxes: all of them or, if one is invalid, none. */
   move(handles: Handles, boxes: BoxArray, options?: { readonly velocities?: ArrayLike<number> }): void;
   /** Takes boxes out. Their pairs end at the next update. */
   remove(handles: Handles): void;
   /** Brings the pairs up to date. Each pair is two handles. */
-  update(options?: ResultOptions): Events<Float64Array>;
+  update(options?: ResultOptions): Events<Float64s>;
   /** The pairs of the last update, sorted, each as two handles. */
-  pairs(options?: ResultOptions): Float64Array;
+  pairs(options?: ResultOptions): Float64s;
   has(handle: Handle): boolean;
   /** The box's coordinates. */
-  box(handle: Handle): Float32Array;
+  box(handle: Handle): Float32s;
   /** A small whole number that no other box of the world has: an index into arrays of your own. */
   slot(handle: Handle): number;
   setFilter(handle: Handle, filter: Filter): void;
@@ -245,7 +257,7 @@ export interface Hit {
 /** Boxes by distance, the nearest first. */
 export interface Neighbours<Numbers> {
   readonly ids: Numbers;
-  readonly distances: Float64Array;
+  readonly distances: Float64s;
 }
 
 /** Queries about boxes. The order of results has no meaning unless a query states one. */
@@ -259,7 +271,7 @@ export interface Queries<Numbers> {
 }
 
 /** An index of boxes, for queries. */
-export interface Index extends Queries<Uint32Array>, Freeable {
+export interface Index extends Queries<Uint32s>, Freeable {
   readonly dimension: Dimension;
   /** Replaces the boxes. If you know which ones differ, list them: a change that is not listed is not seen. */
   update(boxes: BoxArray, options?: FrameOptions): void;
@@ -267,26 +279,26 @@ export interface Index extends Queries<Uint32Array>, Freeable {
    * The `k` boxes nearest to each of `boxes`: `k` ids and distances for each in turn, by distance, then by id. A row
    * with fewer boxes ends with ids 4294967295 at `Infinity`.
    */
-  nearestOfEach(boxes: BoxArray, k: number, options?: NearestOfEachOptions): Neighbours<Uint32Array>;
+  nearestOfEach(boxes: BoxArray, k: number, options?: NearestOfEachOptions): Neighbours<Uint32s>;
 }
 
 /** A world with queries. */
-export interface QueriedWorld extends World, Queries<Float64Array> {}
+export interface QueriedWorld extends World, Queries<Float64s> {}
 
 /** Pairs, trackers and worlds. */
 export interface PairFinding {
   /**
    * Every pair of overlapping boxes, once, as places in the array: `a0, b0, a1, b1, ...` with `a < b`.
    */
-  pairs(boxes: BoxArray, options?: PairsOptions): Uint32Array;
+  pairs(boxes: BoxArray, options?: PairsOptions): Uint32s;
   /** Every pair of a box of `left` and an overlapping one of `right`, likewise. */
-  join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32Array;
+  join(left: BoxArray, right: BoxArray, options?: JoinOptions): Uint32s;
   count(boxes: BoxArray, options?: CountOptions): number;
   /**
    * The connected components of the pairs, such as clusters of touching things: for each box, the least place of a box
    * in its component. No pairs are kept.
    */
-  components(boxes: BoxArray, options?: ComponentsOptions): Uint32Array;
+  components(boxes: BoxArray, options?: ComponentsOptions): Uint32s;
   /** The neighbours of each of `count` boxes, of pairs in any order. */
   neighbours(pairs: ArrayLike<number>, count: number, options?: NeighboursOptions): NeighbourLists;
   countJoin(left: BoxArray, right: BoxArray, options?: CountJoinOptions): number;

@@ -223,6 +223,17 @@ namespace {
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
+/// Fewer queries, or with more boxes per query, are searched one by one in their own order: bringing them
+/// into another takes longer than it saves, and one search for a group of queries that are far apart meets
+/// more boxes than a search for each.
+constexpr std::size_t min_dense_queries = 256;
+constexpr std::size_t max_boxes_per_dense_query = 32;
+
+/// After a group with too many boxes near, so many groups are searched query by query before the next is
+/// tried as one: twice as many after each further failure, so that trying costs little where all would fail.
+constexpr std::size_t min_pause = 8;
+constexpr std::size_t max_pause = 64;
+
 /// Whether the queries are the tree's own boxes: by all ids, and by some boxes.
 template <int D>
 bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree) {
@@ -238,13 +249,18 @@ bool are_own_boxes(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>&
   });
 }
 
-/// The queries in an order in which neighbours in space follow one another: that of a packed tree's leaves.
+/// The queries in an order in which neighbours in space follow one another, that of a packed tree's leaves,
+/// if they are dense.
 template <int D>
 std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries, const DynamicBvh<D>& tree,
-                                         core::Parallel& parallel) {
-  if (are_own_boxes(queries, tree)) return tree.ids_by_leaf();
+                                         bool is_dense, core::Parallel& parallel) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
+  if (!is_dense) {
+    for (const NumberedBox<D>& query : queries) order.push_back(query.number);
+    return order;
+  }
+  if (are_own_boxes(queries, tree)) return tree.ids_by_leaf();
   std::vector<Box<D>> boxes;
   boxes.reserve(queries.size());
   for (const NumberedBox<D>& query : queries) boxes.push_back(query.box);
@@ -279,19 +295,26 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const double max_squared = options.max_distance * options.max_distance;
   core::Parallel parallel;
   parallel.start(options.workers, queries.size());
-  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
+  const bool is_dense =
+      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no other
-  // box is as near as those.
+  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
+  // other box is as near as those.
   const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
   using Group = kernels::NearGroup<D>;
-  const bool in_groups = options.filters.empty() && wanted + 1 <= Group::max_count;
+  const bool may_group = is_dense && options.filters.empty() && wanted + 1 <= Group::max_count;
   const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
     Group group;
+    std::size_t paused = 0;  // groups to go until the next is searched as one
+    std::size_t pause = min_pause;
     for (std::size_t number = range.begin; number < range.end; ++number) {
+      const bool in_groups = may_group && paused == 0;
+      paused -= paused > 0 ? 1 : 0;
+      std::size_t tests = 0;
       const std::span<const std::uint32_t> some =
           std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
       if (in_groups) {
@@ -302,13 +325,18 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         group.limit = limit_in_tree(max_squared * unit);
         group.start(wanted + 1);
         kernels::find_near(tree_.view(), group);
+        tests += fan_out * group.tested;
+        if (group.limit < 0) paused = pause;
+        pause = group.limit < 0 ? std::min(2 * pause, max_pause) : min_pause;
       }
       for (std::size_t lane = 0; lane < some.size(); ++lane) {
         const std::size_t query = some[lane];
         const Box<D, Real> box = boxes[query];
-        NearestBoxes nearest(wanted, max_squared);
+        const BoxId except = options.except.empty() ? no_box : options.except[query];
+        const bool in_group = in_groups && group.limit >= 0;
+        NearestBoxes nearest(in_group ? wanted : count, max_squared);
         bool is_sure = false;
-        if (in_groups) {
+        if (in_group) {
           for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
             const auto at = static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask);
             const BoxId id{group.ids[at]};
@@ -325,10 +353,11 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         if (!is_sure) {
           QueryOptions eligible;
           if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          if (except != no_box) eligible.except = except;
           nearest.start_over();
+          tests += fan_out * (fan_out + count);
           search_nearest(box, eligible, nearest);
         }
-        const BoxId except = options.except.empty() ? no_box : options.except[query];
         std::size_t to = query * count;
         for (const Neighbour& one : nearest.sorted()) {
           if (one.box == except || to == (query + 1) * count) continue;
@@ -336,7 +365,7 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
           distances_squared[to++] = one.distance_squared;
         }
       }
-      if (checkpoint != nullptr) checkpoint->count(fan_out * fan_out * (fan_out + count));
+      if (checkpoint != nullptr) checkpoint->count(tests);
     }
   });
 }

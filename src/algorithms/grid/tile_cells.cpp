@@ -48,15 +48,15 @@ TileStats<D> TileStats<D>::of(std::span<const Box<D>> boxes) {
       const Box<D>& box = boxes[core::sampled_place(i, count, boxes.size())];
       for (int axis = 0; axis < D; ++axis) {
         const float min = box.min[axis];
-        const float side = box.max[axis] - min;
+        const float length = box.max[axis] - min;
         if constexpr (OnlyFinite) {
           stats.low[axis] = min < stats.low[axis] && min >= -max_float ? min : stats.low[axis];
           stats.high[axis] = min > stats.high[axis] && min <= max_float ? min : stats.high[axis];
-          stats.side[axis] += side <= max_float ? side : 0;
+          stats.side[axis] += length <= max_float ? length : 0;
         } else {
           stats.low[axis] = std::min(stats.low[axis], min);
           stats.high[axis] = std::max(stats.high[axis], min);
-          stats.side[axis] += side;
+          stats.side[axis] += length;
         }
       }
     }

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { type BoxArray, BroadsideError, type Handle, load } from "broadside";
+import { type BoxArray, BroadsideError, type Handle, type WorldOptions, load } from "broadside";
 import { load as loadExternal } from "broadside/external";
 import { load as loadPairs } from "broadside/pairs";
 
@@ -55,17 +55,39 @@ test("specs", () => {
   assert.equal(errorOf(() => broadside.world({ events: "some" as "exact" })).message,
     "world: events is 'some'; expected one of: exact, enlarged");
   assert.equal(errorOf(() => broadside.world({ margin: -1 })).code, "INVALID_ARGUMENT");
-  assert.equal(errorOf(() => broadside.world({ firstGeneration: 5 })).code, "INVALID_ARGUMENT");
+  assert.equal(errorOf(() => broadside.world({ firstGeneration: 5 } as object)).code, "INVALID_ARGUMENT");
   assert.equal(errorOf(() => broadside.world({ events: "exact:shadow=yes" as "exact" })).code, "INVALID_ARGUMENT");
   const world = broadside.world({ maxBoxes: 1 });
   assert.equal(errorOf(() => world.add([0, 0, 1, 1, 2, 2, 3, 3])).code, "INVALID_FRAME");
   assert.equal(world.size, 0);
 });
 
+test("a world's options have the names of the declarations", () => {
+  const { message } = errorOf(() => broadside.world({ margn: 2 } as object));
+  const [, names] = /^world: unknown option 'margn' \(did you mean 'margin'\?\); expected one of: (.*)$/.exec(message) ?? [];
+  const declared: Required<Omit<WorldOptions, "algorithm" | "dimension">> = {
+    margin: 1, relativeMargin: 1, predictedFrames: 1, events: "exact", keepPairs: true, touching: true, quarantine: false,
+    shadow: false, maxBoxes: 9,
+  };
+  assert.equal(names, Object.keys(declared).join(", "));
+  assert.equal(broadside.world(declared).size, 0);
+});
+
+test("messages of the library have JavaScript's names", () => {
+  assert.equal(errorOf(() => broadside.world({ keepPairs: false }).pairs()).message,
+    "the world does not keep its pairs; expected keepPairs, or pairs()");
+  assert.equal(errorOf(() => broadside.world({ relativeMargin: -1 })).message,
+    "world: relativeMargin is '-1'; expected a number of at least 0");
+  assert.equal(errorOf(() => broadside.index([]).firstHit([0, 0], [1, 0], { tMax: -1 })).message,
+    "a cast's tMax is -1; expected at least 0, or infinity");
+  assert.match(errorOf(() => broadside.pairs([], { algorithm: "brute_forse" })).message, /brute_force/);
+});
+
 /** Calls that take what JavaScript's types do not keep out. */
 const wrong = (value: unknown) => value as BoxArray;
 
-test("arguments of the wrong kind", () => {
+test("arguments of the wrong kind, the first of them", () => {
+  const index = broadside.index(overlapping);
   const cases: [() => unknown, string][] = [
     [() => broadside.pairs([0, 0, 1]), "the length of boxes is 3; expected a multiple of 4"],
     [() => broadside.pairs(new Float32Array(5)), "the length of boxes is 5; expected a multiple of 4"],
@@ -75,7 +97,19 @@ test("arguments of the wrong kind", () => {
     [() => broadside.pairs(wrong(undefined)), "boxes is undefined; expected an array of numbers"],
     [() => broadside.pairs(wrong("four")), "boxes is 'four'; expected an array of numbers"],
     [() => broadside.pairs(wrong(null)), "boxes is null; expected an array of numbers"],
-    [() => broadside.pairs(wrong({})), "boxes is Object; expected an array of numbers"],
+    [() => broadside.pairs(wrong({})), "boxes is an object; expected an array of numbers"],
+    [() => broadside.pairs(wrong([{ minX: 0, minY: 0, maxX: 1, maxY: 1 }, {}, {}])),
+      "boxes[0] is an object; expected a number: one array has all boxes, minX, minY, maxX, maxY of each"],
+    [() => broadside.index(wrong([[0, 0, 0, 1, 1, 1]]), { dimension: 3 }),
+      "boxes[0] is an array; expected a number: one array has all boxes, minX, minY, minZ, maxX, maxY, maxZ of each"],
+    [() => index.nearest(0 as never, 0, 3 as never), "point is 0; expected an array of numbers"],
+    [() => index.overlapping(0 as never, 0 as never), "box is 0; expected an array of numbers"],
+    [() => index.nearestOfEach(0 as never, 0, 3 as never), "boxes is 0; expected an array of numbers"],
+    [() => index.firstHit(0 as never, 0 as never, 3 as never), "origin is 0; expected an array of numbers"],
+    [() => index.nearest([0, 0], 1, { filter: (() => true) as never }),
+      "filter is a function; expected an object of category, mask, group, isStatic"],
+    [() => broadside.world().move(0, 3 as never, 4 as never), "boxes is 3; expected an array of numbers"],
+    [() => broadside.world().addOne(overlapping), "the number of boxes is 2; expected 1; add() takes several"],
     [() => broadside.pairs(wrong(new DataView(new ArrayBuffer(16)))),
       "boxes is DataView; expected an array of numbers"],
     [() => broadside.pairs([], { dimension: 4 as 3 }), "dimension is 4; expected 2 or 3"],
@@ -92,7 +126,7 @@ test("arguments of the wrong kind", () => {
     [() => broadside.boxes(-1), "the number of boxes is -1; expected a whole number of at least 0"],
     [() => broadside.boxes(1, 1 as 2), "dimension is 1; expected 2 or 3"],
     [() => broadside.pairs(broadside.boxes(1, 3)), "the dimension of boxes is 3; expected 2"],
-    [() => broadside.world({ margin: [1] as unknown as number }), "margin is Array; expected a number, a text, true or false"],
+    [() => broadside.world({ margin: [1] as unknown as number }), "margin is an array; expected a number, a text, true or false"],
     [() => broadside.world().add([0, 0, 1, 1], { userData: 1 } as object),
       "unknown option 'userData'; expected some of: filters"],
     [() => broadside.world().box("1" as unknown as Handle), "a handle is '1'; expected a number that add() returned"],

@@ -98,7 +98,7 @@ try {
     document.title = broadside.index([0, 0, 0, 1, 1, 1], { dimension: 3 }).overlapping([1, 1, 1, 2, 2, 2]).join();`, "0");
   await built(site, "a separate file", `import { load } from "broadside/external";
     import wasm from "broadside/broadside-2d.wasm?url";
-    const broadside = await load({ wasm: new URL(wasm, location.href) });
+    const broadside = await load({ wasm });
     document.title = [...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6])].join();`, "0,1");
   const node = join(project("node", `node@${oldestNode}`), "node_modules/node/bin/node");
   const files = readdirSync(tests).filter((file) => file.endsWith(".test.mjs")).map((file) => join(resolve(tests), file));

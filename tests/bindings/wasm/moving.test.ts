@@ -130,6 +130,14 @@ test("a slot is used again, its handle never", () => {
   assert.ok(Math.max(...[...seen].map((handle) => world.slot(handle))) < 4);
 });
 
+test("one box alone", () => {
+  const world = broadside.world();
+  const ball = world.addOne([0, 0, 1, 1], { filter: { category: 2, isStatic: true } });
+  const wall = world.addOne([1, 1, 2, 2], { filter: { mask: 2 } });
+  world.addOne([1, 1, 2, 2], { filter: { mask: 4 } });
+  assert.deepEqual([...world.update().begun], [ball, wall]);
+});
+
 test("filters, and pairs that are ignored", () => {
   const world = broadside.world();
   const [a, b, c] = [...world.add([0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1], { filters: { isStatic: [1, 1, 0] } })] as

@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { Worker } from "node:worker_threads";
 import { gzipSync } from "node:zlib";
 
-import { load } from "broadside";
+import { BroadsideError, load } from "broadside";
 import { load as loadExternal } from "broadside/external";
 import { load as loadPairs } from "broadside/pairs";
 
@@ -126,7 +126,7 @@ test("its types are those of a strict project", () => {
 import { load as loadPairs } from "broadside/pairs";
 import { load as loadExternal } from "broadside/external";
 const broadside = await load();
-const pairs: Uint32Array = broadside.pairs(new Float32Array(4), { dimension: 2, algorithm: "grid:cell=2" });
+const pairs = broadside.pairs(new Float32Array(4), { dimension: 2, algorithm: "grid:cell=2" });
 const handle: Handle | undefined = broadside.world().add([0, 0, 1, 1])[0];
 { using tracker = broadside.tracker(); tracker.update(pairs); }
 // @ts-expect-error: this module has no queries
@@ -135,12 +135,18 @@ const handle: Handle | undefined = broadside.world().add([0, 0, 1, 1])[0];
 await loadExternal();
 // @ts-expect-error: no such option
 broadside.pairs(pairs, { dimensions: 3 });
+// @ts-expect-error: no such option
+broadside.world({ margn: 2 });
+const plain: Uint32Array = pairs;
+new Blob([pairs, broadside.boxes(1).data, broadside.index(pairs).nearest([0, 0], 1).distances]);
 if (handle === undefined) throw new BroadsideError();
 `.replace("throw new BroadsideError()", "throw new Error(BroadsideError.name)"));
+  writeFileSync(join(folder, "readme.ts"), examplesOf(readFileSync(join(packageFolder, "README.md"), "utf8")));
   const tsc = join(web, "node_modules/typescript/bin/tsc");
   for (const resolution of [["--module", "nodenext"], ["--module", "esnext", "--moduleResolution", "bundler"]]) {
-    execFileSync(process.execPath, [tsc, "--noEmit", "--strict", "--exactOptionalPropertyTypes", "--target", "es2022",
-      "--lib", "es2022,dom,esnext.disposable", ...resolution, "main.ts"], { cwd: folder, stdio: "inherit" });
+    execFileSync(process.execPath, [tsc, "--noEmit", "--strict", "--exactOptionalPropertyTypes",
+      "--noUncheckedIndexedAccess", "--target", "es2022", "--lib", "es2022,dom,esnext.disposable", ...resolution, "main.ts",
+      "readme.ts"], { cwd: folder, stdio: "inherit" });
   }
 });
 
@@ -173,7 +179,8 @@ test("modules that the caller brings", async () => {
     { message: "the number of modules of 2D is 2; expected 1" });
   await assert.rejects(loadExternal({ wasm: [] }), { message: "the number of modules is 0; expected 1 for each dimension" });
   await assert.rejects(loadExternal({ wasm: new Response("", { status: 404 }) }),
-    { message: "the response's status is 404; expected 200" });
+    { message: /^the status of the response is 404; expected 200, from the address of a file of the package/ });
+  await assert.rejects(loadExternal({ wasm: "nope.wasm" }), { code: "FAILED", message: /^nope.wasm could not be fetched/ });
 });
 
 test("a host that lacks something is told what", async () => {
@@ -188,6 +195,13 @@ test("a host that lacks something is told what", async () => {
   } finally {
     globalThis.DecompressionStream = kept;
   }
+});
+
+test("an error of one entry is one of the others", async () => {
+  const pairs = await loadPairs();
+  assert.throws(() => pairs.pairs([0]), (error) => error instanceof BroadsideError);
+  assert.equal(BroadsideError.name, "BroadsideError");
+  assert.ok(!((new Error("another") as unknown) instanceof BroadsideError));
 });
 
 test("modules are apart from each other", async () => {

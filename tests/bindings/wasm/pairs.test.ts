@@ -192,7 +192,7 @@ test("refuses keys that it cannot use", () => {
   refused({ same: [1, NaN] }, /same\[1\] is NaN; expected a whole number or a text/);
   refused({ different: [1, undefined] }, /different\[1\] is undefined/);
   refused({ same: [1, 2], different: [1] }, /the length of different is 1; expected 2, one for each box/);
-  refused({ same: [1, 2], filters: {} }, /filters is Object; expected nothing, as same is given/);
+  refused({ same: [1, 2], filters: {} }, /filters is an object; expected nothing, as same is given/);
   assert.throws(() => broadside.join(boxes, boxes, { same: [1, 2] }), /the length of rightSame is undefined/);
 });
 

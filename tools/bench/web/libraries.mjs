@@ -9,6 +9,19 @@ import Flatbush from "flatbush";
 import RBush from "rbush";
 import { RBush3D } from "rbush-3d";
 
+/** The sum of what a query at each box gives. */
+function sumOf(asked, query) {
+  let sum = 0;
+  for (let i = 0; i < asked.length; i += 4) sum += query(i);
+  return sum;
+}
+
+function idsSum(ids) {
+  let sum = 0;
+  for (const id of ids) sum += id + 1;
+  return sum;
+}
+
 /** The obvious loop over all pairs. */
 export function naivePairs2(boxes) {
   const pairs = [];
@@ -110,6 +123,15 @@ const flatbush = {
   dimension: 2,
   fill: fillFlatbush,
   pairs: flatbushPairs,
+  queries(boxes) {
+    const index = fillFlatbush(boxes);
+    const nearest = (k) => (asked) => sumOf(asked, (i) => idsSum(index.neighbors(asked[i], asked[i + 1], k)));
+    return {
+      search: (asked) => sumOf(asked, (i) => idsSum(index.search(asked[i], asked[i + 1], asked[i + 2], asked[i + 3]))),
+      nearest1: nearest(1),
+      nearest10: nearest(10),
+    };
+  },
   // The library does not move boxes, so its index is rebuilt; moved boxes are looked up in the old and the new one.
   motion(boxes) {
     let index = fillFlatbush(boxes);
@@ -148,6 +170,12 @@ const rbush = {
   name: "rbush",
   dimension: 2,
   fill: fillRbush,
+  queries(boxes) {
+    const { tree } = fillRbush(boxes);
+    return {
+      search: (asked) => sumOf(asked, (i) => tree.search(itemOf(asked, i / 4)).reduce((sum, { id }) => sum + id + 1, 0)),
+    };
+  },
   pairs: (boxes, filled = fillRbush(boxes)) => treePairs(filled),
   motion(boxes) {
     const { tree, items } = fillRbush(boxes);
@@ -230,7 +258,18 @@ const detectCollisions = {
 
 /** Our library: `entry` is a loaded module. */
 export function ours(broadside, name = "broadside") {
-  return [2, 3].map((dimension) => ({
+  const queries = (boxes, ofEach) => {
+    const index = broadside.index(boxes);
+    const nearest = (k) => (ofEach ?
+      (asked) => idsSum(index.nearestOfEach(asked, k).ids) :
+      (asked) => sumOf(asked, (i) => idsSum(index.nearest([asked[i], asked[i + 1]], k).ids)));
+    return {
+      search: ofEach ? undefined : (asked) => sumOf(asked, (i) => idsSum(index.overlapping([asked[i], asked[i + 1], asked[i + 2], asked[i + 3]]))),
+      nearest1: nearest(1),
+      nearest10: nearest(10),
+    };
+  };
+  const all = [2, 3].map((dimension) => ({
     name,
     dimension,
     pairs: dimension === 2 ? (boxes) => broadside.pairs(boxes) : (boxes) => broadside.pairs(boxes, of3),
@@ -247,7 +286,9 @@ export function ours(broadside, name = "broadside") {
       tracker.update(boxes);
       return (now, list) => tracker.update(now, { changed: list });
     },
+    queries: dimension === 2 ? (boxes) => queries(boxes, false) : undefined,
   }));
+  return [...all, { name: "broadside, nearestOfEach", queries: (boxes) => queries(boxes, true) }];
 }
 const of3 = { dimension: 3 };
 

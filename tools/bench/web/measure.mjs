@@ -140,6 +140,36 @@ export function compareMoving({ clock, libraries, count, frames = 12, dimension 
   });
 }
 
+/** The boxes' minima as boxes, of which hardly any two are as near to a point. */
+function pointsOf(boxes) {
+  const points = boxes.slice();
+  for (let i = 0; i < points.length; i += 4) points.copyWithin(i + 2, i, i + 2);
+  return points;
+}
+
+/**
+ * Queries to an index that is built before, in an order that has nothing to do with space: the boxes that overlap a box,
+ * and the points nearest to a point. Times are of one query.
+ */
+export function compareQueries({ clock, libraries, count, queries = 2000, rounds = 5 }) {
+  const boxes = uniform(count, 2);
+  const all = uniform(count, 2, 5).subarray(0, 4 * Math.min(queries, count));
+  const rows = [];
+  for (const kind of ["search", "nearest1", "nearest10"]) {
+    const [indexed, asked] = kind === "search" ? [boxes, all] : [pointsOf(boxes), pointsOf(all)];
+    let expected;
+    for (const library of libraries) {
+      const ask = library.queries?.(indexed)[kind];
+      if (ask === undefined) continue;
+      const sum = ask(asked);
+      expected ??= sum;
+      rows.push({ name: library.name, kind, count, ask: () => ask(asked), agrees: sum === expected });
+    }
+  }
+  inRounds(clock, rows.map(({ ask }) => ask), rounds, 30).forEach((time, i) => (rows[i].whole = time / (all.length / 4)));
+  return rows.map(({ ask: _, ...row }) => row);
+}
+
 /** The table of some rows: a line for each number of boxes, a column for each library. */
 export function table(title, rows, key = "whole") {
   const names = [...new Set(rows.map((row) => row.name))];
@@ -177,6 +207,9 @@ export function compareAll({ clock, libraries, say, minCount = 1, maxCount = Inf
     say(table(`${dimension}D boxes, filled before`, rows.filter((row) => row.search !== undefined && row.count >= 100),
       "search"));
   }
+  const asked = some([1000, 20_000, 200_000, 1_000_000]).flatMap((count) => compareQueries({ clock, libraries, count }));
+  for (const [kind, what] of [["search", "boxes that overlap a box"], ["nearest1", "the nearest box"], ["nearest10", "the 10 nearest"]])
+    say(table(`2D, one query: ${what}`, asked.filter((row) => row.kind === kind)));
   for (const dimension of [2]) {
     const rows = some([15, 100, 1000, 10_000, 100_000])
       .flatMap((count) => compareMoving({ clock, libraries, count, dimension, frames: count < 5000 ? 60 : count < 50_000 ? 30 : 12 }));
