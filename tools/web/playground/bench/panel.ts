@@ -1,17 +1,20 @@
 // One algorithm on the boxes of a frame: its search or its tracker, its structure, and the selected
 // box's tests.
-import type { Engine, Outline } from "../engine/types.ts";
+import type { Engine } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
 import { maxObserved, refusal } from "./budget.ts";
 import { Follower } from "./followers.ts";
 import { Mark, type PanelChoice, type PanelResult, type Selection, type Setup } from "./protocol.ts";
 import { reasons } from "./reasons.ts";
-import { RecentTimes } from "./times.ts";
+import { RecentTimes, timeOf } from "./times.ts";
 
 const nothing = { tests: 0, references: 0, cells: 0, hits: 0 };
 
 /** A search that takes longer than this, in ms, does not run in every frame. */
 const slow = 60;
+
+/** How long a panel's first search may be measured, in ms, so that a still picture has a time. */
+const firstBudget = 6;
 
 export interface PanelFrame {
   result: PanelResult;
@@ -47,7 +50,7 @@ export class Panel {
     const begin = performance.now();
     try {
       const found = this.search(boxes, dimension);
-      if (setup.structure) found.result.outline = this.engine.outline(spec, boxes, dimension);
+      if (setup.structure) found.result.outline = this.engine.outline(spec, boxes, dimension, this.choice.follow);
       if (setup.selected >= 0 && setup.selected < count) this.observe(found.result, boxes, dimension, setup.selected);
       const took = performance.now() - begin;
       // Leaves a third of the bench's time to the other panels.
@@ -68,7 +71,10 @@ export class Panel {
   private search(boxes: Float32Array, dimension: Dimension): PanelFrame {
     const { spec, follow } = this.choice;
     if (!follow) {
-      const { pairs, statistics, explanation, milliseconds } = this.engine.find(spec, boxes, dimension);
+      const { pairs, statistics, explanation, ...found } = this.engine.find(spec, boxes, dimension);
+      // The first search allocates memory and takes far longer than later ones.
+      const milliseconds = this.last !== undefined || found.milliseconds > slow ? found.milliseconds
+        : timeOf(this.engine, spec, boxes, dimension, firstBudget);
       return {
         pairs,
         result: {
@@ -80,10 +86,12 @@ export class Panel {
     if (this.follower?.dimension !== dimension) this.free();
     this.follower ??= new Follower(this.engine, spec, dimension);
     const { begun, ended, statistics, milliseconds, bytes } = this.follower.update(boxes);
+    // The first update finds all pairs, and its time says nothing about later ones.
+    const time = this.last === undefined ? NaN : this.times.add(milliseconds);
     return {
       pairs: this.follower.current(),
       result: {
-        spec, statistics, bytes, explanation: "", pairs: this.follower.size, milliseconds: this.times.add(milliseconds),
+        spec, statistics, bytes, explanation: "", pairs: this.follower.size, milliseconds: time,
         begun: begun.length / 2, ended: ended.length / 2, late: false,
       },
     };
@@ -98,7 +106,9 @@ export class Panel {
       return;
     }
     const { tests, pairs } = this.engine.observe(spec, boxes, dimension);
-    const outline: Outline | undefined = result.outline ?? this.engine.outline(spec, boxes, dimension);
+    // The tests are those of a search, also if a tracker keeps something else.
+    const outline = this.choice.follow || result.outline === undefined
+      ? this.engine.outline(spec, boxes, dimension) : result.outline;
     const tested = partners(tests, box);
     const met = partners(pairs, box);
     result.selection = {

@@ -97,6 +97,8 @@ export interface Measured {
   spec: string;
   count: number;
   milliseconds: number;
+  /** Of the frames on screen; otherwise measured in batches, which is more precise. */
+  ofFrames?: boolean;
 }
 
 export interface Duel {

@@ -17,7 +17,7 @@ test("an address holds the whole state", () => {
     scene: { name: "huge_floor", count: 1234, seed: 7, knobs: { ratio: 20, clustering: 0.5, moving: 0.25, speed: 2 } },
     edits: [edit, { ...edit, box: 1300, width: -1 }],
     panels: [{ spec: "grid:cell=4:update=follow", follow: true }, { spec: "paper_quadtree:capacity=3", follow: false }],
-    panel: 1, structure: false, overlaps: false, selected: 12, playing: false, pace: 0.5, lesson: 0,
+    panel: 1, structure: false, up: true, overlaps: false, selected: 12, playing: false, pace: 0.5, lesson: 0,
     steps: { algorithm: "quadtree", at: 17, count: 9, cell: 1.5, capacity: 2 },
     embed: true,
   };

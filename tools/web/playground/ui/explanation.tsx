@@ -5,16 +5,12 @@ import type { RefObject } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 
 import { patch, shown, state, told } from "../state/store.ts";
-import { grouped, plural } from "./numbers.ts";
+import { between, grouped, plural } from "./numbers.ts";
 import type { Stage } from "./stage.ts";
-import { view } from "./view.ts";
+import { camera } from "./view.ts";
 
 /** Pixels between a box and its explanation. */
 const space = 14;
-
-function between(value: number, min: number, max: number): number {
-  return Math.max(min, Math.min(max, value));
-}
 
 interface Props {
   at: number;
@@ -28,7 +24,7 @@ export function Explanation({ at, stage, window }: Props) {
   // To the right of the box or, without room there, to its left. On a narrow page, the style sheet
   // puts it below the picture.
   const place = (): void => {
-    void [shown.value, view.value, stage.layout.value];
+    void [shown.value, camera.value, stage.layout.value];
     const [note, around] = [element.current, window.current];
     const box = stage.rectangle(at, state.value.selected);
     if (note === null || around === null || box === undefined) return;
