@@ -6,15 +6,16 @@ import { maxObserved, refusal } from "./budget.ts";
 import { Follower } from "./followers.ts";
 import { Mark, type PanelChoice, type PanelResult, type Selection, type Setup } from "./protocol.ts";
 import { reasons } from "./reasons.ts";
-import { RecentTimes, timeOf } from "./times.ts";
+import { coarse, RecentTimes, timeOf } from "./times.ts";
 
 const nothing = { tests: 0, references: 0, cells: 0, hits: 0 };
 
 /** A search that takes longer than this, in ms, does not run in every frame. */
 const slow = 60;
 
-/** How long a panel's first search may be measured, in ms, so that a still picture has a time. */
-const firstBudget = 6;
+/** How often a search that is too short for the clock is measured in batches, and for how long, in ms. */
+const batchEvery = 500;
+const batchBudget = 6;
 
 export interface PanelFrame {
   result: PanelResult;
@@ -27,6 +28,8 @@ export class Panel {
   private last: PanelResult | undefined;
   private notBefore = 0;
   private readonly times = new RecentTimes();
+  private batched = NaN;
+  private batchedAt = -Infinity;
 
   constructor(private readonly engine: Engine, readonly choice: PanelChoice) {}
 
@@ -72,13 +75,11 @@ export class Panel {
     const { spec, follow } = this.choice;
     if (!follow) {
       const { pairs, statistics, explanation, ...found } = this.engine.find(spec, boxes, dimension);
-      // The first search allocates memory and takes far longer than later ones.
-      const milliseconds = this.last !== undefined || found.milliseconds > slow ? found.milliseconds
-        : timeOf(this.engine, spec, boxes, dimension, firstBudget);
+      const milliseconds = this.timeOf(found.milliseconds, boxes, dimension);
       return {
         pairs,
         result: {
-          spec, statistics, explanation, pairs: pairs.length / 2, milliseconds: this.times.add(milliseconds), bytes: 0,
+          spec, statistics, explanation, pairs: pairs.length / 2, milliseconds, bytes: 0,
           begun: 0, ended: 0, late: false,
         },
       };
@@ -95,6 +96,20 @@ export class Panel {
         begun: begun.length / 2, ended: ended.length / 2, late: false,
       },
     };
+  }
+
+  /**
+   * The time of a search of which one run took `once`: the median of the last frames. The first run
+   * allocates memory and takes far longer; and the clock is too coarse for a short one.
+   */
+  private timeOf(once: number, boxes: Float32Array, dimension: Dimension): number {
+    const isDue = !(this.batched > coarse) && performance.now() - this.batchedAt > batchEvery;
+    if (once <= slow && isDue) {
+      this.batched = timeOf(this.engine, this.choice.spec, boxes, dimension, batchBudget);
+      this.batchedAt = performance.now();
+      if (this.batched > coarse) return this.times.add(this.batched);
+    }
+    return this.batched <= coarse ? this.batched : this.times.add(once);
   }
 
   private observe(result: PanelResult, boxes: Float32Array, dimension: Dimension, box: number): void {

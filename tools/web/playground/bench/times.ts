@@ -4,7 +4,10 @@ import type { Engine } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
 
 /** Up to this time, in ms, a single measurement is too coarse. */
-const coarse = 0.5;
+export const coarse = 0.5;
+
+/** The number of frames whose times are kept. */
+const maxRecent = 40;
 
 /** A batch of runs takes at least so many ticks of the clock, so that it is right to 5 %. */
 const minTicks = 20;
@@ -18,17 +21,12 @@ export function median(values: readonly number[]): number {
   return sorted.length % 2 === 1 ? sorted[middle]! : (sorted[middle - 1]! + sorted[middle]!) / 2;
 }
 
-let tick = 0;
-
-/** The least step of the clock, in ms. */
+/** A step of the clock, in ms. */
 function clockTick(): number {
-  for (let step = 0; tick === 0 || step < 3; ++step) {
-    const begin = performance.now();
-    let now = begin;
-    while (now === begin) now = performance.now();
-    tick = tick === 0 ? now - begin : Math.min(tick, now - begin);
-  }
-  return tick;
+  const begin = performance.now();
+  let now = begin;
+  while (now === begin) now = performance.now();
+  return now - begin;
 }
 
 /**
@@ -40,7 +38,7 @@ export class RecentTimes {
 
   add(milliseconds: number): number {
     this.recent.push(milliseconds);
-    if (this.recent.length > 40) this.recent.shift();
+    if (this.recent.length > maxRecent) this.recent.shift();
     const typical = median(this.recent);
     if (typical > coarse) return typical;
     // Without outliers, which other work on the machine has caused.

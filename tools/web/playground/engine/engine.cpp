@@ -221,8 +221,7 @@ void outline_of(std::size_t count, bool follows) {
   const bool keeps_cells = follows && spec.name == "grid";
   const Outline<D> laid_out =
       keeps_cells
-          ? kept_cells<D>(Settings(spec, algorithm::find_algorithm("grid")->tunables).optional_number("cell"),
-                          boxes)
+          ? kept_cells<D>(Settings(spec, find_algorithm("grid")->tunables).optional_number("cell"), boxes)
           : outline<D, float>(spec, boxes);
   answers.text = laid_out.kind + "\n" + laid_out.caption;
   answers.numbers.push_back(laid_out.swept_axis);

@@ -24,9 +24,8 @@ export const broadPhase: Lesson = {
     task: <p>Both panels search by brute force. Let the second one take another algorithm that finds <b>the same pairs</b>{" "}
       with <b>less than a tenth</b> of the tests.</p>,
     control: () => <PanelAlgorithm panel={1} label="The second panel's algorithm" />,
-    hint: <p>Each algorithm but brute force avoids tests. Try some, and read the line below: the trees make few
-      tests; <code>grid</code> and <code>auto</code> make more, but faster ones, since for so few boxes they sweep a
-      single cell.</p>,
+    hint: <p>Brute force appears twice in the list, as the library's and as the paper's. The other algorithms avoid
+      most tests, each by another idea: the next lessons have them.</p>,
     check({ shown }) {
       const brute = shown.panels.find(({ spec }) => spec === "brute_force");
       const other = shown.panels.find(({ spec }) => spec !== "brute_force");

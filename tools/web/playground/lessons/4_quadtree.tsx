@@ -4,19 +4,22 @@ import { KnobSlider } from "../ui/scene_card.tsx";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
 const count = 400;
-const both = panels("paper_grid", "paper_quadtree:capacity=8");
+const both = panels("paper_grid:cell=10", "paper_quadtree:capacity=8");
+
+/** Few move, or the clusters would dissolve. */
+const boxes = (clustering: number) => scene("drift", count, { clustering, moving: 0.1 });
 
 /** How many times as many tests the grid is to make. */
-const times = 4;
+const times = 1.5;
 
 export const quadtree: Lesson = {
   title: "Cells that split: the quadtree",
-  start: { scene: scene("drift", count), panels: both },
+  start: { scene: boxes(0), panels: both },
   tries: [
-    { label: "Spread evenly", state: { scene: scene("drift", count), panels: both } },
-    { label: "In clusters", state: { scene: scene("drift", count, { clustering: 0.8 }), panels: both } },
+    { label: "Spread evenly", state: { scene: boxes(0), panels: both } },
+    { label: "In clusters", state: { scene: boxes(0.8), panels: both } },
     { label: "Small leaves", state: {
-      scene: scene("drift", count, { clustering: 0.8 }), panels: panels("paper_grid", "paper_quadtree:capacity=2") } },
+      scene: boxes(0.8), panels: panels("paper_grid:cell=10", "paper_quadtree:capacity=2") } },
   ],
   text: (
     <>
@@ -31,7 +34,7 @@ export const quadtree: Lesson = {
   ),
   exercise: {
     task: <p>Both panels search the same {count} boxes, the first in equal cells, the second in a quadtree. Pull the boxes
-      into clusters until the cells make <b>{times} times</b> the tests of the tree.</p>,
+      into clusters until the cells make <b>one and a half times</b> the tests of the tree.</p>,
     control: () => <KnobSlider name="clustering" />,
     hint: <p>The tighter the clusters, the more boxes share a cell; the tree splits there.</p>,
     check({ shown, state }) {

@@ -20,7 +20,7 @@ export function line(along: 0 | 1, count: number, seed: number): Scene {
         const way = randomAt(seed, box, 1) * long + 0.6 * side * Math.sin(time * (1 + randomAt(seed, box, 2)) + box);
         const across = narrow * randomAt(seed, box, 3);
         const [x, y] = along === 0 ? [way, across] : [across, way];
-        const [w, h] = along === 0 ? [half, 2 * half] : [4 * half, half];
+        const [w, h] = along === 0 ? [half, 2 * half] : [9 * half, half];
         boxes.set([x - w, y - h, x + w, y + h], 4 * box);
       }
       return boxes;

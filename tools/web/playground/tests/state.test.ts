@@ -51,7 +51,7 @@ test("what an address says wrongly is as usual, and numbers keep to their range"
   assert.equal(state.scene.knobs.ratio, defaultState.scene.knobs.ratio);
   assert.deepEqual(state.panels, defaultState.panels);
   assert.deepEqual(state.edits, []);
-  assert.equal(state.lesson, 4);
+  assert.equal(state.lesson, 6);
   assert.equal(state.pace, 1);
 });
 
