@@ -79,6 +79,7 @@ export interface PanelResult {
 }
 
 export interface Shown {
+  scene: SceneChoice;
   time: number;
   dimension: Dimension;
   bounds: Bounds;

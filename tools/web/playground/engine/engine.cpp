@@ -29,7 +29,6 @@
 
 #include "algorithms/grid/hierarchical_cells.hpp"
 #include "algorithms/outline_text.hpp"
-#include "algorithms/registry.hpp"
 #include "core/cell_axis.hpp"
 #include "core/number_text.hpp"
 #include "kernels/find_changes.hpp"

@@ -1,4 +1,3 @@
-import { nameOf } from "../state/spec.ts";
 import { grouped } from "../ui/numbers.ts";
 import { KnobSlider } from "../ui/scene_card.tsx";
 import { panels, scene, type Lesson } from "./lesson.ts";
@@ -17,9 +16,10 @@ export const quadtree: Lesson = {
   start: { scene: boxes(0), panels: both },
   tries: [
     { label: "Spread evenly", state: { scene: boxes(0), panels: both } },
-    { label: "In clusters", state: { scene: boxes(0.8), panels: both } },
     { label: "Small leaves", state: {
-      scene: boxes(0.8), panels: panels("paper_grid:cell=10", "paper_quadtree:capacity=2") } },
+      scene: boxes(0), panels: panels("paper_grid:cell=10", "paper_quadtree:capacity=2") } },
+    { label: "Large leaves", state: {
+      scene: boxes(0), panels: panels("paper_grid:cell=10", "paper_quadtree:capacity=40") } },
   ],
   text: (
     <>
@@ -36,12 +36,12 @@ export const quadtree: Lesson = {
     task: <p>Both panels search the same {count} boxes, the first in equal cells, the second in a quadtree. Pull the boxes
       into clusters until the cells make <b>one and a half times</b> the tests of the tree.</p>,
     control: () => <KnobSlider name="clustering" />,
-    hint: <p>The tighter the clusters, the more boxes share a cell; the tree splits there.</p>,
+    hint: <p>The tighter the clusters, the more boxes share a cell, and there the tree splits. Beyond some 85 % nearly all
+      boxes of a cluster overlap each other, and no structure saves tests.</p>,
     check({ shown, state }) {
-      const of = (name: string) => shown.panels.find(({ spec }) => nameOf(spec) === name)?.statistics.tests;
-      const [cells, tree] = [of("paper_grid"), of("paper_quadtree")];
+      const [cells, tree] = both.map((panel) => shown.panels.find(({ spec }) => spec === panel.spec)?.statistics.tests);
       if (cells === undefined || tree === undefined)
-        return { done: false, text: "Keep paper_grid in one panel and paper_quadtree in the other." };
+        return { done: false, text: "This is about cells of 10 and leaves of up to 8 boxes, with which the lesson begins." };
       if (state.scene.name !== "drift" || state.scene.count < count)
         return { done: false, text: `This is about the ${count} boxes that the lesson begins with.` };
       return {

@@ -342,10 +342,13 @@ describe("the playground", { skip: missing }, () => {
     });
     await done(page);
     await page.getByRole("button", { name: "Lesson 4:" }).click();
-    await page.getByRole("slider", { name: "Clustering" }).fill("0.95");
+    await page.getByRole("slider", { name: "Clustering" }).fill("0.7");
     await done(page);
     await page.getByRole("button", { name: "Lesson 5:" }).click();
-    await page.getByRole("slider", { name: "Size ratio" }).fill("2");
+    await page.getByRole("slider", { name: "Size ratio" }).evaluate((slider: HTMLInputElement) => {
+      slider.value = "2";
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    });
     await done(page);
     await page.getByRole("button", { name: "Lesson 6:" }).click();
     await page.getByRole("slider", { name: "Share that moves" }).fill("0.02");
