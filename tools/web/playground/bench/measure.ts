@@ -11,8 +11,11 @@ import { batchesOf, median, timeOf } from "./times.ts";
 const budget = 25;
 
 /** Rounds of a race, and the budget of all of them, in ms. */
-const rounds = 11;
+const rounds = 15;
 const raceBudget = 4000;
+
+/** What takes this many times as long as the fastest has lost, and runs in no further round. */
+const hopeless = 8;
 
 function pause(): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, 0));
@@ -49,7 +52,10 @@ export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimen
   const racers = ["auto", ...specs].map((spec) =>
     ({ spec, batch: batchesOf(engine, spec, boxes, dimension), times: [] as number[] }));
   for (let round = 0; round < rounds; ++round) {
-    for (const { batch, times } of racers) times.push(batch());
+    const best = Math.min(...racers.map(({ times }) => round === 0 ? Infinity : median(times)));
+    for (const { batch, times } of racers) {
+      if (round < 3 ? !(times[0]! > 100 * best) : median(times) < hopeless * best) times.push(batch());
+    }
     await pause();
     if (performance.now() - begin > raceBudget) break;
   }

@@ -7,7 +7,7 @@ import { panels, scene, type Lesson } from "./lesson.ts";
 
 const cases = [
   { name: "a group of 20", scene: scene("drift", 20, { ratio: 2 }) },
-  { name: "a street of 10,000", scene: scene("street", 10_000) },
+  { name: "a street of 40,000", scene: scene("street", 40_000) },
   { name: "20,000 spread evenly", scene: scene("drift", 20_000, { moving: 0 }) },
 ] as const;
 

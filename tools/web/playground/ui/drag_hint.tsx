@@ -23,6 +23,7 @@ function draggable(boxes: Float32Array, bounds: ArrayLike<number>): number {
 export function DragHint({ stage }: { stage: Stage }) {
   const element = useRef<HTMLParagraphElement>(null);
   const box = useRef(-1);
+  const scene = useRef("");
   useSignalEffect(() => {
     const now = shown.value;
     void [camera.value, stage.layout.value];
@@ -32,7 +33,10 @@ export function DragHint({ stage }: { stage: Stage }) {
     hint.hidden = now === null || now.dimension !== 2 || mode !== "play" || embed || edits.length > 0 || selected >= 0 ||
       held.value !== null;
     if (hint.hidden || now === null) return;
-    if (box.current < 0 || 4 * box.current >= now.boxes.length) box.current = draggable(now.boxes, now.bounds);
+    if (scene.current !== now.scene.name || 4 * box.current >= now.boxes.length) {
+      scene.current = now.scene.name;
+      box.current = draggable(now.boxes, now.bounds);
+    }
     hint.dataset["box"] = String(box.current);
     const place = stage.rectangle(0, box.current);
     hint.hidden = place === undefined;
