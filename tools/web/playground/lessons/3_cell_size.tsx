@@ -13,7 +13,7 @@ export const cellSize: Lesson = {
     { label: "Large cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=60") } },
     { label: "Tiny cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=0.6") } },
     { label: "Sizes that differ", state: {
-      scene: scene("drift", 500, { ratio: 100 }), panels: panels("paper_grid:cell=5", "grid:cell=5") } },
+      scene: scene("drift", 500, { ratio: 20 }), panels: panels("paper_grid:cell=5", "grid:cell=8") } },
   ],
   text: (
     <>
