@@ -38,9 +38,20 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return distance[a.size()][b.size()];
 }
 
+/// The first letters of a name's words: "sap" for "sweep_and_prune".
+inline std::string initials_of(std::string_view name) {
+  std::string initials;
+  bool begins_word = true;
+  for (const char letter : name) {
+    if (begins_word) initials += letter;
+    begins_word = letter == '_';
+  }
+  return initials;
+}
+
 /// " (did you mean 'grid'?)" for the name in `known` that is closest to `found`: at most two letters are
-/// missing, extra, wrong or swapped (one if `found` has fewer than five), or it begins with `found`. Ignores
-/// case. Empty if no name is that close.
+/// missing, extra, wrong or swapped (one if `found` has fewer than five). If no name is that close, one that
+/// begins with `found` or has it as initials. Ignores case. Empty if there is none of these.
 inline std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
   // No name is longer; a longer text may be a whole file, which would take long to compare.
   constexpr std::size_t max_letters = 64;
@@ -48,13 +59,15 @@ inline std::string did_you_mean(std::string_view found, std::span<const std::str
   if (found.size() > max_letters) return {};
   const std::string wanted = lower_case(found);
   const std::size_t max_distance = found.size() < 5 ? 1 : 2;
-  std::size_t nearest = max_distance + 1;
+  std::size_t nearest = max_distance + 2;
   const std::string* meant = nullptr;
   for (const std::string& name : known) {
     const std::string candidate = lower_case(name);
     std::size_t distance = edit_distance(wanted, candidate);
-    if (wanted.size() >= min_prefix && candidate.starts_with(wanted))
-      distance = std::min(distance, max_distance);
+    if (wanted.size() >= min_prefix && (candidate.starts_with(wanted) || initials_of(candidate) == wanted))
+      distance = std::min(distance, max_distance + 1);
+    else if (distance > max_distance)
+      continue;
     if (distance >= nearest) continue;
     nearest = distance;
     meant = &name;

@@ -72,7 +72,8 @@ const std::vector<Rule>& rules() {
       {"distributed/include/broadside/mpi", library + R"(|<mpi\.h>)"},
       {"distributed/", library},
       {"tools/web/playground/engine/",
-       library + R"(|"core/number_text\.hpp"|"kernels/observed_tests\.hpp")" +
+       library + R"(|"core/(cell_axis|number_text)\.hpp"|"kernels/(find_changes|observed_tests)\.hpp")" +
+           R"(|"algorithms/(grid/hierarchical_cells|outline_text)\.hpp")" +
            R"(|"(lab/formats|lab/scenes|paper/listings)/registry\.hpp")" +
            R"(|"lab/formats/(csv/csv_rows|mesh/indexed_mesh|unread_formats)\.hpp")"},
       {"tools/lab/recordings/", lab + engines},

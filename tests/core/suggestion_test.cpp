@@ -27,6 +27,12 @@ TEST(DidYouMean, SuggestsTheNearestNameWithinTwoLetters) {
   EXPECT_EQ(core::did_you_mean("quatree", names), " (did you mean 'quadtree'?)");
   EXPECT_EQ(core::did_you_mean("sweep-and-prune", names), " (did you mean 'sweep_and_prune'?)");
   EXPECT_EQ(core::did_you_mean("sweep", names), " (did you mean 'sweep_and_prune'?)");
+  EXPECT_EQ(core::did_you_mean("sap", names), " (did you mean 'sweep_and_prune'?)");
+}
+
+TEST(DidYouMean, PrefersANearNameToOneThatBeginsSo) {
+  const std::vector<std::string> options = {"--no-progress", "-n"};
+  EXPECT_EQ(core::did_you_mean("--n", options), " (did you mean '-n'?)");
 }
 
 TEST(DidYouMean, SuggestsNothingFarAway) {

@@ -16,6 +16,8 @@
 namespace broadside::lab {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -164,6 +166,17 @@ TEST(Drawing, OfManyBoxesKeepsTheirDensity) {
   EXPECT_NEAR(area(some), area(all), 1e-3 * area(all));
   EXPECT_EQ(thinned<2>(ladder(10), 10), ladder(10));
   EXPECT_EQ(thinned<2>(std::vector<Box2>(3, {{-infinity, 0}, {infinity, 1}}), 1)[0].min[0], -infinity);
+}
+
+TEST(Drawing, OfManyBoxesKeepsTheLargest) {
+  std::vector<Box2> all = ladder(4000);
+  const Box2 floor = {{0, -1}, {4000, 0}};
+  all.insert(all.begin() + 1234, floor);
+  const std::vector<Box2> some = thinned<2>(all, 40);
+  EXPECT_EQ(some.size(), 40U);
+  EXPECT_THAT(some, Contains(floor));
+  EXPECT_THAT(svg_of(draw<2>("level", some, all.size(), Catalogue().select("bvh"))),
+              AllOf(HasSubstr("40 of 4,001 boxes, the largest among them"), HasSubstr("that of these 40.")));
 }
 
 TEST(Drawing, OfASceneHasFewerBoxesOfTheSameDensity) {

@@ -170,20 +170,18 @@ std::vector<std::string> reasons_of(const Advice& advice) {
     case ChoiceReason::variant:
       reasons.push_back(
           fmt::format("{} takes {:.0f} % less time than {}, the fastest that sets its own options, and is "
-                      "the faster one in "
-                      "{:.0f} % of the rounds; it is for boxes like these only",
+                      "faster in {:.0f} % of the rounds; it is for boxes like these only",
                       chosen.algorithm, (1 - time / min_time) * 100, fastest.algorithm,
                       part_of_rounds(chosen, fastest) * 100));
       break;
   }
   if (const RankedAlgorithm* const faster = faster_variant(advice)) {
-    reasons.push_back(
-        fmt::format("{} takes {} the time, but it is for boxes like these only, and was the faster one in "
-                    "{:.0f} % of the "
-                    "rounds, where {:.0f} % and {:.0f} % less time are asked for",
-                    faster->measurement.algorithm, times(faster->milliseconds / time),
-                    100 * part_of_rounds(faster->measurement, fastest), 100 * rounds_of_variants,
-                    100 * (1 - 1 / margin_of_variants)));
+    reasons.push_back(fmt::format(
+        "{} takes {} the time, but it is for boxes like these only, and was faster in {:.0f} % of "
+        "the rounds; advised only if in {:.0f} %, and by {:.0f} %",
+        faster->measurement.algorithm, times(faster->milliseconds / time),
+        100 * part_of_rounds(faster->measurement, fastest), 100 * rounds_of_variants,
+        100 * (1 - 1 / margin_of_variants)));
   }
   std::size_t others = 0;
   for (const RankedAlgorithm& ranked : advice.ranking) {

@@ -115,7 +115,10 @@ std::string text_of(const Signals& signals) {
 std::string text_of(const Advice& advice, std::size_t width) {
   std::string text = busy_hint(advice.processor_share);
   if (advice.is_withheld)
-    text = "No advice: the times of a busy machine mislead (--allow-busy advises all the same).\n" + text;
+    text =
+        "No advice: this machine is busy, so the times below may mislead. Add --allow-busy to get the advice "
+        "and its reasons all the same.\n" +
+        text;
   if (!text.empty()) text += "\n";
   text += fmt::format("{}: {}\n\n", advice.input, text_of(advice.signals));
   if (advice.mode == Mode::track && advice.frames < advice.signals.motion->frames)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -95,6 +96,24 @@ std::vector<bool> touching(std::span<const Box<D>> boxes) {
   return touches;
 }
 
+/// The boxes that are far larger than most, such as a level's floor; at most `max_count`, the largest.
+template <int D>
+std::vector<bool> far_larger(std::span<const Box<D>> boxes, std::size_t max_count) {
+  constexpr double far = 8;  // times the median of the longest sides
+  std::vector<double> sides;
+  for (const Box<D>& box : boxes) {
+    double longest = 0;
+    for (int axis = 0; axis < D; ++axis) longest = std::max(longest, double{box.max[axis]} - box.min[axis]);
+    sides.push_back(longest);
+  }
+  std::vector<double> sorted = sides;
+  std::ranges::sort(sorted, std::greater());
+  const double least = std::max(far * sorted[sorted.size() / 2], sorted[max_count]);
+  std::vector<bool> larger;
+  for (const double side : sides) larger.push_back(side > least);
+  return larger;
+}
+
 /// A scene's boxes in a frame, which must exist.
 template <int D>
 std::vector<Box<D>> boxes_at(std::size_t frame, const NamedScene& named, SceneRequest request) {
@@ -118,11 +137,23 @@ std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes
   std::vector<Box<D>> present;
   std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
   if (present.size() <= max_boxes) return present;
-  const double ratio = static_cast<double>(present.size()) / static_cast<double>(max_boxes);
+  const std::vector<bool> is_far_larger = far_larger<D>(present, max_boxes / 4);
+  const auto kept = static_cast<std::size_t>(std::ranges::count(is_far_larger, true));
+  const std::size_t others = present.size() - kept;
+  const std::size_t room = max_boxes - kept;
+  const double ratio = static_cast<double>(others) / static_cast<double>(room);
   const double factor = D == 2 ? std::sqrt(ratio) : std::cbrt(ratio);
   std::vector<Box<D>> chosen;
-  for (std::size_t i = 0; i < max_boxes; ++i) {
-    Box<D> box = present[(2 * i + 1) * present.size() / (2 * max_boxes)];
+  std::size_t other = 0;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < present.size(); ++i) {
+    Box<D> box = present[i];
+    if (is_far_larger[i]) {
+      chosen.push_back(box);
+      continue;
+    }
+    if (other++ != (2 * next + 1) * others / (2 * room)) continue;
+    ++next;
     for (int axis = 0; axis < D; ++axis) {
       const double more = (double{box.max[axis]} - box.min[axis]) * (factor - 1) / 2;
       if (!std::isfinite(more)) continue;

@@ -49,8 +49,9 @@ struct Drawing {
 /// The number of boxes that an eye can distinguish in a picture.
 inline constexpr std::size_t max_drawn = 600;
 
-/// `max_boxes` of the boxes, evenly chosen from the array, each enlarged about its centre to keep the density
-/// of all boxes, so that the picture looks like the scene. All of them if there are no more than that.
+/// `max_boxes` of the boxes, so that the picture looks like the scene: those far larger than most (up to a
+/// quarter of `max_boxes`, the largest) as they are, and others evenly chosen from the array, each enlarged
+/// about its centre to keep the density of all. All of them if there are no more than that.
 template <int D>
 std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes = max_drawn);
 

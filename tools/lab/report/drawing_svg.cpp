@@ -107,10 +107,15 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
   return text + "</svg>\n</g>\n";
 }
 
+/// "300 of 3,442 boxes".
+std::string drawn_boxes(const Drawing& drawing) {
+  if (drawing.of <= drawing.boxes) return counted(drawing.boxes, "box", "boxes");
+  return fmt::format("{} of {} boxes, the largest among them", grouped(drawing.boxes), grouped(drawing.of));
+}
+
 /// The description of the picture for screen readers.
 std::string description_of(const Drawing& drawing) {
-  std::string text = fmt::format("{} in {}D", counted(drawing.boxes, "box", "boxes"), drawing.dimension);
-  if (drawing.of > drawing.boxes) text += ", for " + grouped(drawing.of);
+  std::string text = fmt::format("{} in {}D", drawn_boxes(drawing), drawing.dimension);
   text += "; boxes that overlap another one are orange.";
   if (drawing.views.empty()) return text;
   for (const DrawingLayer& layer : drawing.views[0].layers) {
@@ -149,9 +154,9 @@ std::string svg_of(const Drawing& drawing) {
     y += title_height + highest + gap;
   }
   const int width = gap + static_cast<int>(columns) * (panel_width + gap);
-  std::string key = fmt::format("{}, {}", drawing.scene, counted(drawing.boxes, "box", "boxes"));
-  if (drawing.of > drawing.boxes) key += " for " + grouped(drawing.of);
-  key += ".";
+  std::string key = fmt::format("{}, {}.", drawing.scene, drawn_boxes(drawing));
+  if (drawing.of > drawing.boxes && layers > 0)
+    key += fmt::format(" What lies over them is that of these {}.", grouped(drawing.boxes));
   std::string colours = "Orange: overlaps another.";
   const bool swept = std::ranges::any_of(
       panels, [](const Panel& panel) { return panel.layer != nullptr && !panel.layer->active.empty(); });

@@ -56,7 +56,9 @@ export function dataTable<Row>(spec: DataTableSpec<Row>): HTMLElement {
     show();
   } });
   const heads = spec.columns.map((column, i) => el("th", { scope: "col", class: classOf(i) },
-    el("button", { type: "button", onclick: () => sortBy(i) }, column.title)));
+    el("button", { type: "button", onclick: () => sortBy(i) }, column.title),
+    // Chromium repeats a head on each printed page, but without the buttons in it.
+    el("span", { class: "printed", "aria-hidden": "true" }, column.title)));
 
   function sortBy(i: number): void {
     direction = sorted === i ? -direction : 1;

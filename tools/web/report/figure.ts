@@ -7,7 +7,9 @@ import { isPrinting, onTheme, theme } from "./themes.ts";
 type Draw = (place: Place) => Drawn;
 
 /** In print, charts are made smaller by the style sheet, so that the longest fits on a page. */
-const printWidth = 840;
+function printedWidth(chart: HTMLElement): number {
+  return chart.closest(".pair") === null ? 840 : 410;
+}
 
 export interface ChartFigure {
   element: HTMLElement;
@@ -41,7 +43,7 @@ class ChartView {
 
   redraw(): void {
     if (!this.near && !isPrinting()) return;
-    const width = isPrinting() ? printWidth : this.element.clientWidth;
+    const width = isPrinting() ? printedWidth(this.element) : this.element.clientWidth;
     if (width === 0) return;
     this.width = width;
     const drawn = this.draw({ theme: theme(), width });

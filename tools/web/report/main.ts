@@ -17,7 +17,8 @@ interface ReportDocument {
 function build({ date, comparison, drawings }: ReportDocument): void {
   const sections = comparisonSections(comparison, date);
   const pictures = drawingSection(drawings);
-  if (pictures !== undefined) sections.push(pictures);
+  // The long table comes last: in print it has pages of its own.
+  if (pictures !== undefined) sections.splice(-1, 0, pictures);
 
   const title = "Algorithms compared";
   const intro = "Ways of finding all overlapping pairs of axis-aligned boxes, timed on the same boxes. Every result that has a time was verified in the same run.";

@@ -279,6 +279,11 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     const sizes = [...pdf.toString("latin1").matchAll(/\/MediaBox \[0 0 ([\d.]+)/g)].map(([, width]) => Math.round(Number(width)));
     // The wide table alone is on landscape pages.
     assert.ok(sizes.includes(595) && sizes.includes(842), sizes.join());
+    // A head with a button in it would not be repeated on later pages.
+    await page.emulateMedia({ media: "print" });
+    assert.equal(await page.locator("thead button:visible").count(), 0);
+    assert.ok(await page.locator("thead .printed:visible").count() > 16);
+    await page.emulateMedia({ media: "screen" });
     assert.deepEqual(problems, []);
     await page.close();
   });

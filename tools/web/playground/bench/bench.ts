@@ -131,7 +131,7 @@ export class Bench {
       if (boxes[at]! <= boxes[at + dimension]!) ++present;
     }
     return {
-      time, dimension, bounds, duration, boxes, present, marks, pairs,
+      scene: setup.scene, time, dimension, bounds, duration, boxes, present, marks, pairs,
       overlaps: setup.overlaps ? intersections(boxes, pairs, dimension) : new Float32Array(),
       panels: frames.map(({ result }) => result),
     };

@@ -5,10 +5,17 @@ import { fileScene, makeScene, type SceneChoice } from "../scene/catalogue.ts";
 import type { Dimension } from "../scene/scene.ts";
 import { refusal } from "./budget.ts";
 import type { Duel, Measured } from "./protocol.ts";
-import { timeOf } from "./times.ts";
+import { batchesOf, median, timeOf } from "./times.ts";
 
 /** Budget of one measurement, in ms. */
 const budget = 25;
+
+/** Rounds of a race, and the budget of all of them, in ms. */
+const rounds = 15;
+const raceBudget = 4000;
+
+/** What takes this many times as long as the fastest has lost, and runs in no further round. */
+const hopeless = 8;
 
 function pause(): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, 0));
@@ -33,27 +40,30 @@ export async function* measure(engine: Engine, choice: SceneChoice, counts: read
   }
 }
 
-/** Times `auto` and the others in the same rounds. */
+/** Times `auto` and the others in the same rounds, so that a slow moment slows all of them; medians. */
 export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimension): Promise<Duel> {
   const count = boxes.length / (2 * dimension);
   const specs = engine.algorithms()
     .filter(({ name, kind, dimensions }) => kind === "own" && name !== "auto" && dimensions.includes(dimension))
     .map(({ name }) => name)
     .filter((name) => refusal(name, count) === undefined);
-  const times = new Map<string, number>(["auto", ...specs].map((spec) => [spec, Infinity]));
   const begin = performance.now();
   const { explanation } = engine.find("auto", boxes, dimension);
-  for (let round = 0; round < 5; ++round) {
-    for (const spec of times.keys()) {
-      times.set(spec, Math.min(times.get(spec)!, timeOf(engine, spec, boxes, dimension, budget)));
+  const racers = ["auto", ...specs].map((spec) =>
+    ({ spec, batch: batchesOf(engine, spec, boxes, dimension), times: [] as number[] }));
+  for (let round = 0; round < rounds; ++round) {
+    const best = Math.min(...racers.map(({ times }) => round === 0 ? Infinity : median(times)));
+    for (const { batch, times } of racers) {
+      if (round < 3 ? !(times[0]! > 100 * best) : median(times) < hopeless * best) times.push(batch());
     }
     await pause();
-    if (performance.now() - begin > 4000) break;
+    if (performance.now() - begin > raceBudget) break;
   }
+  const [auto, ...others] = racers.map(({ spec, times }) => ({ spec, milliseconds: median(times) }));
   return {
-    auto: times.get("auto")!,
+    auto: auto!.milliseconds,
     explanation,
-    others: specs.map((spec) => ({ spec, milliseconds: times.get(spec)! }))
+    others: others
       .sort((a, b) => a.milliseconds - b.milliseconds),
   };
 }

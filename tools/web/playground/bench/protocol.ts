@@ -79,6 +79,7 @@ export interface PanelResult {
 }
 
 export interface Shown {
+  scene: SceneChoice;
   time: number;
   dimension: Dimension;
   bounds: Bounds;
@@ -97,6 +98,8 @@ export interface Measured {
   spec: string;
   count: number;
   milliseconds: number;
+  /** Of the frames on screen; otherwise measured in batches, which is more precise. */
+  ofFrames?: boolean;
 }
 
 export interface Duel {

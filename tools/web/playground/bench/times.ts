@@ -1,44 +1,75 @@
-// Times with a coarse clock: browsers round to a tenth of a millisecond, and a search may take
-// microseconds.
+// Times with a coarse clock: browsers round to a tenth of a millisecond or more, and a search may
+// take microseconds.
 import type { Engine } from "../engine/types.ts";
 import type { Dimension } from "../scene/scene.ts";
 
 /** Up to this time, in ms, a single measurement is too coarse. */
-const coarse = 0.5;
+export const coarse = 0.5;
+
+/** The number of frames whose times are kept. */
+const maxRecent = 40;
+
+/** A batch of runs takes at least so many ticks of the clock, so that it is right to 5 %. */
+const minTicks = 20;
+
+/** With a very coarse clock, batches of 20 ticks would take seconds. In ms. */
+const maxBatch = 60;
+
+export function median(values: readonly number[]): number {
+  const sorted = [...values].sort((a, b) => a - b);
+  const middle = sorted.length >> 1;
+  return sorted.length % 2 === 1 ? sorted[middle]! : (sorted[middle - 1]! + sorted[middle]!) / 2;
+}
+
+/** A step of the clock, in ms. */
+function clockTick(): number {
+  const begin = performance.now();
+  let now = begin;
+  while (now === begin) now = performance.now();
+  return now - begin;
+}
 
 /**
  * Summarises the times of the last frames: the median, or the mean if the clock is too coarse for
- * it.
+ * it. NaN if the clock saw none of them.
  */
 export class RecentTimes {
   private readonly recent: number[] = [];
 
   add(milliseconds: number): number {
     this.recent.push(milliseconds);
-    if (this.recent.length > 40) this.recent.shift();
-    const sorted = [...this.recent].sort((a, b) => a - b);
-    const median = sorted[Math.floor(sorted.length / 2)]!;
-    if (median > coarse) return median;
+    if (this.recent.length > maxRecent) this.recent.shift();
+    const typical = median(this.recent);
+    if (typical > coarse) return typical;
     // Without outliers, which other work on the machine has caused.
-    const usual = sorted.filter((one) => one <= coarse);
-    return usual.reduce((sum, one) => sum + one, 0) / Math.max(1, usual.length);
+    const usual = this.recent.filter((one) => one <= coarse);
+    return usual.reduce((sum, one) => sum + one, 0) / usual.length || NaN;
   }
 }
 
 /**
- * The time of a search: the shortest of some rounds, each with enough runs for the clock's
- * resolution.
+ * Prepares batches of a search: the number of runs is doubled until a batch takes long enough for
+ * the clock. Each call of the result times a batch, and returns the milliseconds of one run.
  */
+export function batchesOf(engine: Engine, spec: string, boxes: Float32Array, dimension: Dimension): () => number {
+  const enough = Math.min(maxBatch, minTicks * clockTick());
+  engine.time(spec, boxes, dimension, 1);  // the first run allocates memory
+  let runs = 1;
+  return () => {
+    // Also later: a batch that was interrupted by other programs seemed long enough.
+    for (;; runs *= 2) {
+      const took = engine.time(spec, boxes, dimension, runs);
+      if (took >= enough) return took / runs;
+    }
+  };
+}
+
+/** The time of a search: the median of the batches that `budget` has room for. In ms. */
 export function timeOf(engine: Engine, spec: string, boxes: Float32Array, dimension: Dimension, budget: number): number {
+  const batch = batchesOf(engine, spec, boxes, dimension);
+  batch();
   const begin = performance.now();
-  const first = engine.find(spec, boxes, dimension).milliseconds;
-  if (first > budget) return first;
-  const runs = Math.min(60, Math.ceil(2 / Math.max(first, 0.02)));
-  let best = Infinity;
-  do {
-    let sum = 0;
-    for (let run = 0; run < runs; ++run) sum += engine.find(spec, boxes, dimension).milliseconds;
-    best = Math.min(best, sum / runs);
-  } while (performance.now() - begin < budget);
-  return best;
+  const times: number[] = [];
+  do times.push(batch()); while (performance.now() - begin < budget);
+  return median(times);
 }

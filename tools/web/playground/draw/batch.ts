@@ -76,7 +76,9 @@ export class Batch {
     const { large } = this;
     const [scaleX, scaleY, shiftX, shiftY] = [matrix[0]!, matrix[5]!, matrix[12]!, matrix[13]!];
     const [left, right] = [(-edge - shiftX) / scaleX, (edge - shiftX) / scaleX];
-    const [top, bottom] = [(edge - shiftY) / scaleY, (-edge - shiftY) / scaleY];  // y grows downwards in the world
+    // The scale is below 0 if y grows downwards in the world.
+    const [least, most] = [-Math.sign(scaleY) * edge, Math.sign(scaleY) * edge];
+    const [top, bottom] = [(least - shiftY) / scaleY, (most - shiftY) / scaleY];
     const maxExtent = maxPoint / (scaleX * pixels[0]);
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 4) {

@@ -17,15 +17,20 @@ export interface View {
   /** Angle of the camera in 3D, in radians. */
   turn: number;
   tilt: number;
+  /** Whether y grows upwards in 2D. */
+  up?: boolean;
 }
 
 export const defaultView: View = { zoom: 1, x: 0, y: 0, turn: 0.6, tilt: 0.42 };
 
 /**
- * A flat camera. Pixels of a panel are `x * scale + left` and `y * scale + top`; y grows downwards.
+ * A flat camera. Pixels of a panel are `x * scale + left` and `y * down * scale + top`, with y of
+ * the panel downwards.
  */
 export interface Flat {
   scale: number;
+  /** 1 if y of the boxes grows downwards; -1: upwards. */
+  down: 1 | -1;
   left: number;
   top: number;
 }
@@ -35,17 +40,18 @@ export function flatCamera(bounds: Bounds, size: Size, view: View): Flat {
   const [wide, high] = [x1 - x0 || 1, y1 - y0 || 1];
   const scale = 0.96 * Math.min(size.width / wide, size.height / high) * view.zoom;
   const [x, y] = [(x0 + x1) / 2 + view.x * wide, (y0 + y1) / 2 + view.y * high];
-  return { scale, left: size.width / 2 - x * scale, top: size.height / 2 - y * scale };
+  const down = view.up === true ? -1 : 1;
+  return { scale, down, left: size.width / 2 - x * scale, top: size.height / 2 - y * down * scale };
 }
 
-export function toWorld({ scale, left, top }: Flat, x: number, y: number): [number, number] {
-  return [(x - left) / scale, (y - top) / scale];
+export function toWorld({ scale, down, left, top }: Flat, x: number, y: number): [number, number] {
+  return [(x - left) / scale, (y - top) / (down * scale)];
 }
 
 /** WebGL matrix from coordinates to the clip space of a panel. */
-export function flatMatrix({ scale, left, top }: Flat, { width, height }: Size): m4.Mat4 {
+export function flatMatrix({ scale, down, left, top }: Flat, { width, height }: Size): m4.Mat4 {
   const [x, y] = [2 * scale / width, 2 * scale / height];
-  return [x, 0, 0, 0, 0, -y, 0, 0, 0, 0, 0, 0, 2 * left / width - 1, 1 - 2 * top / height, 0, 1];
+  return [x, 0, 0, 0, 0, -down * y, 0, 0, 0, 0, 0, 0, 2 * left / width - 1, 1 - 2 * top / height, 0, 1];
 }
 
 export function solidMatrix(bounds: Bounds, { width, height }: Size, view: View): m4.Mat4 {

@@ -12,13 +12,13 @@ export function projectionOf(painting: Painting, panel: PanelPainting): Projecti
   const { bounds, dimension, view } = painting;
   const size = panel.place;
   if (dimension === 2) {
-    const { scale, left, top } = flatCamera(bounds, size, view);
+    const { scale, down, left, top } = flatCamera(bounds, size, view);
     const [wide, high] = [4 * size.width, 4 * size.height];
     return (boxes, at) => {
       const x0 = Math.max(-wide, boxes[at]! * scale + left);
-      const y0 = Math.max(-high, boxes[at + 1]! * scale + top);
+      const y0 = Math.max(-high, boxes[at + (down > 0 ? 1 : 3)]! * down * scale + top);
       const x1 = Math.min(wide, boxes[at + 2]! * scale + left);
-      const y1 = Math.min(high, boxes[at + 3]! * scale + top);
+      const y1 = Math.min(high, boxes[at + (down > 0 ? 3 : 1)]! * down * scale + top);
       return [x0, y0, x1 - x0, y1 - y0];
     };
   }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,7 +27,11 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
+#include "algorithms/grid/hierarchical_cells.hpp"
+#include "algorithms/outline_text.hpp"
+#include "core/cell_axis.hpp"
 #include "core/number_text.hpp"
+#include "kernels/find_changes.hpp"
 #include "kernels/observed_tests.hpp"
 #ifndef BROADSIDE_OBSERVE
 #include "lab/formats/csv/csv_rows.hpp"
@@ -173,10 +178,50 @@ void find(std::size_t count) {
   answers.text = finder.explanation();
 }
 
+/// The cells that a tracker with `grid` keeps for these boxes, from the largest to the smallest.
 template <int D>
-void outline_of(std::size_t count) {
+Outline<D> kept_cells(std::optional<double> cell, std::span<const Box<D>> boxes) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  algorithm::HierarchicalCells<D> cells(cell);
+  cells.build(boxes, boxes);
+  Outline<D> kept;
+  kept.kind = "cells";
+  for (const kernels::CellLevel<D>& level : cells.view(1).levels) {
+    if (level.boxes == 0) continue;
+    Box<D> whole;
+    whole.min.fill(-infinity);
+    whole.max.fill(infinity);
+    std::vector<Box<D>> parts = {whole};
+    std::string size;
+    for (int axis = 0; axis < D; ++axis) {
+      const core::CellAxis& along = level.axes[axis];
+      size += (axis == 0 ? "" : " x ") + algorithm::three_digits(1 / along.per_unit);
+      for (Box<D> part : std::exchange(parts, {})) {
+        for (std::uint32_t i = 0; i < along.count(); ++i) {
+          part.max[axis] = i + 1 < along.count() ? core::border_before(along, i + 1) : infinity;
+          parts.push_back(part);
+          part.min[axis] = part.max[axis];
+        }
+      }
+    }
+    kept.caption += (kept.caption.empty() ? "kept: " : ", ") + algorithm::counted(parts.size(), "cell") +
+                    (parts.size() > 1 ? " of " + size : "") + " with " + std::to_string(level.boxes) +
+                    (level.boxes == 1 ? " box" : " boxes");
+    kept.levels.insert(kept.levels.begin(), std::move(parts));
+  }
+  return kept;
+}
+
+/// What a search lays over the boxes; if `follows`, what a tracker keeps, where that is cells.
+template <int D>
+void outline_of(std::size_t count, bool follows) {
   const std::vector<Box<D>> boxes = boxes_of<D>(count);
-  const Outline<D> laid_out = outline<D, float>(input.text, boxes);
+  const Spec spec(input.text);
+  const bool keeps_cells = follows && spec.name == "grid";
+  const Outline<D> laid_out =
+      keeps_cells
+          ? kept_cells<D>(Settings(spec, find_algorithm("grid")->tunables).optional_number("cell"), boxes)
+          : outline<D, float>(spec, boxes);
   answers.text = laid_out.kind + "\n" + laid_out.caption;
   answers.numbers.push_back(laid_out.swept_axis);
   for (const auto& level : laid_out.levels) {
@@ -378,8 +423,8 @@ BROADSIDE_EXPORT(find_pairs)(std::uint32_t count, int dimension)->int {
   return answer_in(dimension, [&]<int D>() { find<D>(count); });
 }
 
-BROADSIDE_EXPORT(lay_out)(std::uint32_t count, int dimension)->int {
-  return answer_in(dimension, [&]<int D>() { outline_of<D>(count); });
+BROADSIDE_EXPORT(lay_out)(std::uint32_t count, int dimension, int follows)->int {
+  return answer_in(dimension, [&]<int D>() { outline_of<D>(count, follows != 0); });
 }
 
 /// Creates a tracker with the algorithm specified by the text; returns its number.

@@ -56,14 +56,20 @@ class LoadedEngine implements Engine {
     return search(this.#plain, spec, boxes, dimension);
   }
 
+  time(spec: string, boxes: Float32Array, dimension: 2 | 3, runs: number): number {
+    this.#plain.putText(spec);
+    const count = this.#plain.putBoxes(boxes, dimension);
+    return this.#plain.call((exports) => exports.find_pairs(count, dimension), runs);
+  }
+
   observe(spec: string, boxes: Float32Array, dimension: 2 | 3): Observation {
     return { ...search(this.#observing, spec, boxes, dimension), tests: this.#observing.morePairs() };
   }
 
-  outline(spec: string, boxes: Float32Array, dimension: 2 | 3): Outline {
+  outline(spec: string, boxes: Float32Array, dimension: 2 | 3, follows = false): Outline {
     this.#plain.putText(spec);
     const count = this.#plain.putBoxes(boxes, dimension);
-    this.#plain.call((exports) => exports.lay_out(count, dimension));
+    this.#plain.call((exports) => exports.lay_out(count, dimension, Number(follows)));
     const [kind = "", caption = ""] = this.#plain.text().split("\n");
     const [sweptAxis = -1, ...sizes] = this.#plain.numbers();
     const all = this.#plain.boxes();

@@ -92,7 +92,10 @@ export interface Engine {
    * library.
    */
   observe(spec: string, boxes: Float32Array, dimension: 2 | 3): Observation;
-  outline(spec: string, boxes: Float32Array, dimension: 2 | 3): Outline;
+  /** The milliseconds of `runs` searches together. */
+  time(spec: string, boxes: Float32Array, dimension: 2 | 3, runs: number): number;
+  /** What a search lays over the boxes; if `follows`, the cells that a tracker with `grid` keeps. */
+  outline(spec: string, boxes: Float32Array, dimension: 2 | 3, follows?: boolean): Outline;
   tracker(spec: string, dimension: 2 | 3): Tracker;
   /** The algorithm that `auto` chooses for these boxes, and the reason. */
   advise(boxes: Float32Array, dimension: 2 | 3): string;
@@ -107,10 +110,10 @@ export interface Engine {
 }
 
 /**
- * State of a search by one of the draft's algorithms. Arrays are shared between steps: do not
+ * State of a search by one of the paper's algorithms. Arrays are shared between steps: do not
  * change them. `cells` and `nodes` are computed on access, so read them once.
  */
-export type StepState = BruteForceState | GridState | SweepState | QuadtreeState;
+export type StepState = BruteForceState | GridState | SweepState | QuadtreeState | BvhState;
 
 /** Algorithm 1: the indices of the two loops; -1 before a loop has begun. */
 export interface BruteForceState {
@@ -174,6 +177,22 @@ export interface QuadtreeState {
   point?: readonly [x: number, y: number];  // as for the grid: the leaf that contains it reports the pair
 }
 
+export interface BvhNode {
+  /** The bounds of all boxes below it. */
+  box: readonly [left: number, top: number, right: number, bottom: number];
+  children: readonly number[];  // indices in `nodes`; a leaf has none
+  boxes: readonly number[];     // ids, in a leaf
+}
+
+/** Algorithm 12, with small leaves, and with pairs of nodes instead of lists of them. */
+export interface BvhState {
+  kind: "bvh";
+  size: number;                  // maximum number of boxes of a leaf, and of children of a node
+  order: readonly number[];      // ids, leaf by leaf; empty until they are sorted
+  nodes: readonly BvhNode[];     // a node's children come before it
+  current: readonly number[];    // the node being made, or the two being compared
+}
+
 export interface Step {
   line: number;  // the current line: an index into the listing
   text: string;  // what happens in this step, with the boxes named by id
@@ -193,6 +212,7 @@ export type StepAlgorithm = StepState["kind"];
 export interface StepOptions {
   cell?: number;      // grid: the side of a cell
   capacity?: number;  // quadtree: maximum number of boxes of a leaf before it splits; default 8
+                      // bvh: of boxes of a leaf and of children of a node; default 16
 }
 
 export interface Steps {

@@ -24,8 +24,8 @@ export const broadPhase: Lesson = {
     task: <p>Both panels search by brute force. Let the second one take another algorithm that finds <b>the same pairs</b>{" "}
       with <b>less than a tenth</b> of the tests.</p>,
     control: () => <PanelAlgorithm panel={1} label="The second panel's algorithm" />,
-    hint: <p>Not every algorithm in the list will do: with so few boxes, <code>auto</code> itself uses brute
-      force.</p>,
+    hint: <p>Brute force appears twice in the list, as the library's and as the paper's. The other algorithms avoid
+      most tests, each by another idea: the next lessons have them.</p>,
     check({ shown }) {
       const brute = shown.panels.find(({ spec }) => spec === "brute_force");
       const other = shown.panels.find(({ spec }) => spec !== "brute_force");

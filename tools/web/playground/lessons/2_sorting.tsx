@@ -3,17 +3,21 @@ import { TunableField } from "../ui/algorithm_card.tsx";
 import { plural } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
-const maxTests = 1500;
+const count = 40;
+
+/** Most tests of a good sweep; along the wrong axis there are some 700. */
+const maxTests = 150;
+
+const along = (name: "street" | "tower") => ({ scene: scene(name, count), panels: panels("sweep_and_prune:axis=x:axes=1") });
 
 export const sorting: Lesson = {
   title: "Why sorting helps",
   drawsShadows: true,
-  start: { scene: scene("tower", 200), panels: panels("sweep_and_prune:axis=x:axes=1") },
+  start: along("tower"),
   tries: [
-    { label: "A street", state: { scene: scene("street", 200), panels: panels("sweep_and_prune:axis=x:axes=1") } },
-    { label: "Its tests of a box", state: {
-      scene: scene("street", 200), panels: panels("sweep_and_prune:axis=x:axes=1"), selected: 20 } },
-    { label: "A tower", state: { scene: scene("tower", 200), panels: panels("sweep_and_prune:axis=x:axes=1") } },
+    { label: "A street", state: along("street") },
+    { label: "Its tests of a box", state: { ...along("street"), selected: 20 } },
+    { label: "A tower", state: along("tower") },
   ],
   text: (
     <>
@@ -25,15 +29,15 @@ export const sorting: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>Sweep the tower of 200 boxes with fewer than {maxTests} tests, without taking another algorithm.</p>,
+    task: <p>Sweep the tower of {count} boxes with fewer than {maxTests} tests, without taking another algorithm.</p>,
     control: () => <TunableField panel={0} name="axis" />,
     hint: <p>Choose the axis along which the boxes' shadows overlap least.</p>,
     check({ shown, state }) {
       const panel = shown.panels[0];
       if (panel === undefined || nameOf(panel.spec) !== "sweep_and_prune")
         return { done: false, text: "Keep sweep_and_prune in the first panel." };
-      if (state.scene.name !== "tower" || state.scene.count < 200)
-        return { done: false, text: "This is about the tower, with its 200 boxes." };
+      if (state.scene.name !== "tower" || state.scene.count < count)
+        return { done: false, text: `This is about the tower, with its ${count} boxes.` };
       const { tests } = panel.statistics;
       return { done: panel.error === undefined && tests < maxTests, text: `The sweep makes ${plural(tests, "test")}.` };
     },

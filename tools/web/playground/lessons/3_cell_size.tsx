@@ -13,7 +13,7 @@ export const cellSize: Lesson = {
     { label: "Large cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=60") } },
     { label: "Tiny cells", state: { scene: scene("drift", 500), panels: panels("paper_grid:cell=0.6") } },
     { label: "Sizes that differ", state: {
-      scene: scene("drift", 500, { ratio: 100 }), panels: panels("paper_grid:cell=5", "grid") } },
+      scene: scene("drift", 500, { ratio: 20 }), panels: panels("paper_grid:cell=5", "grid:cell=8") } },
   ],
   text: (
     <>
@@ -23,8 +23,9 @@ export const cellSize: Lesson = {
         sides it gets steep.</p>
       <p>A pair that shares several cells would be found in each. It is reported in one alone: the cell that holds the
         greater of the two minima on each axis, the <b>reference point</b>.</p>
-      <p>Where sizes differ much, no cell suits all. The library's <code>grid</code> therefore keeps a box in one place,
-        and cuts one axis only: long rows, each swept.</p>
+      <p>Where sizes differ much, no cell suits all. The library's <code>grid</code> therefore cuts one axis only, into
+        rows as long as the world, and sweeps each row. So a long box is in few rows. Left to itself, it takes rows of at
+        least some thirty boxes, and a single one for a few hundred.</p>
     </>
   ),
   exercise: {

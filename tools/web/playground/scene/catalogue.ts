@@ -44,7 +44,7 @@ const lines: SceneEntry[] = [
     summary: "Boxes along x. A sweep along x meets few at a time.",
   },
   {
-    name: "tower", title: "A tower", dimension: 2, count: 200, knobs: false,
+    name: "tower", title: "A tower", dimension: 2, count: 40, knobs: false,
     summary: "Boxes above each other. On x nearly all of them overlap, so a sweep along x compares nearly all.",
   },
 ];

@@ -7,7 +7,7 @@ const [long, wide] = [160, 10];
 
 export function line(along: 0 | 1, count: number, seed: number): Scene {
   const side = Math.max(0.02, 1.1 * long / count);
-  // A street has the usual width; a tower is hardly wider than a box.
+  // A street has the usual width; a tower is hardly wider than a box, and its boxes are flat storeys.
   const narrow = along === 0 ? wide : 1.5 * side;
   const bounds = along === 0
     ? [0, -long * 0.25, long, narrow + long * 0.25] : [-long * 0.6, 0, long * 0.6, long];
@@ -20,7 +20,8 @@ export function line(along: 0 | 1, count: number, seed: number): Scene {
         const way = randomAt(seed, box, 1) * long + 0.6 * side * Math.sin(time * (1 + randomAt(seed, box, 2)) + box);
         const across = narrow * randomAt(seed, box, 3);
         const [x, y] = along === 0 ? [way, across] : [across, way];
-        boxes.set([x - half, y - 2 * half, x + half, y + 2 * half], 4 * box);
+        const [w, h] = along === 0 ? [half, 2 * half] : [9 * half, half];
+        boxes.set([x - w, y - h, x + w, y + h], 4 * box);
       }
       return boxes;
     },

@@ -16,6 +16,8 @@ export interface State {
   panel: number;
   structure: boolean;
   overlaps: boolean;
+  /** Whether y grows upwards in the picture, as on a map; otherwise downwards, as on a screen. */
+  up: boolean;
   selected: number;
   playing: boolean;
   /** Scene seconds per second. */
@@ -38,6 +40,7 @@ export const defaultState: State = {
   panel: 0,
   structure: true,
   overlaps: true,
+  up: false,
   selected: -1,
   playing: true,
   pace: 1,

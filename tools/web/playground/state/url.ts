@@ -67,6 +67,7 @@ export function writeState(state: State, time: number): string {
   put("panel", String(state.panel), "0");
   put("structure", state.structure ? "1" : "0", "1");
   put("overlaps", state.overlaps ? "1" : "0", "1");
+  put("up", state.up ? "1" : "0", "0");
   put("box", String(state.selected), "-1");
   put("paused", state.playing ? "0" : "1", "0");
   put("pace", short(state.pace), "1");
@@ -99,7 +100,7 @@ export function readState(search: string, hash: string): { state: State; time: n
   for (const [name, [min, max]] of Object.entries(knobNames) as [keyof Knobs, [number, number]][])
     knobs[name] = numberOf(query.get(name), defaultKnobs[name], min, max);
   const panels = readPanels(query.get("a") ?? "");
-  const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree"] as const;
+  const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"] as const;
   const whole = (name: string, defaultValue: number, min: number, max: number): number =>
     Math.round(numberOf(query.get(name), defaultValue, min, max));
   const name = query.get("scene") ?? usual.scene.name;
@@ -109,7 +110,7 @@ export function readState(search: string, hash: string): { state: State; time: n
     time: numberOf(query.get("t"), 0, 0, 1e6),
     state: {
       mode: query.has("lesson") ? "lesson" : modes.find((mode) => mode === query.get("mode")) ?? usual.mode,
-      lesson: whole("lesson", 1, 1, 5) - 1,
+      lesson: whole("lesson", 1, 1, 7) - 1,
       scene: {
         name,
         count: whole("n", start.count, 1, maxBoxes),
@@ -121,6 +122,7 @@ export function readState(search: string, hash: string): { state: State; time: n
       panel: whole("panel", 0, 0, shownPanels.length - 1),
       structure: flag("structure", true),
       overlaps: flag("overlaps", true),
+      up: flag("up", false),
       selected: whole("box", -1, -1, 2 * maxBoxes),
       playing: !flag("paused", false),
       pace: numberOf(query.get("pace"), 1, 0.05, 10),

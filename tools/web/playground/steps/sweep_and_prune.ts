@@ -22,11 +22,14 @@ const listing = new Listing<Line | "test" | "report">([
   ["", "end function"],
   ["", ""],
   ["prune", "function Prune(F, e)"],
-  ["", "  for each f in F do"],
-  ["", "    if f.MAXX < e.MINX then"],
-  ["remove", "      F.Remove(f)"],
+  ["", "  i <- 0"],
+  ["", "  while i < F.length do"],
+  ["", "    if F[i].MAXX < e.MINX then"],
+  ["remove", "      F.Remove(i): the last of F takes its place"],
+  ["", "    else"],
+  ["", "      i <- i + 1"],
   ["", "    end if"],
-  ["", "  end for"],
+  ["", "  end while"],
   ["", "end function"],
 ]);
 

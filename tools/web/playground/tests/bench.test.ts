@@ -8,6 +8,7 @@ import { Mark, type Reply, type Setup, type Shown } from "../bench/protocol.ts";
 import { reasons } from "../bench/reasons.ts";
 import { sceneEntries } from "../scene/catalogue.ts";
 import { defaultKnobs } from "../scene/drift.ts";
+import { median, RecentTimes, timeOf } from "../bench/times.ts";
 import { asText, pairsByDefinition } from "./law.ts";
 import { loadEngine } from "./naive_engine.ts";
 
@@ -83,6 +84,28 @@ test("a file is a scene of its frames, and a link without it says so", async () 
   await take({ kind: "setup", setup: file });
   assert.equal((await frame(0)).pairs.length, 0);
   assert.equal((await frame(0.06)).pairs.length, 2);
+});
+
+test("with a clock of 0.1 ms, a search of a microsecond has its time, and not 0", async (context) => {
+  let now = 0;
+  context.mock.method(performance, "now", () => Math.floor((now += 1e-4) * 10) / 10);
+  const engine = {
+    ...await loadEngine(),
+    time: (_: string, __: Float32Array, ___: number, runs: number) => {
+      const begin = performance.now();
+      now += runs * 1e-3;
+      return performance.now() - begin;
+    },
+  };
+  const time = timeOf(engine, "grid", new Float32Array(4), 2, 5);
+  assert.ok(Math.abs(time - 1e-3) < 1e-4, `${time} ms`);
+});
+
+test("frames that the clock did not see have no time, and some of them a mean", () => {
+  const times = new RecentTimes();
+  assert.ok(Number.isNaN(times.add(0)));
+  assert.equal(times.add(0.1), 0.05);
+  assert.equal(median([3, 1, 2]), 2);
 });
 
 test("brute force is refused where it would stop the page", () => {

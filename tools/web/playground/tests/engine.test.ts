@@ -112,6 +112,14 @@ test("an outline has the boxes of each level", () => {
   assert.equal(engine.outline("sweep_and_prune:axis=y:axes=1", boxes, 2).sweptAxis, 1);
 });
 
+test("of a tracker with grid, the outline is of the cells that it keeps", () => {
+  const boxes = randomBoxes(4, 600, { dimension: 2, places: 200, maxExtent: 4 });
+  const [search, kept] = [engine.outline("grid", boxes, 2), engine.outline("grid", boxes, 2, true)];
+  assert.match(kept.caption, /^kept: \d+ cells of .* with \d+ boxes/);
+  assert.ok(kept.levels.at(-1)!.length > 4 * search.levels.at(-1)!.length);
+  assert.deepEqual(engine.outline("bvh", boxes, 2, true), engine.outline("bvh", boxes, 2));
+});
+
 test("auto says what it takes and why", () => {
   assert.match(engine.advise(randomBoxes(1, 20, { dimension: 2, places: 50, maxExtent: 3 }), 2),
                /^brute_force, since 20 boxes are so few/);

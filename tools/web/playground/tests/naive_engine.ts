@@ -52,6 +52,11 @@ export async function loadEngine(): Promise<Engine> {
   return {
     algorithms: () => algorithms,
     find: (_, boxes, dimension): Search => naive(boxes, dimension),
+    time(_, boxes, dimension, runs) {
+      const begin = performance.now();
+      for (let run = 0; run < runs; ++run) naive(boxes, dimension);
+      return performance.now() - begin;
+    },
     observe: (_, boxes, dimension) => naive(boxes, dimension),
     outline: (): Outline => ({ kind: "", caption: "", sweptAxis: -1, levels: [] }),
     tracker: (_, dimension) => {

@@ -17,7 +17,7 @@ test("an address holds the whole state", () => {
     scene: { name: "huge_floor", count: 1234, seed: 7, knobs: { ratio: 20, clustering: 0.5, moving: 0.25, speed: 2 } },
     edits: [edit, { ...edit, box: 1300, width: -1 }],
     panels: [{ spec: "grid:cell=4:update=follow", follow: true }, { spec: "paper_quadtree:capacity=3", follow: false }],
-    panel: 1, structure: false, overlaps: false, selected: 12, playing: false, pace: 0.5, lesson: 0,
+    panel: 1, structure: false, up: true, overlaps: false, selected: 12, playing: false, pace: 0.5, lesson: 0,
     steps: { algorithm: "quadtree", at: 17, count: 9, cell: 1.5, capacity: 2 },
     embed: true,
   };
@@ -51,7 +51,7 @@ test("what an address says wrongly is as usual, and numbers keep to their range"
   assert.equal(state.scene.knobs.ratio, defaultState.scene.knobs.ratio);
   assert.deepEqual(state.panels, defaultState.panels);
   assert.deepEqual(state.edits, []);
-  assert.equal(state.lesson, 4);
+  assert.equal(state.lesson, 6);
   assert.equal(state.pace, 1);
 });
 

@@ -4,10 +4,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { loadEngine } from "../engine/engine.ts";
-import type { QuadtreeState, GridState, StepAlgorithm, StepOptions, SweepState } from "../engine/types.ts";
+import type { BvhState, QuadtreeState, GridState, StepAlgorithm, StepOptions, SweepState } from "../engine/types.ts";
 import { randomAt } from "../scene/random.ts";
 import { steps } from "../steps/index.ts";
 import { named, randomBoxes } from "./boxes.ts";
+import { pairsByDefinition } from "./law.ts";
 
 const engine = await loadEngine();
 
@@ -96,6 +97,31 @@ test("sweep_and_prune: the active list holds the boxes that the line still meets
   }
 });
 
+test("bvh: each box is in one leaf within the bounds of all nodes above, and all pairs are found", () => {
+  for (let seed = 0; seed < 60; ++seed) {
+    const boxes = sceneOf(seed);
+    const told = steps("bvh", boxes, { capacity: 2 + seed % 3 });
+    assert.deepEqual(told.pairs.map(([a, b]) => `${a} ${b}`).sort(), pairsByDefinition(boxes, 2));
+    assert.equal(new Set(told.pairs.map(String)).size, told.pairs.length);
+    if (told.steps.length === 0) continue;
+    const { nodes } = told.steps.at(-1)!.state as BvhState;
+    const held = nodes.flatMap((node) => node.boxes);
+    assert.deepEqual([...held].sort((a, b) => a - b), [...new Set(held)].sort((a, b) => a - b));
+    for (const { box, boxes: ids, children } of nodes) {
+      const below = [...ids.map((id) => [...boxes.subarray(4 * id, 4 * id + 4)]), ...children.map((child) => nodes[child]!.box)];
+      for (const [left, top, right, bottom] of below as number[][])
+        assert.ok(box[0] <= left! && box[1] <= top! && box[2] >= right! && box[3] >= bottom!);
+    }
+  }
+});
+
+test("bvh: each step is at a line of the listing, and few boxes are tested", () => {
+  const boxes = randomBoxes(3, 40, { dimension: 2, places: 400, maxExtent: 9 });
+  const { listing, steps: all, tests } = steps("bvh", boxes, { capacity: 3 });
+  for (const step of all) assert.notEqual(listing[step.line]?.trim() ?? "", "");
+  assert.ok(tests < 40 * 39 / 4, `${tests} tests`);
+});
+
 test("quadtree: boxes end in the leaves, as many as the C++ has references", () => {
   for (let seed = 0; seed < 40; ++seed) {
     const boxes = sceneOf(seed);
@@ -120,5 +146,6 @@ test("what is no box is refused", () => {
   assert.throws(() => steps("grid", Float32Array.from([1, 1, 0, 2])), /box 0 is \[1, 0\] x \[1, 2\]; expected min <= max/);
   assert.throws(() => steps("grid", new Float32Array(5)), /5 numbers of boxes; expected a multiple of 4/);
   assert.throws(() => steps("grid", few, { cell: 0 }), /cell is 0; expected a number above 0/);
+  assert.throws(() => steps("bvh", few, { capacity: 1 }), /capacity is 1; expected a whole number of at least 2/);
   assert.throws(() => steps("quadtree", few, { capacity: 0 }), /capacity is 0; expected a whole number of at least 1/);
 });

@@ -3,8 +3,9 @@ import { useSignalEffect } from "@preact/signals";
 import { useRef } from "preact/hooks";
 
 import { held, shown, state } from "../state/store.ts";
+import { between } from "./numbers.ts";
 import type { Stage } from "./stage.ts";
-import { view } from "./view.ts";
+import { camera } from "./view.ts";
 
 /** The largest of the boxes near the middle. */
 function draggable(boxes: Float32Array, bounds: ArrayLike<number>): number {
@@ -22,21 +23,31 @@ function draggable(boxes: Float32Array, bounds: ArrayLike<number>): number {
 export function DragHint({ stage }: { stage: Stage }) {
   const element = useRef<HTMLParagraphElement>(null);
   const box = useRef(-1);
+  const scene = useRef("");
   useSignalEffect(() => {
     const now = shown.value;
-    void [view.value, stage.layout.value];
+    void [camera.value, stage.layout.value];
     const { mode, edits, embed, selected } = state.value;
     const hint = element.current;
     if (hint === null) return;
     hint.hidden = now === null || now.dimension !== 2 || mode !== "play" || embed || edits.length > 0 || selected >= 0 ||
       held.value !== null;
     if (hint.hidden || now === null) return;
-    if (box.current < 0 || 4 * box.current >= now.boxes.length) box.current = draggable(now.boxes, now.bounds);
+    if (scene.current !== now.scene.name || 4 * box.current >= now.boxes.length) {
+      scene.current = now.scene.name;
+      box.current = draggable(now.boxes, now.bounds);
+    }
     hint.dataset["box"] = String(box.current);
     const place = stage.rectangle(0, box.current);
     hint.hidden = place === undefined;
-    if (place !== undefined)
-      hint.style.transform = `translate(${Math.round(place.x + place.width / 2)}px, ${Math.round(place.y)}px)`;
+    const around = hint.parentElement;
+    if (place === undefined || around === null) return;
+    // The label stays in the picture; its arrow points to the box.
+    const middle = between(place.x + place.width / 2, 0, around.clientWidth);
+    const x = between(middle, hint.offsetWidth / 2 + 4, around.clientWidth - hint.offsetWidth / 2 - 4);
+    const y = between(place.y, hint.offsetHeight + 12, around.clientHeight);
+    hint.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+    hint.style.setProperty("--arrow", `${Math.round(middle - x)}px`);
   });
   return <p ref={element} class="drag-hint" hidden aria-hidden="true">Drag this box</p>;
 }

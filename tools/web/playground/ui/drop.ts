@@ -4,7 +4,8 @@ import { batch, signal } from "@preact/signals";
 import type { Opened } from "../bench/protocol.ts";
 import { fileScene } from "../scene/catalogue.ts";
 import { bench } from "../state/client.ts";
-import { changeScene, chooseScene, fileName, patch, problem, say } from "../state/store.ts";
+import { defaultState } from "../state/state.ts";
+import { changeScene, chooseScene, fileName, patch, problem, say, state } from "../state/store.ts";
 import { plural } from "./numbers.ts";
 import { wholeView } from "./view.ts";
 
@@ -23,8 +24,10 @@ export async function openFile(file: File): Promise<void> {
 export function showFile({ name, boxes, frames, warning }: Opened): void {
   batch(() => {
     fileName.value = name;
-    patch({ mode: "play" });
+    patch({ mode: "play", up: true });
     chooseScene(fileScene);
+    // The settings of the opening scene do not suit other boxes.
+    if (state.value.panels === defaultState.panels) patch({ panels: [{ spec: "auto", follow: false }] });
     // Another file of the same name is another scene.
     changeScene({ count: boxes, seed: Math.floor(performance.now()) });
     wholeView();

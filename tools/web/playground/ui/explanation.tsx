@@ -1,4 +1,4 @@
-// The selected box, explained beside it: the boxes that it was compared with, and why the others
+// The selected box, explained in the picture: the boxes that it was compared with, and why the others
 // were not.
 import { useSignalEffect } from "@preact/signals";
 import type { RefObject } from "preact";
@@ -7,14 +7,10 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import { patch, shown, state, told } from "../state/store.ts";
 import { grouped, plural } from "./numbers.ts";
 import type { Stage } from "./stage.ts";
-import { view } from "./view.ts";
+import { camera } from "./view.ts";
 
-/** Pixels between a box and its explanation. */
-const space = 14;
-
-function between(value: number, min: number, max: number): number {
-  return Math.max(min, Math.min(max, value));
-}
+/** Pixels between the explanation and the picture's border. */
+const space = 8;
 
 interface Props {
   at: number;
@@ -25,19 +21,17 @@ interface Props {
 export function Explanation({ at, stage, window }: Props) {
   const element = useRef<HTMLElement>(null);
   const { selected, panels } = state.value;
-  // To the right of the box or, without room there, to its left. On a narrow page, the style sheet
-  // puts it below the picture.
+  // At the side of the picture away from the box, so that the middle stays free. On a narrow page,
+  // the style sheet puts it below the picture.
   const place = (): void => {
-    void [shown.value, view.value, stage.layout.value];
+    void [shown.value, camera.value, stage.layout.value];
     const [note, around] = [element.current, window.current];
     const box = stage.rectangle(at, state.value.selected);
     if (note === null || around === null || box === undefined) return;
-    const right = box.x + box.width + space;
-    const x = right + note.offsetWidth <= around.clientWidth ? right : box.x - space - note.offsetWidth;
-    const y = box.y + (box.height - note.offsetHeight) / 2;
+    const isLeft = box.x + box.width / 2 < around.clientWidth / 2;
+    const x = isLeft ? around.clientWidth - note.offsetWidth - space : space;
     note.style.transform =
-      `translate(${Math.round(around.offsetLeft + between(x, 0, around.clientWidth - note.offsetWidth))}px, ` +
-      `${Math.round(around.offsetTop + between(y, 0, around.clientHeight - note.offsetHeight))}px)`;
+      `translate(${Math.round(around.offsetLeft + Math.max(0, x))}px, ${around.offsetTop + space}px)`;
   };
   useSignalEffect(place);
   useLayoutEffect(place);

@@ -56,8 +56,9 @@ export function stepTime(seconds: number): void {
 
 function arrow(dx: number, dy: number): void {
   const flat = shown.value?.dimension === 2;
-  if (flat && state.value.selected >= 0) moveSelected(dx, dy);
-  else if (flat) view.value = { ...view.value, x: view.value.x + 0.05 * dx, y: view.value.y + 0.05 * dy };
+  const along = state.value.up ? -dy : dy;
+  if (flat && state.value.selected >= 0) moveSelected(dx, along);
+  else if (flat) view.value = { ...view.value, x: view.value.x + 0.05 * dx, y: view.value.y + 0.05 * along };
   else view.value = { ...view.value, turn: view.value.turn - 0.1 * dx, tilt: Math.min(1.5, Math.max(-1.5, view.value.tilt - 0.1 * dy)) };
 }
 

@@ -61,8 +61,9 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
     const judge = (): void => {
       // The results must be those of the current settings.
       const now = shown.value;
-      const specs = state.value.panels.map(({ spec }) => spec).join(";");
-      if (now === null || now.panels.map(({ spec }) => spec).join(";") !== specs) return;
+      const { panels, scene } = state.value;
+      const specs = (all: readonly { spec: string }[]): string => all.map(({ spec }) => spec).join(";");
+      if (now === null || specs(now.panels) !== specs(panels) || JSON.stringify(now.scene) !== JSON.stringify(scene)) return;
       const next = lesson.exercise.check({ state: state.value, shown: now, duel: duel.value });
       if (next.text !== verdict.value?.text || next.done !== verdict.value.done) verdict.value = next;
       if (next.done && !done.value) {

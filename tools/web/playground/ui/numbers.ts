@@ -1,4 +1,8 @@
-// Number formats of the page.
+// Numbers and their formats on the page.
+
+export function between(value: number, min: number, max: number): number {
+  return Math.max(min, Math.min(max, value));
+}
 
 export function grouped(value: number): string {
   return Math.round(value).toLocaleString("en");
@@ -10,10 +14,12 @@ function digits(value: number): string {
   return value.toPrecision(3).replace(/\.?0+$/, "");
 }
 
+/** A dash for no time: NaN, or 0 by a clock too coarse for it. */
 export function duration(milliseconds: number): string {
+  if (!(milliseconds > 0)) return "–";
   if (milliseconds >= 1000) return `${digits(milliseconds / 1000)} s`;
   if (milliseconds >= 1) return `${digits(milliseconds)} ms`;
-  return `${digits(Math.max(0, milliseconds * 1000))} µs`;
+  return `${digits(milliseconds * 1000)} µs`;
 }
 
 export function bytes(count: number): string {

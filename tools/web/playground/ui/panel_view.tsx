@@ -68,7 +68,7 @@ function countsOf(result: PanelResult): [name: string, value: string, hint: stri
     ["tests", grouped(statistics.tests), "Pairs of boxes that were compared"],
     ["pairs", grouped(result.pairs), "Pairs of boxes that overlap"],
     ["references", grouped(statistics.references), "Entries of boxes in cells, nodes or lists"],
-    ["time", duration(result.milliseconds), "The fastest of the last frames, in this browser"],
+    ["time", duration(result.milliseconds), "Of a search or an update, in this browser; the median of the last frames"],
     ...(follows ? [
       ["begun, ended", result.bytes > 0 ? `${grouped(result.begun)}, ${grouped(result.ended)}` : "–",
         "Pairs that began and ended in this frame"],

@@ -6,7 +6,7 @@ import { pickFlat, pickSolid } from "../draw/pick.ts";
 import { clock, count, edit, held, patch, recording, say, shown, state } from "../state/store.ts";
 import type { Stage } from "./stage.ts";
 import { tool } from "./tools.ts";
-import { view, zoomBy } from "./view.ts";
+import { camera, view, zoomBy } from "./view.ts";
 
 /** A held box's speed is measured over this time, in ms. */
 const memory = 90;
@@ -53,7 +53,7 @@ export class PointerInput {
 
   private world(event: MouseEvent): [number, number] {
     const now = shown.value!;
-    return toWorld(flatCamera(now.bounds, this.stage.place(this.panel)!, view.value), ...this.local(event));
+    return toWorld(flatCamera(now.bounds, this.stage.place(this.panel)!, camera.value), ...this.local(event));
   }
 
   private boxAt(event: PointerEvent | MouseEvent): number {
@@ -61,7 +61,7 @@ export class PointerInput {
     const place = this.stage.place(this.panel);
     if (now === null || place === undefined) return -1;
     if (now.dimension === 2) {
-      const { scale } = flatCamera(now.bounds, place, view.value);
+      const { scale } = flatCamera(now.bounds, place, camera.value);
       const fat = (event as PointerEvent).pointerType === "touch" ? 14 : 5;
       return pickFlat(now.boxes, ...this.world(event), fat / scale);
     }
@@ -136,10 +136,10 @@ export class PointerInput {
       return;
     }
     if (view.value.zoom === 1 && event.pointerType === "touch") return;
-    const { scale } = flatCamera(now.bounds, place, view.value);
+    const { scale, down } = flatCamera(now.bounds, place, camera.value);
     const [x0, y0, x1, y1] = now.bounds as [number, number, number, number];
     view.value = {
-      ...view.value, x: view.value.x - dx / scale / (x1 - x0), y: view.value.y - dy / scale / (y1 - y0),
+      ...view.value, x: view.value.x - dx / scale / (x1 - x0), y: view.value.y - down * dy / scale / (y1 - y0),
     };
   }
 

@@ -6,7 +6,7 @@ import type { Drawn, Painter, Painting, Place } from "../draw/painting.ts";
 import { WebglPainter } from "../draw/webgl_painter.ts";
 import { shown, state } from "../state/store.ts";
 import { palette } from "./themes.ts";
-import { view } from "./view.ts";
+import { camera } from "./view.ts";
 
 /** A finer resolution than this costs much and shows little. */
 const maxRatio = 2;
@@ -38,7 +38,7 @@ export class Stage {
     });
     effect(() => {
       void palette.value;
-      void view.value;
+      void camera.value;
       this.onChange();
     });
   }
@@ -101,7 +101,7 @@ export class Stage {
     if (now === null) return undefined;
     const { dimension, bounds, boxes, marks, overlaps, panels } = now;
     return {
-      dimension, bounds, boxes, marks, overlaps, view: view.value, palette: palette.value,
+      dimension, bounds, boxes, marks, overlaps, view: camera.value, palette: palette.value,
       panels: this.places.slice(0, state.value.panels.length).map((place, at) => {
         const panel = panels[at];
         const selection = panel?.selection;

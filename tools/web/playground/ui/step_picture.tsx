@@ -1,5 +1,5 @@
 // State of a search by one of the draft's algorithms, drawn over its boxes.
-import type { GridState, QuadtreeState, Step, StepState, SweepState } from "../engine/types.ts";
+import type { BvhState, GridState, QuadtreeState, Step, StepState, SweepState } from "../engine/types.ts";
 import { stepWorld } from "../scene/step_boxes.ts";
 
 const margin = 0.4;
@@ -59,11 +59,26 @@ function Quadtree({ tree }: { tree: QuadtreeState }) {
   );
 }
 
+function Bvh({ tree }: { tree: BvhState }) {
+  return (
+    <g>
+      {tree.nodes.map(({ box: [left, top, right, bottom], children }, at) =>
+        <rect key={at} class={`cell ${tree.current.includes(at) ? "current" : ""} ${children.length === 0 ? "leaf" : ""}`}
+          x={left} y={top} width={right - left} height={bottom - top} />)}
+      {tree.current.map((at) => {
+        const [left, top] = tree.nodes[at]!.box;
+        return <text key={at} x={left + 0.1} y={top - 0.1} class="node-name">node {at}</text>;
+      })}
+    </g>
+  );
+}
+
 function Structure({ state }: { state: StepState }) {
   switch (state.kind) {
     case "grid": return <Grid grid={state} />;
     case "sweep_and_prune": return <Sweep sweep={state} />;
     case "quadtree": return <Quadtree tree={state} />;
+    case "bvh": return <Bvh tree={state} />;
     case "brute_force": return null;
   }
 }

@@ -21,6 +21,17 @@ export function StepStateText({ state }: { state: StepState }) {
           </ol>
         </>
       );
+    case "bvh":
+      return (
+        <>
+          <p>{state.nodes.length === 0 ? "No nodes yet." : `${state.nodes.length} nodes; a leaf holds up to ${state.size} boxes, ` +
+            `another node up to ${state.size} nodes.`}</p>
+          {state.current.map((at) => {
+            const { boxes, children } = state.nodes[at]!;
+            return <p key={at}>Node {at}: {children.length > 0 ? `nodes ${children.join(", ")}` : `boxes ${boxes.join(", ")}`}.</p>;
+          })}
+        </>
+      );
     case "quadtree": {
       const leaves = state.nodes.filter(({ children }) => children === undefined).length;
       const node = state.nodes[state.current];

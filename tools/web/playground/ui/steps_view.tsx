@@ -1,4 +1,4 @@
-// A search of the draft's algorithms, step by step: forward and back, beside the listing.
+// A search of one of the paper's algorithms, step by step: forward and back, beside the listing.
 import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
@@ -17,6 +17,7 @@ const algorithms: readonly { value: StepAlgorithm; label: string }[] = [
   { value: "grid", label: "Grid" },
   { value: "sweep_and_prune", label: "Sweep and prune" },
   { value: "quadtree", label: "Quadtree" },
+  { value: "bvh", label: "BVH" },
 ];
 
 function change(part: Partial<State["steps"]>): void {
@@ -26,7 +27,8 @@ function change(part: Partial<State["steps"]>): void {
 export function StepsView() {
   const run = useComputed(() => {
     const { algorithm, count, cell, capacity } = state.value.steps;
-    const options: StepOptions = algorithm === "grid" && cell > 0 ? { cell } : algorithm === "quadtree" ? { capacity } : {};
+    const options: StepOptions = algorithm === "grid" && cell > 0 ? { cell } : algorithm === "quadtree" ? { capacity } :
+      algorithm === "bvh" ? { capacity: Math.max(2, capacity) } : {};
     const boxes = stepBoxes(count, state.value.scene.seed);
     return { boxes, key: JSON.stringify([algorithm, count, cell, capacity, state.value.scene.seed]), options };
   });
@@ -77,7 +79,8 @@ export function StepsView() {
     <div class="steps" onKeyDown={onKey}>
       <header class="intro">
         <h1>An algorithm, one step at a time</h1>
-        <p>The picture marks the current box or pair, and the paper's listing marks the current line. Step with the
+        <p>The picture marks the current box or pair, and the listing marks the current line: the paper's,
+          with its errors mended. Step with the
           buttons or the arrow keys.</p>
       </header>
       <div class="steps-left">
@@ -119,7 +122,8 @@ export function StepsView() {
             onChange={(value) => change({ count: Math.round(value), at: 0 })} />
           {algorithm === "grid" && <Slider label="Cell" value={cell} min={0} max={8} step={0.25}
             text={(value) => value === 0 ? "chosen by the algorithm" : String(value)} onChange={(value) => change({ cell: value, at: 0 })} />}
-          {algorithm === "quadtree" && <Slider label="Capacity" value={capacity} min={1} max={16} step={1}
+          {(algorithm === "quadtree" || algorithm === "bvh") && <Slider label="Capacity of a leaf"
+            value={algorithm === "bvh" ? Math.max(2, capacity) : capacity} min={algorithm === "bvh" ? 2 : 1} max={16} step={1}
             onChange={(value) => change({ capacity: Math.round(value), at: 0 })} />}
           <Slider label="Steps in a second" value={pace.value} min={0.5} max={30} logarithmic
             text={(value) => value.toFixed(1)} onChange={(value) => { pace.value = value; }} />

@@ -3,6 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import UPlot from "uplot";
 
+import type { Measured } from "../bench/protocol.ts";
 import { fileScene } from "../scene/catalogue.ts";
 import { bench } from "../state/client.ts";
 import { measured, measuring, shown, state, timesKey } from "../state/store.ts";
@@ -19,19 +20,18 @@ const inks: readonly (readonly [string, string])[] = [
 ];
 const dashes = [[], [6, 3], [2, 3], [8, 3, 2, 3], []];
 
-/** The series by spec; of several times for one number, the shortest counts. */
+/** The series by spec. */
 function table(): { specs: string[]; data: UPlot.AlignedData } {
   const bySpec = new Map<string, Map<number, number>>();
   for (const { spec, count, milliseconds } of measured.value) {
     const times = bySpec.get(spec) ?? new Map<number, number>();
     bySpec.set(spec, times);
-    times.set(count, Math.min(milliseconds, times.get(count) ?? Infinity));
+    times.set(count, milliseconds);
   }
   const xs = [...new Set([...bySpec.values()].flatMap((times) => [...times.keys()]))].sort((a, b) => a - b);
   return {
     specs: [...bySpec.keys()],
-    // A logarithm cannot show 0.
-    data: [xs, ...[...bySpec.values()].map((times) => xs.map((x) => Math.max(1e-4, times.get(x) ?? NaN) || null))],
+    data: [xs, ...[...bySpec.values()].map((times) => xs.map((x) => times.get(x) ?? null))],
   };
 }
 
@@ -61,18 +61,20 @@ function options(specs: readonly string[], width: number): UPlot.Options {
   };
 }
 
-/** The results on screen are measurements as well. */
+/** The results on screen are measurements as well: the latest for each number of boxes counts. */
 function noteShown(): void {
   const now = shown.value;
   if (now === null || state.value.scene.name === fileScene || state.value.edits.length > 0) return;
   const news = now.panels.filter((panel) =>
-    panel.error === undefined && !panel.late && !state.value.panels.some(({ spec, follow }) => spec === panel.spec && follow));
+    panel.error === undefined && !panel.late && panel.milliseconds > 0 && !state.value.panels.some(({ spec, follow }) => spec === panel.spec && follow));
   const before = measured.value;
+  const isOf = (one: Measured, spec: string): boolean => one.spec === spec && one.count === now.present;
   const better = news.filter(({ spec, milliseconds }) =>
-    !before.some((one) => one.spec === spec && one.count === now.present && one.milliseconds <= milliseconds));
+    !before.some((one) => isOf(one, spec) && (one.ofFrames !== true || one.milliseconds === milliseconds)));
   if (better.length === 0) return;
-  const kept = before.filter((one) => !(one.count === now.present && better.some(({ spec }) => spec === one.spec)));
-  measured.value = [...kept, ...better.map(({ spec, milliseconds }) => ({ spec, count: now.present, milliseconds }))];
+  const kept = before.filter((one) => !better.some(({ spec }) => isOf(one, spec)));
+  measured.value = [...kept, ...better.map(({ spec, milliseconds }) =>
+    ({ spec, count: now.present, milliseconds, ofFrames: true }))];
 }
 
 export function TimesCard() {

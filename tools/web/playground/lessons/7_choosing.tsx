@@ -6,8 +6,8 @@ import { duration } from "../ui/numbers.ts";
 import { panels, scene, type Lesson } from "./lesson.ts";
 
 const cases = [
-  { name: "a crowd of 60", scene: scene("drift", 60, { ratio: 2 }) },
-  { name: "a street of 5,000", scene: scene("street", 5000) },
+  { name: "a group of 20", scene: scene("drift", 20, { ratio: 2 }) },
+  { name: "a street of 40,000", scene: scene("street", 40_000) },
   { name: "20,000 spread evenly", scene: scene("drift", 20_000, { moving: 0 }) },
 ] as const;
 
@@ -26,12 +26,12 @@ export const choosing: Lesson = {
       <p>No algorithm suits all boxes. How many are there? Are they spread evenly, along a line, or in clusters? Do sizes
         differ? How many move? The answers decide:</p>
       <ul>
-        <li>fewer than some hundred: <code>brute_force</code>, there is nothing to build;</li>
-        <li>along a line: <code>sweep_and_prune</code>, one sorted sweep does it all;</li>
-        <li>many, spread over the plane or space: <code>grid</code>;</li>
-        <li>clusters, crowds, surfaces: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
-        <li>few tests whatever the boxes: <code>quadtree</code>;</li>
-        <li>you do not know: <code>auto</code>, which takes a sample and decides so for you;</li>
+        <li>up to some forty: <code>brute_force</code>, there is nothing to build;</li>
+        <li>some forty to some thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
+        <li>more, spread over the plane or space: <code>grid</code> as well;</li>
+        <li>more, along a line: <code>sweep_and_prune</code>, one sorted sweep finds all pairs;</li>
+        <li>more, crowded or in dense clusters: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
+        <li>you do not know: <code>auto</code>, which looks at the boxes and decides so for you;</li>
         <li>it is important: measure, with your own boxes.</li>
       </ul>
     </>

@@ -2,7 +2,7 @@ import { grouped } from "../ui/numbers.ts";
 import { KnobSlider } from "../ui/scene_card.tsx";
 import { scene, type Lesson } from "./lesson.ts";
 
-const both = [{ spec: "grid", follow: false }, { spec: "grid", follow: true }];
+const both = [{ spec: "grid", follow: false }, { spec: "grid:update=follow", follow: true }];
 
 export const coherence: Lesson = {
   title: "What coherence buys",
@@ -17,9 +17,12 @@ export const coherence: Lesson = {
       <p>From one frame to the next little changes: that is <b>coherence</b>. A search starts from nothing each time. A{" "}
         <b>tracker</b> keeps its structure, moves the boxes that moved, and tells which pairs <b>began</b> and which{" "}
         <b>ended</b>. Boxes at rest cost it nothing.</p>
-      <p>Following a box costs more than looking at it once in a search. So it pays while few boxes move; where nearly all
-        do, searching anew is as good or better. The library's trackers choose between the two by themselves, unless{" "}
-        <code>update</code> says which.</p>
+      <p>The second panel draws what its tracker keeps: square cells, and larger ones for larger boxes, each box in the
+        one cell that holds its corner of least x and y. A box that moves is taken out of its cell, put into another one,
+        and compared with the boxes of the cells near it; no other box is looked at.</p>
+      <p>Updating one moving box costs more than one box's share of a new search. So it pays while few boxes move; where
+        nearly all do, a new search is as good or better. The library's trackers choose between the two by themselves; here,{" "}
+        <code>update=follow</code> keeps it to following.</p>
     </>
   ),
   exercise: {
