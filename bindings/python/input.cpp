@@ -139,18 +139,19 @@ bool is_empty_sequence(nb::handle object) {
   return (nb::isinstance<nb::list>(object) || nb::isinstance<nb::tuple>(object)) && nb::len(object) == 0;
 }
 
+std::string kind_of(nb::handle object) {
+  return nb::cast<std::string>(nb::module_::import_("broadside._arguments").attr("kind_of")(object));
+}
+
 std::string text(nb::handle object, const char* name) {
   std::string found;
   if (nb::try_cast(object, found)) return found;
-  const auto kind =
-      nb::cast<std::string>(nb::module_::import_("broadside._arguments").attr("kind_of")(object));
-  throw nb::type_error((std::string(name) + " is " + kind + "; expected a str").c_str());
+  throw nb::type_error((std::string(name) + " is " + kind_of(object) + "; expected a str").c_str());
 }
 
-bool truth(nb::handle object) {
-  const int is_true = PyObject_IsTrue(object.ptr());
-  if (is_true < 0) throw nb::python_error();
-  return is_true != 0;
+bool truth(nb::handle object, const char* name) {
+  if (PyBool_Check(object.ptr())) return object.is(Py_True);
+  return nb::cast<bool>(nb::module_::import_("broadside._arguments").attr("truth")(object, name));
 }
 
 nb::object text_of(std::string_view bytes) {

@@ -147,11 +147,14 @@ void find_array_type();
 /// Whether this is an empty list or tuple, which has no dimension.
 bool is_empty_sequence(nb::handle object);
 
+/// The type of an object with its article, by broadside._arguments.
+std::string kind_of(nb::handle object);
+
 /// A str, or TypeError.
 std::string text(nb::handle object, const char* name);
 
-/// Python's bool() of it.
-bool truth(nb::handle object);
+/// A bool, NumPy's as well, or 0 or 1; or TypeError.
+bool truth(nb::handle object, const char* name);
 
 /// A str from UTF-8. Other bytes, as in a file's name, become surrogate escapes.
 nb::object text_of(std::string_view bytes);

@@ -74,8 +74,8 @@ nb::object advise(nb::handle boxes, const std::string& algorithms, std::vector<s
 /// The boxes of one frame of a file, and a warning about what could not be read. `content` has the file's
 /// bytes if they are in memory, and is None otherwise.
 nb::object read(const nb::bytes& name, nb::handle content, const std::string& format,
-                const std::string& boxes, const std::string& columns, int dimension, std::size_t frame,
-                bool skips_invalid) {
+                const std::string& boxes, const std::string& columns, bool selects_columns, int dimension,
+                std::size_t frame, bool skips_invalid) {
   std::optional<PythonBuffer> bytes;
   if (!content.is_none()) bytes.emplace(content, PyBUF_SIMPLE);
   const std::string path(name.c_str(), name.size());
@@ -83,6 +83,7 @@ nb::object read(const nb::bytes& name, nb::handle content, const std::string& fo
   options.format = format;
   options.boxes = boxes;
   options.columns = columns;
+  options.selects_columns = selects_columns;
   options.dimension = dimension;
   std::string invalid;
   if (skips_invalid) options.say_invalid = [&](std::string_view why) { invalid = why; };
@@ -162,6 +163,12 @@ nb::tuple resolve_columns(const std::vector<std::string>& names, bool are_chosen
   return nb::make_tuple(problem, columns.dimension, axes, column_of(BoxColumns::geometry));
 }
 
+/// The axis that a column's name speaks of, from 0; -1 if it has no meaning.
+int axis_of(const std::string& name) {
+  const std::optional<lab::readers::Meaning> meaning = lab::readers::meaning_of(name);
+  return meaning ? meaning->axis : -1;
+}
+
 nb::object formats() {
   nb::list list;
   for (const lab::Format& format : lab::formats())
@@ -214,7 +221,9 @@ void add_lab(nb::module_& module) {
   module.def("advise", &advise, nb::arg("boxes").none(), nb::arg("algorithms"), nb::arg("threads"),
              nb::arg("budget"));
   module.def("read", &read, nb::arg("path"), nb::arg("content").none(), nb::arg("format"), nb::arg("boxes"),
-             nb::arg("columns"), nb::arg("dimension"), nb::arg("frame"), nb::arg("skips_invalid"));
+             nb::arg("columns"), nb::arg("selects_columns"), nb::arg("dimension"), nb::arg("frame"),
+             nb::arg("skips_invalid"));
+  module.def("axis_of", &axis_of, nb::arg("name"));
   module.def("formats", &formats);
   module.def("resolve_columns", &resolve_columns, nb::arg("names"), nb::arg("are_chosen"));
   module.def("draw", &draw, nb::arg("boxes"), nb::arg("algorithms"), nb::arg("most"), nb::arg("title"));

@@ -61,8 +61,8 @@ std::size_t threads_of(nb::handle threads, std::string_view spec) {
   if (is_in_spec)
     throw std::invalid_argument("threads are given as an argument and in '" + std::string(spec) +
                                 "'; expected one of the two");
-  if (PyBool_Check(threads.ptr()))
-    throw nb::type_error("threads is a bool; expected an int, or None for all");
+  if (PyBool_Check(threads.ptr()) || PyIndex_Check(threads.ptr()) == 0)
+    throw nb::type_error(("threads is " + kind_of(threads) + "; expected an int, or None for all").c_str());
   int overflow = 0;
   const long count = PyLong_AsLongAndOverflow(threads.ptr(), &overflow);
   if (count == -1 && PyErr_Occurred() != nullptr) throw nb::python_error();

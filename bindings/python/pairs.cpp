@@ -54,8 +54,9 @@ nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algor
                 nb::handle quarantine, nb::handle touching, nb::handle within, nb::handle to,
                 nb::handle different) {
   const SearchArguments search(boxes, other, text(algorithm, "algorithm"), threads, filters, other_filters,
-                               ignored, truth(quarantine), truth(touching), within, to, different);
-  const bool sorts = truth(sort);
+                               ignored, truth(quarantine, "quarantine"), truth(touching, "touching"), within,
+                               to, different);
+  const bool sorts = truth(sort, "sort");
   if (static_cast<ResultForm>(result) == ResultForm::count) return nb::cast(counted(search));
   if (static_cast<ResultForm>(result) == ResultForm::components) return components(search);
   std::vector<Pair> pairs = found(search, sorts);
@@ -68,7 +69,7 @@ nb::object find(int result, nb::handle boxes, nb::handle other, nb::handle algor
 nb::tuple find_batch(nb::handle boxes, nb::handle offsets, nb::handle algorithm, nb::handle threads,
                      nb::handle filters, nb::handle ignored, nb::handle quarantine, nb::handle touching) {
   const SearchArguments search(boxes, nb::none(), text(algorithm, "algorithm"), threads, filters, nb::none(),
-                               ignored, truth(quarantine), truth(touching));
+                               ignored, truth(quarantine, "quarantine"), truth(touching, "touching"));
   const std::vector<std::uint64_t> given =
       integers(offsets, "offsets", std::numeric_limits<std::ptrdiff_t>::max());
   const std::vector<std::size_t> worlds(given.begin(), given.end());

@@ -85,7 +85,7 @@ class PyPartition {
     if (!other.is_none()) second.emplace(Rows::of_kind(kind, other, "other"));
     const SearchArguments search(Rows::of_kind(kind, boxes, "boxes"), std::move(second),
                                  text(algorithm, "algorithm"), threads);
-    const bool sorts = truth(sort);
+    const bool sorts = truth(sort, "sort");
     return array_of<std::uint32_t>(
         without_gil([&](WithoutGil& released) { return pairs_of(part, search, sorts, released); }));
   }

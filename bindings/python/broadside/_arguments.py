@@ -5,6 +5,8 @@ from __future__ import annotations
 import operator
 from typing import Any
 
+import numpy as np
+
 
 def kind_of(found: Any) -> str:
     """The type of an object with its article, such as "an int", or "None"."""
@@ -19,6 +21,13 @@ def text(found: Any, name: str) -> str:
     if not isinstance(found, str):
         raise TypeError(f"{name} is {kind_of(found)}; expected a str")
     return found
+
+
+def truth(found: Any, name: str) -> bool:
+    """True or False, NumPy's as well, or 1 or 0."""
+    if not isinstance(found, (bool, np.bool_)) and not (isinstance(found, (int, np.integer)) and found in (0, 1)):
+        raise TypeError(f"{name} is {kind_of(found)}; expected True or False")
+    return bool(found)
 
 
 def number(found: Any, name: str) -> float:

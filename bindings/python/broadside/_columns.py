@@ -29,11 +29,19 @@ _CONVENTIONS = {
     "xyzwhd": ("xmin", "ymin", "zmin", "width", "height", "depth"),
     "cxcyczwhd": ("cx", "cy", "cz", "width", "height", "depth"),
 }
-# Conventions other than minima and maxima that rows without names may follow.
-SIZED_CONVENTIONS = [name for name, names in _CONVENTIONS.items() if "width" in names]
+# What rows without names may be other than minima and maxima, the more telling first: almost any positive numbers are
+# valid as corners or centres and sizes.
+OTHER_MEANINGS: list[str | list[str]] = [
+    ["xmin", "xmax", "ymin", "ymax"],
+    ["xmin", "ymax", "xmax", "ymin"],
+    ["xmin", "xmax", "ymin", "ymax", "zmin", "zmax"],
+    *(name for name, names in _CONVENTIONS.items() if "width" in names),
+]
 
 # The default names of an array's columns in pandas and polars. They have no meaning, so a table must have only these.
-_NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (4, 6)]
+_NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (2, 3, 4, 6)]
+
+NO_BOXES = "for points say within=, or use nearest_pairs(); for intervals use intervals()"
 
 _EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to say which they are, such as columns='xywh'"
 
@@ -84,10 +92,13 @@ def checked(columns: Columns | None, name: str) -> str | list[str] | None:
     return list(columns)
 
 
-def choose(labels: Sequence[str], name: str, columns: str | list[str] | None) -> Choice:
-    """The columns of bounds among those of a table."""
+def choose(labels: Sequence[str], name: str, columns: str | list[str] | None, or_points: bool = False) -> Choice:
+    """The columns of bounds among those of a table; with `or_points` also those of points, as boxes."""
     if list(labels) in _NAMES_OF_PLACES and not (isinstance(columns, list) and set(columns) <= set(labels)):
-        return of_places(len(labels), name, columns)
+        return of_places(len(labels), name, columns, or_points)
+    places = _points_among(labels, name, columns) if or_points else []
+    if places:
+        return _as_boxes(places)
     if isinstance(columns, list):
         return _named(labels, name, columns)
     # In a convention with centres, x and y are the centre.
@@ -95,32 +106,79 @@ def choose(labels: Sequence[str], name: str, columns: str | list[str] | None) ->
     choice, problem = _resolved([renamed.get(label.lower(), label) for label in labels], columns is not None)
     if choice is not None and (columns is None or not choice.axes or _forms(choice) == _forms_of(columns)):
         return choice
-    expected = _EXPECTED if columns is None else f"columns of {columns!r}, as columns says"
+    expected = _EXPECTED + _hint(len(labels)) if columns is None else f"columns of {columns!r}, as columns says"
     raise ValueError(f"{name} has the columns {', '.join(labels) or 'none'}{problem and f' ({problem})'}; expected {expected}")
 
 
 def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
     """The columns of points among those of a table: by known names, or all if there are `dimension`."""
     _, _, axes, _ = _core.resolve_columns(list(labels), False)
-    places = [place for form, place, _ in axes if form == "point"]
-    if not axes:  # names without a meaning
-        places = list(range(len(labels)))
+    places = [place for form, place, _ in axes if form == "point"] if axes else _order_of_point(labels)
     if len(places) != dimension:
         raise ValueError(f"{name} has the columns {', '.join(labels) or 'none'}; expected {', '.join('xyz'[:dimension])}")
     return Choice(places, [])
 
 
-def of_places(count: int, name: str, columns: str | list[str] | None) -> Choice:
+def of_places(count: int, name: str, columns: str | list[str] | None, or_points: bool = False) -> Choice:
     """The columns of an array, which have only the names that a caller gives them."""
     if columns is None:
-        columns = ["start", "end"] if count == 2 else "xyzxyz" if count == 6 else "xyxy"
+        if count in (2, 3) and or_points:
+            return _as_boxes(list(range(count)))
+        if count not in (4, 6):
+            raise ValueError(f"{name} has {count} columns without a meaning; expected {_EXPECTED}{_hint(count)}")
+        columns = "xyzxyz" if count == 6 else "xyxy"
     names = list(_CONVENTIONS[columns]) if isinstance(columns, str) else columns
     if len(names) > count or isinstance(columns, str) and len(names) != count:
         raise ValueError(f"{name} has {count} columns, and columns is {columns!r}; expected {len(names)} columns")
-    return _meant(names, name)
+    order = _order_of_point(names) if or_points else []
+    return _as_boxes(order) if order else _meant(names, name)
+
+
+def _points_among(labels: Sequence[str], name: str, columns: str | list[str] | None) -> list[int]:
+    """The places of the columns of points, x first; none if the columns are of boxes or intervals."""
+    if isinstance(columns, list):
+        order = _order_of_point(columns)
+        places = _places_of(columns, labels, name) if order else []
+        return [places[place] for place in order]
+    if columns is not None:
+        return []
+    _, _, axes, _ = _core.resolve_columns(list(labels), False)
+    if axes:
+        return [place for _, place, _ in axes] if all(form == "point" for form, _, _ in axes) else []
+    order = _order_of_point(labels)
+    # Of three names without a meaning, one may be that of an id.
+    return order if len(labels) == 2 or order and _core.axis_of(labels[0]) >= 0 else []
+
+
+def _order_of_point(names: Sequence[str]) -> list[int]:
+    """The places of a point's coordinates among two or three names, x first; none if they cannot be a point's.
+
+    The names of a point have no meaning, or each is that of another axis.
+    """
+    axes = [_core.axis_of(name) for name in names] if len(names) in (2, 3) else []
+    if sorted(axes) == list(range(len(axes))):
+        return [axes.index(axis) for axis in range(len(axes))]
+    return list(range(len(axes))) if all(axis < 0 for axis in axes) else []
+
+
+def _as_boxes(places: list[int]) -> Choice:
+    """The choice of columns of points as those of boxes."""
+    return Choice(places, [("point", place, -1) for place in range(len(places))])
+
+
+def _hint(count: int) -> str:
+    return f"; {NO_BOXES}" if count in (2, 3) else ""
 
 
 def _named(labels: Sequence[str], name: str, columns: list[str]) -> Choice:
+    places = _places_of(columns, labels, name)
+    # Four or six names without a meaning stand for the bounds in order.
+    has_meaning = len(columns) not in (4, 6) or _resolved(columns, True)[0] is not None
+    choice = _meant(columns, name) if has_meaning else of_places(len(columns), name, None)
+    return Choice([places[place] for place in choice.places], choice.axes)
+
+
+def _places_of(columns: list[str], labels: Sequence[str], name: str) -> list[int]:
     places = []
     for column in columns:
         there = [place for place, label in enumerate(labels) if label == column]
@@ -128,17 +186,14 @@ def _named(labels: Sequence[str], name: str, columns: list[str]) -> Choice:
             found = f"has {len(there)} columns {column}" if there else f"has the columns {', '.join(labels) or 'none'}"
             raise ValueError(f"{name} {found}; expected one column {column}")
         places += there
-    # Names without a meaning stand for the bounds in order.
-    has_meaning = len(columns) not in (2, 4, 6) or _resolved(columns, True)[0] is not None
-    choice = _meant(columns, name) if has_meaning else of_places(len(columns), name, None)
-    return Choice([places[place] for place in choice.places], choice.axes)
+    return places
 
 
 def _meant(columns: list[str], name: str) -> Choice:
     """The choice of columns by the names that a caller gives them."""
     choice, problem = _resolved(columns, True)
     if choice is None:
-        raise ValueError(f"the columns of {name} are {', '.join(columns)}: {problem}; expected {_EXPECTED}")
+        raise ValueError(f"the columns of {name} are {', '.join(columns)}: {problem}; expected {_EXPECTED}{_hint(len(columns))}")
     return choice
 
 

@@ -22,30 +22,46 @@ Rows = NDArray[Any]
 FILTER = np.dtype([("category", np.uint64), ("mask", np.uint64), ("group", np.int32), ("is_static", np.bool_)])
 
 
-def boxes(found: Any, name: str, columns: Columns | None = None) -> Rows:
-    """Rows of boxes, of float32 or float64. An empty list or tuple is no boxes, in 2D."""
+def boxes(found: Any, name: str, columns: Columns | None = None, or_points: bool = False) -> Rows:
+    """Rows of boxes, of float32 or float64. An empty list or tuple is no boxes, in 2D.
+
+    With `or_points`, points are taken as well, as boxes with equal minima and maxima.
+    """
     chosen = _columns.checked(columns, name)
     if is_empty_sequence(found):
         return np.empty((0, 4))
-    array = _with_float_rows(found, name, _Boxes(name, chosen))
+    array = _with_float_rows(found, name, _Boxes(name, chosen, or_points))
     if array.ndim != 2 or array.shape[1] not in (4, 6):
-        hint = "; for intervals see broadside.intervals()" if array.shape[1:] in ((), (2,)) else ""
+        hint = f"; {_columns.NO_BOXES}" if array.shape[1:] in ((), (2,), (3,)) else ""
         raise ValueError(
             f"{name} has shape {array.shape}; expected (n, 4) or (n, 6): the minima of each box, then its maxima{hint}"
         )
     return array
 
 
+def valid_boxes(found: Any, name: str, columns: Columns | None, or_points: bool = False) -> Rows:
+    """Likewise, or InvalidBoxError."""
+    array = boxes(found, name, columns, or_points)
+    invalid = _core.invalid_rows(array)
+    if invalid.size:
+        row = int(invalid[0])
+        error = InvalidBoxError(
+            f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row, name
+        )
+        raise with_other_conventions(error, found, name, columns)
+    return array
+
+
 def with_other_conventions(error: InvalidBoxError, found: Any, name: str, columns: Columns | None) -> InvalidBoxError:
-    """The error about an invalid box, with the conventions in which all rows without names are valid."""
+    """The error about an invalid box, with the meanings of columns by which all rows without names would be valid."""
     if columns is not None or error.argument != name:
         return error
-    ways = [f"columns={way!r}" for way in _columns.SIZED_CONVENTIONS if _are_valid(found, name, way)]
-    text = f"{error}; all rows are valid with {' or '.join(ways)}" if ways else str(error)
+    ways = [f"columns={way!r}" for way in _columns.OTHER_MEANINGS if _are_valid(found, name, way)]
+    text = f"{error}; all rows would be valid with {' or '.join(ways)} (check that it is meant)" if ways else str(error)
     return InvalidBoxError(text, error.row, error.argument)
 
 
-def _are_valid(found: Any, name: str, columns: str) -> bool:
+def _are_valid(found: Any, name: str, columns: Columns) -> bool:
     try:
         return not _core.invalid_rows(boxes(found, name, columns)).size
     except (TypeError, ValueError):  # another number of columns, or names with another meaning
@@ -66,18 +82,13 @@ def are_points(found: Any, name: str, dimension: int) -> bool:
         return False
 
 
-def boxes_or_points(found: Any, name: str, columns: Columns | None) -> Rows:
-    """Rows of boxes, as by boxes(); points become boxes with equal minima and maxima."""
-    for dimension in (2, 3):
-        if columns is None and not is_empty_sequence(found) and are_points(found, name, dimension):
-            points = _with_float_rows(found, name, _Points(name, dimension))
-            return np.concatenate((points, points), axis=1)
-    return boxes(found, name, columns)
-
-
-def given(found: Any, name: str, columns: Columns | None) -> Any:
-    """The boxes as the extension module takes them; converted if the caller gives `columns`."""
-    return found if columns is None else boxes(found, name, columns)
+def given(found: Any, name: str, columns: Columns | None, or_points: bool = False) -> Any:
+    """The boxes as the extension module takes them; converted if the caller gives `columns`, or if they may be points."""
+    if columns is None:
+        are_rows = isinstance(found, np.ndarray) and found.shape[1:] in ((4,), (6,))
+        if not or_points or are_rows or is_empty_sequence(found):
+            return found
+    return boxes(found, name, columns, or_points)
 
 
 def worlds(found: Any, name: str) -> tuple[Rows, NDArray[np.int64]]:
@@ -121,12 +132,13 @@ def is_empty_sequence(found: Any) -> bool:
 class _Boxes:
     """Rows of boxes, made of the columns of a table or of an array."""
 
-    def __init__(self, name: str, columns: str | list[str] | None) -> None:
+    def __init__(self, name: str, columns: str | list[str] | None, or_points: bool = False) -> None:
         self.name = name
         self.columns = columns
+        self.or_points = or_points
 
     def choose(self, labels: list[str]) -> Choice:
-        return _columns.choose(labels, self.name, self.columns)
+        return _columns.choose(labels, self.name, self.columns, self.or_points)
 
     def of_columns(self, choice: Choice, columns: list[Column]) -> Rows:
         if choice.axes:
@@ -135,9 +147,11 @@ class _Boxes:
 
     def of_grid(self, grid: Column, columns: str | list[str] | None) -> Rows:
         """Rows from columns that have only the names that a caller gives them."""
+        count = grid.values.shape[1]
         if columns is None and grid.missing is None:
-            return grid.values
-        choice = _columns.of_places(grid.values.shape[1], self.name, columns)
+            are_points = self.or_points and count in (2, 3)
+            return grid.values.take([*range(count)] * 2, axis=1) if are_points else grid.values
+        choice = _columns.of_places(count, self.name, columns, self.or_points)
         return _columns.rows_of(choice, [grid.part(place) for place in choice.places], self.name)
 
     def _of_packed(self, column: Column) -> Rows:
@@ -268,8 +282,9 @@ def _of_frame(found: Any, name: str, shape: _Shape) -> Rows | None:
     if pandas is None:
         return None
     is_frame = isinstance(found, pandas.DataFrame)
+    is_series = isinstance(found, pandas.Series)
     if isinstance(shape, _Boxes) and not (is_frame and shape.columns is not None):
-        geometry = getattr(found, "geometry", None) if is_frame or isinstance(found, pandas.Series) else found
+        geometry = getattr(found, "geometry", None) if is_frame or is_series else found
         # A DataFrame may have a column of that name that holds something else.
         if isinstance(geometry, (pandas.Series, pandas.api.extensions.ExtensionArray)):
             bounds = _bounds_of_geometries(np.asarray(geometry, dtype=object), str(geometry.dtype) == "geometry")
@@ -277,6 +292,10 @@ def _of_frame(found: Any, name: str, shape: _Shape) -> Rows | None:
                 return bounds
     if isinstance(shape, _Points) and str(getattr(getattr(found, "geometry", None), "dtype", "")) == "geometry":
         return _of_points(np.asarray(found.geometry, dtype=object), shape)
+    if is_series and found.dtype == object:  # of lists or dicts
+        found, is_frame = found.to_frame("bbox"), True
+    elif is_series and not isinstance(found.dtype, pandas.ArrowDtype):
+        return np.asarray(found)
     if not is_frame:
         return None
     fields = [(place, key) for place in range(found.shape[1]) for key in _keys_of(found.iloc[:, place])]
@@ -433,5 +452,7 @@ def filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
 
 def query_filters(found: Any, count: int, name: str) -> NDArray[np.uint64]:
     """Likewise, or one for all queries."""
+    if isinstance(found, Keyed):
+        return filters(found, count, name)
     array = np.asarray(found)
     return filters(np.broadcast_to(array, (count,)) if array.shape in ((), (1,)) else array, count, name)

@@ -21,29 +21,86 @@ class Keyed:
     name: str
     packed: NDArray[np.uint64]
 
+    def __getitem__(self, rows: NDArray[np.uint32]) -> Keyed:
+        return Keyed(self.name, self.packed[rows])
 
-def with_keys(filters: Any, other_filters: Any, same: Any, different: Any, is_between: bool) -> tuple[Any, Any, Any]:
+
+def with_keys(
+    filters: Any, other_filters: Any, same: Any, different: Any, boxes: Any, other: Any
+) -> tuple[Any, Any, Any]:
     """The filters of both sets, with those of the keys; with both kinds of keys, also those that must differ."""
     if same is None and different is None:
         return filters, other_filters, None
     name = "different" if same is None else "same"
-    groups = _groups_of(different if same is None else same, name, is_between)
+    sets = [boxes] if other is None else [boxes, other]
+    groups = groups_of(different if same is None else same, name, sets)
     made = [_keyed(group, old, name) for group, old in zip(groups, (filters, other_filters), strict=False)]
-    also_different = None if same is None or different is None else tuple(_groups_of(different, "different", is_between))
-    return made[0], made[1] if is_between else other_filters, also_different
+    also_different = None if same is None or different is None else tuple(groups_of(different, "different", sets))
+    return made[0], other_filters if other is None else made[1], also_different
 
 
-def _groups_of(given: Any, name: str, is_between: bool) -> list[NDArray[np.int64]]:
-    """The numbers of the keys of each set."""
-    if is_between and not (isinstance(given, (tuple, list)) and len(given) == 2):
+def groups_of(given: Any, name: str, sets: list[Any]) -> list[NDArray[np.int64]]:
+    """The numbers of the keys of each set; of several keys, those of each combination."""
+    is_of_each = isinstance(given, (tuple, list)) and len(given) == 2 and not (isinstance(given, list) and _is_name(given[0]))
+    if len(sets) == 2 and not is_of_each and not _are_names(given):
         raise TypeError(f"{name} is {_arguments.kind_of(given)}; expected two arrays of keys, ({name}_of_boxes, {name}_of_other)")
-    return _groups([_plain(keys, name) for keys in (given if is_between else [given])], name)
+    of_sets = given if len(sets) == 2 and is_of_each else [given] * len(sets)
+    parts = [_parts(keys, table, name) for keys, table in zip(of_sets, sets, strict=True)]
+    if len({len(part) for part in parts}) > 1:
+        raise ValueError(f"{name} has {len(parts[0])} keys for a box and {len(parts[1])} for one of other; expected as many")
+    numbers = [_groups([_plain(keys, name) for keys in both], name) for both in zip(*parts, strict=True)]
+    groups = numbers[0]
+    for more in numbers[1:]:
+        for group, part in zip(groups, more, strict=True):
+            if len(group) != len(part):
+                raise ValueError(f"{name} has {len(group)} and {len(part)} keys; expected one of each for each box")
+        # Both are below 2**31.
+        groups = _groups([group << 31 | part for group, part in zip(groups, more, strict=True)], name)
+    return groups
+
+
+def rows_by_group(groups: NDArray[np.int64]) -> dict[int, NDArray[np.uint32]]:
+    """The rows of each group, ascending."""
+    order = np.argsort(groups, kind="stable").astype(np.uint32)
+    starts = np.flatnonzero(np.diff(groups[order], prepend=0))  # a group is positive
+    return {int(groups[rows[0]]): rows for rows in np.split(order, starts[1:]) if rows.size}
+
+
+def _is_name(keys: Any) -> bool:
+    return isinstance(keys, str)
+
+
+def _are_names(keys: Any) -> bool:
+    """Whether this may be the name of a column, or several."""
+    return _is_name(keys) or isinstance(keys, (list, tuple)) and len(keys) > 0 and all(map(_is_name, keys))
+
+
+def _parts(keys: Any, table: Any, name: str) -> list[Any]:
+    """The arrays of keys: one, or several that are one key together, such as the columns of a table."""
+    labels = _labels(table)
+    if isinstance(keys, str):
+        if keys not in labels:
+            raise TypeError(f"{name} is {keys!r}, which no column of the boxes is called; {_EXPECTED}, one for each box")
+        return [table[keys]]
+    if labels and _are_names(keys) and set(keys) <= set(labels):
+        return [table[label] for label in keys]
+    if isinstance(keys, tuple) and keys and not any(isinstance(one, (str, bytes)) or np.ndim(one) == 0 for one in keys):
+        return list(keys)
+    columns = _labels(keys)
+    return [keys[label] for label in columns] if columns else [keys]
+
+
+def _labels(table: Any) -> list[Any]:
+    """The names of a table's columns; none of anything else."""
+    if isinstance(table, np.ndarray):
+        return list(table.dtype.names or [])
+    if not hasattr(table, "columns") or not hasattr(table, "__getitem__"):
+        return []
+    return list(table.column_names if hasattr(table, "column_names") else table.columns)
 
 
 def _plain(keys: Any, name: str) -> NDArray[Any]:
     """Keys as integers or strings."""
-    if isinstance(keys, (str, bytes)):
-        raise TypeError(f"{name} is {_arguments.kind_of(keys)}; {_EXPECTED}, one for each box")
     is_arrow = hasattr(keys, "to_numpy") and hasattr(keys, "null_count") and hasattr(keys, "type")
     array = np.asarray(keys.to_numpy(zero_copy_only=False) if is_arrow else _of_categories(keys, name))
     if array.ndim != 1:

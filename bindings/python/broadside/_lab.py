@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import stat
 import warnings
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from broadside import _arguments, _columns, _convert, _core, _parquet
 from broadside._columns import Columns
-from broadside._errors import FileError, InvalidBoxError
+from broadside._errors import FileError
 
 _BYTES_AT_ONCE = 2**20
 
@@ -88,7 +89,7 @@ def advise(
         algorithms: Names, specs or groups (own, paper, literature, all) with commas between.
         threads: Numbers of threads to try besides one.
         budget: About how many seconds it may take.
-        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+        columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
     Raises InvalidAlgorithmError, InvalidBoxError, ValueError. Ctrl-C ends it, even during a long search.
     """
@@ -99,19 +100,7 @@ def advise(
     if not tried:
         raise ValueError("threads is empty; expected a number at least")
     tried = [_arguments.integer(count, "threads", 1, 1024) for count in tried]
-    return Advice(*_core.advise(_valid(boxes, columns), _arguments.text(algorithms, "algorithms"), tried, budget))
-
-
-def _valid(boxes: Any, columns: Columns | None) -> NDArray[Any]:
-    """The boxes as an array, or InvalidBoxError."""
-    array = _convert.boxes(boxes, "boxes", columns)
-    invalid = _core.invalid_rows(array)
-    if invalid.size:
-        row = int(invalid[0])
-        raise InvalidBoxError(
-            f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row, "boxes"
-        )
-    return array
+    return Advice(*_core.advise(_convert.valid_boxes(boxes, "boxes", columns), _arguments.text(algorithms, "algorithms"), tried, budget))
 
 
 def read(
@@ -133,8 +122,9 @@ def read(
             until its writers have closed it.
         format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
-        columns: A table's columns of bounds: a list of names, a str of names separated by commas, or the meaning of the
-            numbers in a row, such as "xywh": see `pairs`. For CSV, the names are given to the columns from left to right.
+        columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. The
+            names are given to the columns of a CSV file from left to right if it has no names, or none of these. A str
+            such as "-,x,y,w,h" gives names from left to right, whatever the file says; ``-`` leaves a column out.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
         quarantine: Treat invalid boxes as absent, as rows of minima inf and maxima -inf, with a warning instead of
@@ -166,21 +156,43 @@ def read(
             raise ValueError(f"boxes is {boxes!r}, and '{shown}' is Parquet; expected None")
         if number != 0:
             raise ValueError(f"frame is {frame}; expected at most 0, the last one of '{shown}'")
-        found, warning = _parquet.read(name, content, chosen, axes, bool(quarantine))
+        found, warning = _parquet.read(name, content, chosen, axes, _arguments.truth(quarantine, "quarantine"))
     else:
-        found, warning = _core.read(
-            name,
-            content,
-            wanted,
-            _text_or_none(boxes, "boxes"),
-            ",".join(chosen) if isinstance(chosen, list) else chosen or "",
-            axes,
-            number,
-            bool(quarantine),
-        )
+        try:
+            found, warning = _core.read(
+                name,
+                content,
+                wanted,
+                _text_or_none(boxes, "boxes"),
+                ",".join(chosen) if isinstance(chosen, list) else chosen or "",
+                isinstance(chosen, list) and not isinstance(columns, str) and "-" not in chosen,
+                axes,
+                number,
+                _arguments.truth(quarantine, "quarantine"),
+            )
+        except FileError as error:
+            raise FileError(_in_python(str(error))) from None
     if warning:
-        warnings.warn(warning, stacklevel=2)
+        warnings.warn(_in_python(warning), stacklevel=2)
     return found
+
+
+# The program's options in messages, and how Python says them.
+_IN_PYTHON = {
+    "--columns": "columns=",
+    "--format csv": "format='csv'",
+    "--boxes vertices": "boxes='vertices'",
+    "--boxes": "boxes=",
+    "--frame 0": "frame=0",
+    "--skip-invalid": "quarantine=True",
+}
+
+
+def _in_python(text: str) -> str:
+    text = re.sub(r"--columns[= ]([\w-]+(?:[,=][\w-]+)+)", r"columns='\1'", text)
+    for option, argument in _IN_PYTHON.items():
+        text = text.replace(option, argument)
+    return text
 
 
 def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
@@ -189,6 +201,11 @@ def _source_of(path: Any) -> tuple[bytes, _parquet.Content | None]:
         name = getattr(path, "name", None)
         called = os.fsencode(name) if isinstance(name, (str, bytes, os.PathLike)) else b"the file object"
         return called, _content_of(path)
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        raise TypeError(
+            f"path is {_arguments.kind_of(path)}; expected the path of a file, or an object with read(). Tables and arrays "
+            "need no read(): pairs() and the others take them as they are"
+        )
     name = os.fsencode(path)
     mode = os.stat(os.fsdecode(name)).st_mode
     if not stat.S_ISFIFO(mode):
@@ -263,10 +280,12 @@ def draw(
             side by side; empty: only the boxes.
         most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
         title: What the picture is called.
-        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+        columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
     Raises InvalidBoxError, InvalidAlgorithmError, ValueError.
     """
     most = _arguments.integer(most, "most", 1, 20_000)
     laid_over = _arguments.text(algorithms, "algorithms")
-    return Drawing(_core.draw(_valid(boxes, columns), laid_over, most, _arguments.text(title, "title")))
+    return Drawing(
+        _core.draw(_convert.valid_boxes(boxes, "boxes", columns), laid_over, most, _arguments.text(title, "title"))
+    )

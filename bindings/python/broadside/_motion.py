@@ -145,7 +145,7 @@ class World:
 
         That of a removed box can be read until the update after the one that told of its ended pairs.
         """
-        return self._world.boxes(self.handles() if handles is None else handles, bool(enlarged))
+        return self._world.boxes(self.handles() if handles is None else handles, _arguments.truth(enlarged, "enlarged"))
 
     def handles(self) -> NDArray[np.uint64]:
         """The handles of all boxes, by slot."""
@@ -357,8 +357,8 @@ class Tracker(_ArrayTracker):
         touching: bool = True,
     ) -> None:
         self._tracker = _core.make_tracker(
-            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, bool(quarantine),
-            bool(touching),
+            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, _arguments.truth(quarantine, "quarantine"),
+            _arguments.truth(touching, "touching"),
         )
 
     def update(
@@ -377,7 +377,7 @@ class Tracker(_ArrayTracker):
             boxes: n boxes, whatever `pairs` takes.
             changed: The rows that may differ from the frame before; a change that is not listed is not seen. None: any.
             filters: A filter for each box, made by `broadside.filters`; a change of one is listed as well.
-            columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+            columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
         Raises InvalidBoxError and ValueError, and has taken nothing then; so does Ctrl-C, after which the next update
         tells of all events since the last one that ended.
@@ -423,7 +423,7 @@ class BatchTracker(_ArrayTracker):
         touching: bool = True,
     ) -> None:
         self._tracker = _core.make_batch_tracker(
-            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, bool(touching)
+            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, _arguments.truth(touching, "touching")
         )
 
     def update(

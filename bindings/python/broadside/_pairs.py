@@ -124,12 +124,15 @@ def pairs(
             with n rows and as many columns as the second set has boxes, whose true elements are the pairs: of one set
             those above the diagonal.
         threads: The most threads; None: all cores. A thread has at least 4096 boxes, so few boxes take one.
-        columns: A table's columns of bounds, as a list of names such as ``["x", "y", "w", "h"]``; names without a
-            meaning are minima, then maxima. Or the meaning of the numbers in a row: ``"xyxy"``, ``"xywh"``,
-            ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, which also applies to an array and to a column
-            `bbox` of lists (of a fixed size in Arrow and polars). By default the bounds are found by the names that
-            CSV uses: xmin, ymin, xmax, ymax; left, top, right, bottom; a struct `bbox` ...; and rows without names are
-            minima, then maxima.
+        columns: Either the names of a table's columns, or a layout.
+            A list of names, such as ``["x", "y", "w", "h"]``, selects columns of a table and names those of an array.
+            Four or six names that say nothing, such as ``["a", "b", "c", "d"]``, are the minima and then the maxima.
+            With `within`, two or three names are points; ``["start", "end"]`` are intervals.
+            A layout, ``"xyxy"``, ``"xywh"``, ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, is the
+            meaning of the numbers in a row of an array, or in a table's column `bbox` of lists (in Arrow and polars
+            lists of a fixed size), and of columns called x, y, w and h.
+            By default, a table's bounds are found by the names that CSV uses: xmin, ymin, xmax, ymax; left, top, right,
+            bottom; a struct `bbox` ...; and rows without names are minima, then maxima.
         other_columns: Likewise for `other`.
         filters: Which boxes may pair: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
@@ -137,15 +140,18 @@ def pairs(
         quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
         touching: Whether boxes that only touch overlap. If False, boxes are half-open (min <= p < max), except on an
             axis where minimum and maximum are equal. Exact.
-        same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Integers, strings
-            or categories, as arrays or as columns of pandas, polars or Arrow; of two sets, both sets' keys as a tuple.
-            Filters may only say which boxes are static.
-        different: Likewise: only boxes with unequal keys pair, of which filters without groups may leave some out. With
-            `same` as well, both must hold, such as the same image and different classes.
-        within: Find the boxes whose Euclidean distance is at most this number (a cutoff), instead of those that
-            overlap; or a radius for each box, shape (n,): two pair if their distance is at most the sum of their radii;
-            of two sets, the radii of both as a tuple. The sets may then be points as well: arrays of shape (n, 2) or
-            (n, 3). `distances` and `neighbour_lists` take the pairs.
+        same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Keys are integers,
+            strings or categories, in an array or a column of pandas, polars or Arrow, row by row: the index of pandas
+            is not looked at. If the boxes are a table, the name of its column will do. Several keys, as a tuple of
+            arrays, a list of names or a table, are equal if all are. Of two sets, both sets' keys as a tuple, or names
+            of columns of both. With `same`, filters may set only `is_static`.
+        different: Likewise: only boxes with unequal keys pair; filters of group 0 may leave out more. With `same` as
+            well, both must hold, such as the same image and different classes.
+        within: A distance, such as a cutoff: find the boxes that are at most so far apart (Euclidean), instead of those
+            that overlap. Or a radius for each box, shape (n,): two boxes pair if they are at most the sum of their radii
+            apart; of two sets, both sets' radii as a tuple. The boxes may then be points: arrays of shape (n, 2) or
+            (n, 3), or tables with columns x and y, or others that `columns` names. `distances` and `neighbour_lists`
+            take the pairs.
         period: Space repeats: the length after which it does on each axis, None on an axis on which it does not. For
             ``(360, None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie
             in any cell; one at least as long as the period is the whole axis. With `within`, the distance is that of
@@ -170,20 +176,20 @@ def pairs(
     within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
     milliseconds. Any number of threads may call it at once.
     """
-    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
-    if other is not None or columns is not None or other_columns is not None:
-        boxes, other = _sets(boxes, other, columns, other_columns)
-    if within is not None or period is not None:
-        boxes, other, within = _reaching(boxes, other, within, period)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, boxes, other)
+    left, right = boxes, other
+    reach = _within.checked(within, period, other is not None)
+    if other is not None or columns is not None or other_columns is not None or reach is not None:
+        left, right = _sets(boxes, other, columns, other_columns, reach is not None)
     moving = ends(to, other is not None, columns, other_columns)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, reach, moving, keys)
     try:
         if output == "numpy":
-            return _find(_ARRAY, boxes, other, algorithm, sort, *which)
+            return _find(_ARRAY, left, right, algorithm, sort, *which)
         if output == "arrow":
-            return _find(_core.TABLE, boxes, other, algorithm, sort, *which)
+            return _find(_core.TABLE, left, right, algorithm, sort, *which)
         if output == "sparse":
-            return _sparse(boxes, other, algorithm, *which)
+            return _sparse(left, right, algorithm, *which)
     except InvalidBoxError as error:
         error = _convert.with_other_conventions(error, boxes, "boxes", columns)
         raise _convert.with_other_conventions(error, other, "other", other_columns) from None
@@ -203,19 +209,16 @@ def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
     return csr_array((trues, found[:, 1].astype(np.int64), starts), shape=(len(left), columns))
 
 
-def _sets(boxes: Any, other: Any, columns: Columns | None, other_columns: Columns | None) -> tuple[Any, Any]:
+def _sets(
+    boxes: Any, other: Any, columns: Columns | None, other_columns: Columns | None, or_points: bool
+) -> tuple[Any, Any]:
     """Both sets as the extension module takes them. Raises ValueError if their reference systems differ."""
     if other is not None:
         _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
-        other = _convert.given(other, "other", other_columns)
+        other = _convert.given(other, "other", other_columns, or_points)
     elif other_columns is not None:
         raise ValueError("other_columns are given without other boxes; expected both or neither")
-    return _convert.given(boxes, "boxes", columns), other
-
-
-def _reaching(boxes: Any, other: Any, within: Any, period: Any) -> tuple[Any, Any, Any]:
-    """Both sets, points among them as boxes, and the reach as the extension module takes it."""
-    return _within.boxes_of(boxes), _within.boxes_of(other), _within.checked(within, period, other is not None)
+    return _convert.given(boxes, "boxes", columns, or_points), other
 
 
 def ends(to: Any, is_between: bool, columns: Columns | None, other_columns: Columns | None) -> Any:
@@ -272,12 +275,11 @@ def count(
     to: Any = None,
 ) -> int:
     """The number of pairs that `pairs` gives for the same arguments; none are kept."""
-    filters, other_filters, keys = with_keys(filters, other_filters, same, different, other is not None)
-    boxes, other = _sets(boxes, other, columns, other_columns)
-    if within is not None or period is not None:
-        boxes, other, within = _reaching(boxes, other, within, period)
+    filters, other_filters, keys = with_keys(filters, other_filters, same, different, boxes, other)
+    reach = _within.checked(within, period, other is not None)
+    boxes, other = _sets(boxes, other, columns, other_columns, reach is not None)
     moving = ends(to, other is not None, columns, other_columns)
-    which = (threads, filters, other_filters, ignored, quarantine, touching, within, moving, keys)
+    which = (threads, filters, other_filters, ignored, quarantine, touching, reach, moving, keys)
     found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
     return found
 
@@ -355,12 +357,11 @@ def components(
         uint32 of shape (n,): for each box the least row of the boxes in its component. A box without pairs, an absent
         one for example, has its own row.
     """
-    filters, _, keys = with_keys(filters, None, same, different, False)
-    boxes, _ = _sets(boxes, None, columns, None)
-    if within is not None or period is not None:
-        boxes, _, within = _reaching(boxes, None, within, period)
+    filters, _, keys = with_keys(filters, None, same, different, boxes, None)
+    reach = _within.checked(within, period, False)
+    boxes, _ = _sets(boxes, None, columns, None, reach is not None)
     moving = ends(to, False, columns, None)
-    which = (threads, filters, None, ignored, quarantine, touching, within, moving, keys)
+    which = (threads, filters, None, ignored, quarantine, touching, reach, moving, keys)
     found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
     return found
 
@@ -377,7 +378,8 @@ def filters(
 
     Two boxes count as a pair if they overlap and their filters accept each other: each one's `mask` has a bit of the
     other one's `category`, and not both are static. Two of the same `group` other than 0 pair whatever their bits if it
-    is positive, and never if it is negative.
+    is positive, and never if it is negative. So ``filters(n, category=0, mask=0, group=1 + image)`` lets only boxes of
+    one image pair: where a function has no `same`, as with `World`, `Tracker` and `Index`.
 
     Returns:
         A structured array of shape (n,), to be changed at will.
@@ -405,11 +407,12 @@ def filters(
 
 
 def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
-    """Closed intervals as boxes for all functions and classes: rows of their starts, 0, their ends, 0.
+    """Intervals as boxes, which all functions and classes take.
 
-    Intervals are on the x axis; a point on it is ``x, 0``. Half-open intervals, such as those of BED files, need
-    ``touching=False``. A start of ``inf`` with an end of ``-inf`` is an absent interval. Tables need no call of this: they
-    may have columns ``start`` and ``end`` instead of bounds, or ``columns`` says which two they are.
+    An interval becomes the row start, 0, end, 0: it lies on the x axis, where a point is ``x, 0``. Intervals are closed;
+    for half-open ones, such as those of BED files, say ``touching=False``. A start of ``inf`` with an end of ``-inf`` is an
+    absent interval. A table with columns ``start`` and
+    ``end`` instead of bounds needs no call of this.
 
     Returns:
         A float64 array of shape (n, 4).

@@ -34,7 +34,7 @@ class Partition:
         parts: How many parts of about equal cost to cut space into. There are fewer where no cut tells boxes apart, as
             with all boxes at one place.
         boxes: How many boxes the sample stands for. Then their pairs count among the costs; 0: boxes alone.
-        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+        columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
     Raises:
         InvalidBoxError: A box of the sample has a NaN or a minimum greater than its maximum.
@@ -80,14 +80,15 @@ class Partition:
             boxes: n boxes, whatever `pairs` takes, of the partition's dimension. Boxes of float64 are refused by a
                 partition of float32 unless they are exact in it.
             quarantine: Leave invalid boxes out instead of raising.
-            columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+            columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
         Raises:
             InvalidBoxError, TypeError, ValueError: As `pairs` does, and if another thread changes the boxes meanwhile.
 
         Cost: O(n log parts). The GIL is released.
         """
-        return Assignment(*self._partition.assign(_convert.given(boxes, "boxes", columns), quarantine))
+        leaves_out = _arguments.truth(quarantine, "quarantine")
+        return Assignment(*self._partition.assign(_convert.given(boxes, "boxes", columns), leaves_out))
 
     def pairs(
         self,

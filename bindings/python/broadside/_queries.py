@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from broadside import _arguments, _convert, _core, _pickling
 from broadside._columns import Columns
 from broadside._errors import InvalidBoxError
+from broadside._keys import Keyed, groups_of, rows_by_group, with_keys
 
 
 class Found(NamedTuple):
@@ -34,7 +35,7 @@ class Hits(NamedTuple):
 
 
 class FirstHits(NamedTuple):
-    """What each ray hits first: a row for each ray. One that hits nothing has the greatest number and ``inf``."""
+    """What each ray hits first: a row for each ray. One that hits nothing has the box 4294967295 (of a world 2**64 - 1) at t ``inf``."""
 
     box: NDArray[Any]
     """The box hit: a row (uint32), of a world a handle (uint64). Of several at the same t, the least row."""
@@ -43,7 +44,11 @@ class FirstHits(NamedTuple):
 
 
 class Neighbours(NamedTuple):
-    """The nearest boxes of each query, shape (m, k). Places without a box hold the greatest number and ``inf``."""
+    """The nearest boxes of each query: two arrays of shape (m, k).
+
+    If a query has fewer than k neighbours, the places left have the box 4294967295, the greatest uint32 (of a world
+    2**64 - 1), at the distance ``inf``.
+    """
 
     box: NDArray[Any]
     """By distance, then by row: rows (uint32), of a world handles (uint64)."""
@@ -62,7 +67,7 @@ class Index:
 
     Args:
         boxes: n boxes, whatever `pairs` takes. They are copied.
-        columns: A table's columns of bounds, or the meaning of the numbers in a row: see `pairs`.
+        columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
         filters: A filter for each box, made by `broadside.filters`, for queries with filters.
         dtype: float32 or float64, to widen the boxes. Queries are of the same dtype: those of float64 to an index of
             float32 are refused unless they are exact in float32, so that answers are exact.
@@ -76,7 +81,8 @@ class Index:
     the GIL and is not interrupted. An index can be pickled.
 
     Each function takes `filters` and `exclude`, with one value for each query or one for all. `filters` are made by
-    `broadside.filters`: a query finds only boxes whose filters accept its own. `exclude` names a box that the query leaves
+    `broadside.filters`: a query finds only boxes whose filters accept its own. Filters of ``category=0, mask=0, group=1 +
+    image``, of the boxes and of the queries, find only boxes of the query's image. `exclude` names a box that the query leaves
     out, such as the box that a point belongs to. If there is no such box, nothing is left out.
     """
 
@@ -99,11 +105,11 @@ class Index:
         except InvalidBoxError as error:
             raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
 
-    def _take(self, array: NDArray[Any], crs: Any, filters: NDArray[np.void] | None) -> None:
+    def _take(self, array: NDArray[Any], crs: Any, filters: Any) -> None:
         # Bytes are immutable, so an array over them cannot be made writable.
         self._boxes: NDArray[Any] = np.ndarray(array.shape, array.dtype, array.tobytes())
         self._crs = crs
-        self._filters = None if filters is None else np.array(filters)
+        self._filters = filters if filters is None or isinstance(filters, Keyed) else np.array(filters)
         self._index = _core.make_index(self._boxes, self._filters)
 
     def __len__(self) -> int:
@@ -230,20 +236,25 @@ def nearest_pairs(
     other_columns: Columns | None = None,
     filters: NDArray[np.void] | None = None,
     other_filters: NDArray[np.void] | None = None,
+    same: Any = None,
+    different: Any = None,
 ) -> Neighbours:
     """For each box of a set the k nearest ones: of `other` or, without it, of the same set, itself left out.
 
     Args:
-        boxes: n boxes, whatever `pairs` takes, or points of shape (n, 2) or (n, 3).
+        boxes: n boxes, whatever `pairs` takes, or points: arrays of shape (n, 2) or (n, 3), or tables with columns x and
+            y, or others that `columns` names.
         other: A second set, likewise, of the same dimension. If one set is float32 and the other float64, the former
             is widened.
         k: How many, from 1 to 65,536, or to the number of boxes where these are more.
         max_distance: Boxes that are farther away are not found. A box at exactly this distance is.
         threads: The most threads; None: all cores. A thread has at least 4096 boxes.
-        columns: As in `pairs`.
-        other_columns: As in `pairs`.
+        columns: As in `pairs`; two or three names are points.
+        other_columns: Likewise for `other`.
         filters: Which boxes may be neighbours: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
+        same: A key for each box, such as its image or class, as in `pairs`: only boxes with equal keys are neighbours.
+        different: Likewise: only boxes with unequal keys are neighbours. With `same` as well, both must hold.
 
     Returns:
         For each box its neighbours, by distance and then by row, whatever the threads. Two boxes with the same bounds
@@ -253,22 +264,66 @@ def nearest_pairs(
         InvalidBoxError, InvalidQueryError: A box has a NaN or a minimum greater than its maximum.
         TypeError, ValueError: As `pairs`.
 
-    Cost: about that of an `Index` and, for each box, some hundred nanoseconds and what it finds.
+    Cost: about that of an `Index` and, for each box, some hundred nanoseconds and what it finds; with `same`, also some ten
+    microseconds for each key. Where space is periodic, `pairs` finds neighbours, by ``within`` and ``period``.
     """
-    left = _convert.boxes_or_points(boxes, "boxes", columns)
+    filters, other_filters, _ = with_keys(filters, other_filters, None, different, boxes, other)
+    groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
+    as_rows = _convert.boxes if groups is None else _convert.valid_boxes
+    left = as_rows(boxes, "boxes", columns, or_points=True)
     if other is None:
         for value, name in ((other_columns, "other_columns"), (other_filters, "other_filters")):
             if value is not None:
                 raise ValueError(f"{name} are given without other boxes; expected both or neither")
-        index = Index(left, filters=filters)
-        return index.nearest(left, k, max_distance=max_distance, threads=threads, filters=filters, exclude=np.arange(len(left)))
-    _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
-    right = _convert.boxes_or_points(other, "other", other_columns)
-    if left.shape[1] != right.shape[1]:
-        raise ValueError(f"boxes have {left.shape[1] // 2} dimensions and other has {right.shape[1] // 2}; expected the same")
-    dtype = np.result_type(left, right)
-    index = Index(right, dtype=dtype, filters=other_filters)
-    return index.nearest(left.astype(dtype, copy=False), k, max_distance=max_distance, threads=threads, filters=filters)
+        right, other_filters, exclude = left, filters, np.arange(len(left))
+    else:
+        _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
+        right, exclude = as_rows(other, "other", other_columns, or_points=True), None
+        if left.shape[1] != right.shape[1]:
+            raise ValueError(
+                f"boxes have {left.shape[1] // 2} dimensions and other has {right.shape[1] // 2}; expected the same"
+            )
+        dtype = np.result_type(left, right)
+        left, right = left.astype(dtype, copy=False), right.astype(dtype, copy=False)
+    how: dict[str, Any] = {"max_distance": _checked_distance(max_distance), "threads": threads}
+    if groups is None:
+        return Index(right, filters=other_filters).nearest(left, k, filters=filters, exclude=exclude, **how)
+    searched = _Set("other", right, groups[-1], other_filters)
+    asked = _Set("boxes", left, groups[0], filters)
+    return _nearest_by_key(asked, searched, _checked_k(k, len(right)), exclude is not None, how)
+
+
+class _Set:
+    """A set of boxes by their keys."""
+
+    def __init__(self, name: str, boxes: NDArray[Any], groups: NDArray[np.int64], filters: Any) -> None:
+        if len(groups) != len(boxes):
+            raise ValueError(f"same has {len(groups)} keys for {len(boxes)} boxes; expected one for each box")
+        if filters is not None:
+            _convert.filters(filters, len(boxes), "filters" if name == "boxes" else "other_filters")
+        self.boxes, self.filters = boxes, filters
+        self.rows = rows_by_group(groups)
+
+    def part(self, key: int) -> tuple[NDArray[np.uint32], NDArray[Any], Any]:
+        """The rows of a key's boxes, these boxes and their filters."""
+        rows = self.rows[key]
+        return rows, self.boxes[rows], None if self.filters is None else self.filters[rows]
+
+
+def _nearest_by_key(left: _Set, right: _Set, k: int, is_one_set: bool, how: dict[str, Any]) -> Neighbours:
+    """The nearest boxes of equal keys, by an index for each key: a filter would look at all boxes of other keys nearby."""
+    none = np.uint32(2**32 - 1)
+    box = np.full((len(left.boxes), k), none)
+    distances = np.full(box.shape, np.inf)
+    for key in left.rows.keys() & right.rows.keys():
+        rows, boxes, filters = left.part(key)
+        others, other_boxes, other_filters = right.part(key)
+        some = min(k, len(others))
+        exclude = np.arange(len(rows)) if is_one_set else None
+        near = Index(other_boxes, filters=other_filters).nearest(boxes, some, filters=filters, exclude=exclude, **how)
+        box[rows, :some] = np.append(others, none)[np.minimum(near.box, len(others))]
+        distances[rows, :some] = near.distance_squared
+    return Neighbours(box, distances)
 
 
 def _checked_k(k: int, boxes: int) -> int:

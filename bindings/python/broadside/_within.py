@@ -1,5 +1,5 @@
-"""Pairs within a distance or around an edge: the arguments `within` and `period`, points as boxes, distances and
-neighbour lists of pairs."""
+"""Pairs within a distance or around an edge: the arguments `within` and `period`, distances and neighbour lists
+of pairs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from broadside import _arguments, _core
+from broadside import _arguments, _convert, _core
+from broadside._columns import Columns
 
 
 def checked(within: Any, period: Any, is_between: bool) -> Any:
@@ -53,13 +54,6 @@ def _radii(found: Any) -> NDArray[np.float64]:
     return np.ascontiguousarray(array, np.float64)
 
 
-def boxes_of(found: Any) -> Any:
-    """Points, an array of shape (n, 2) or (n, 3), as boxes; others as they are."""
-    if isinstance(found, np.ndarray) and found.ndim == 2 and found.shape[1] in (2, 3):
-        return np.concatenate((found, found), axis=1)
-    return found
-
-
 class NeighbourLists(NamedTuple):
     """The neighbours of every box, ascending: those of box i are ``ids[offsets[i]:offsets[i + 1]]``.
 
@@ -73,7 +67,13 @@ class NeighbourLists(NamedTuple):
 
 
 def distances(
-    boxes: Any, pairs: ArrayLike, other: Any = None, *, period: ArrayLike | None = None
+    boxes: Any,
+    pairs: ArrayLike,
+    other: Any = None,
+    *,
+    period: ArrayLike | None = None,
+    columns: Columns | None = None,
+    other_columns: Columns | None = None,
 ) -> NDArray[np.float64]:
     """The Euclidean distance of the boxes of each pair: 0 for boxes that overlap.
 
@@ -82,10 +82,14 @@ def distances(
         pairs: Rows of two ids, shape (k, 2), such as ``pairs(boxes, within=r)``, whose distances are at most r.
         other: The second set, if the pairs are of two sets.
         period: As in `pairs`.
+        columns: As in `pairs`.
+        other_columns: As in `pairs`.
 
     Raises ValueError for an id that is out of range.
     """
-    return _core.distances(boxes_of(boxes), boxes_of(other), pairs, periods(period))
+    left = _convert.given(boxes, "boxes", columns, or_points=True)
+    right = None if other is None else _convert.given(other, "other", other_columns, or_points=True)
+    return _core.distances(left, right, pairs, periods(period))
 
 
 def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> NeighbourLists:
@@ -100,4 +104,4 @@ def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> Neighbour
     Raises ValueError for an id that is out of range.
     """
     count = _arguments.integer(n, "n", 0, 2**32 - 1)
-    return NeighbourLists(*_core.neighbours(pairs, count, bool(full)))
+    return NeighbourLists(*_core.neighbours(pairs, count, _arguments.truth(full, "full")))

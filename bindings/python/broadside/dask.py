@@ -63,7 +63,7 @@ def pairs(
             bounds of its geometries. A list of chunks: delayed objects, DataFrames, GeoDataFrames, GeoSeries and arrays.
             Whatever else ``broadside.pairs`` takes is cut into chunks and travels with the tasks.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are found.
-        columns: The frames' columns of bounds, or the meaning of the numbers in a row: see ``broadside.pairs``.
+        columns: The names of the frames' columns of bounds, or a layout such as "xywh": see ``broadside.pairs``.
         other_columns: Likewise of `other`.
         ids: What a box is called: ``"row"``, its row number counted over all chunks; or ``"index"``, its label in the
             index of its frame. Labels need not be unique.
@@ -115,7 +115,7 @@ def pairs(
     width, dtype = _kind(sets, looks)
     partition = _partition_of(looks, width, dtype, wanted)
     sides = tuple(_side(one, its, ids) for one, its in zip(sets, looks, strict=True))
-    plan = Plan(partition, sides, width, dtype, algorithm, threads, bool(sort), bool(quarantine))
+    plan = Plan(partition, sides, width, dtype, algorithm, threads, _arguments.truth(sort, "sort"), _arguments.truth(quarantine, "quarantine"))
     return _frame(sets, looks, plan)
 
 

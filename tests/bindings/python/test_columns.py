@@ -113,10 +113,10 @@ def test_rows_without_names_are_what_a_caller_says(made):
 def test_names_the_convention_by_which_all_rows_are_valid():
     rows = np.array([[0, 0, 10, 10], [12, 12, 6, 4.0]])
     for call in (broadside.pairs, broadside.Index, lambda found: broadside.pairs(WHOLE, found)):
-        with pytest.raises(broadside.InvalidBoxError, match="all rows are valid with columns='xywh' or columns='cxcywh'") as caught:
+        with pytest.raises(broadside.InvalidBoxError, match="would be valid with columns='xywh' or columns='cxcywh' .check") as caught:
             call(rows)
         assert caught.value.row == 1
-        with pytest.raises(broadside.InvalidBoxError, match="all rows are valid with columns='xywh'"):
+        with pytest.raises(broadside.InvalidBoxError, match="would be valid with columns='xywh'"):
             call(pandas.DataFrame({"image": [1, 1], "bbox": rows.tolist()}))
         with pytest.raises(broadside.InvalidBoxError) as caught:
             call(pandas.DataFrame(rows, columns=NAMES))
@@ -125,6 +125,15 @@ def test_names_the_convention_by_which_all_rows_are_valid():
     with pytest.raises(broadside.InvalidBoxError) as caught:
         broadside.pairs(rows)
     assert "columns=" not in str(caught.value)
+
+
+@pytest.mark.parametrize("order", [["xmin", "xmax", "ymin", "ymax"], ["xmin", "ymax", "xmax", "ymin"]])
+def test_names_an_order_before_the_conventions(order):
+    rows = WHOLE[:, [NAMES.index(name) for name in order]]
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        broadside.pairs(rows)
+    assert f"would be valid with columns={order}" in str(caught.value)
+    np.testing.assert_array_equal(broadside.Index(rows, columns=order).boxes, WHOLE)
 
 
 def test_each_function_of_boxes_takes_columns():
@@ -307,6 +316,58 @@ def test_takes_points_by_their_names():
         index.containing(geopandas.GeoSeries([shapely.Point(0, 0), shapely.box(0, 0, 1, 1)]))
     with pytest.raises(ValueError, match="points has the columns a, b, c; expected x, y"):
         index.containing(pandas.DataFrame(np.zeros((2, 3)), columns=["a", "b", "c"]))
+
+
+@tables
+@pytest.mark.parametrize("names", [["x", "y"], ["px", "py"], ["lon", "lat"]])
+def test_points_of_a_table_are_points_of_an_array(table, names):
+    points = BOXES[:, :2]
+    frame = table(columns_of(points, names) | {"id": np.arange(50)})
+    backwards = table(columns_of(points[:, ::-1], names[::-1]))
+    for columns, found in [(names, frame), (names, backwards), (None, table(columns_of(points, names)))]:
+        near = broadside.pairs(found, within=0.1, columns=columns, sort=True)
+        assert near.tolist() == broadside.pairs(points, within=0.1, sort=True).tolist()
+        assert broadside.count(found, frame, within=0.1, columns=columns, other_columns=names) == broadside.count(points, points, within=0.1)
+        assert broadside.components(found, within=0.1, columns=columns).tolist() == broadside.components(points, within=0.1).tolist()
+        expected = broadside.distances(points, near)
+        np.testing.assert_array_equal(broadside.distances(found, near, columns=columns), expected)
+        np.testing.assert_array_equal(broadside.nearest_pairs(found, columns=columns).box, broadside.nearest_pairs(points).box)
+    assert broadside.count(points.tolist(), within=0.1) == len(near)
+
+
+def test_points_are_refused_where_columns_say_something_else():
+    frame = pandas.DataFrame(BOXES, columns=["px", "py", "qx", "qy"])
+    for call in (broadside.pairs, broadside.Index, broadside.invalid_rows, broadside.draw):
+        for columns in (["px", "py"], ["px", "py", "qx"]):
+            with pytest.raises(ValueError, match="the columns of boxes are px, py.*; for points say within=, or use nearest_pairs"):
+                call(frame, columns=columns)
+    for columns, message in [
+        (["xmin", "xmax"], "no columns that give bounds on the y axis"),
+        (["xmin", "foo"], "column 'xmin' alone|column xmin alone"),
+        (["x", "foo", "bar"], "no columns that give bounds on the x axis"),
+    ]:
+        named = pandas.DataFrame(np.zeros((3, len(columns))), columns=columns)
+        for call in (broadside.nearest_pairs, lambda found, **which: broadside.pairs(found, within=1, **which)):
+            with pytest.raises(ValueError, match=message):
+                call(named, columns=columns)
+            with pytest.raises(ValueError, match="has the columns"):
+                call(named)
+    for names in (["id", "px", "py"], ["px", "py", "id", "label"]):  # which of them is an id?
+        with pytest.raises(ValueError, match="has the columns .*for points|has the columns"):
+            broadside.nearest_pairs(pandas.DataFrame(np.zeros((3, len(names))), columns=names))
+    interval = pandas.DataFrame({"start": [0, 5], "end": [4, 6]})
+    for columns in (None, ["start", "end"]):
+        assert broadside.nearest_pairs(interval, columns=columns).distance_squared.tolist() == [[1], [1]]
+
+
+def test_takes_a_series_of_lists_or_dicts():
+    sizes = pandas.Series(sizes_of(WHOLE).tolist(), name="box")
+    np.testing.assert_array_equal(broadside.Index(sizes, columns="xywh").boxes, WHOLE)
+    bounds = pandas.Series([dict(zip(NAMES, row)) for row in BOXES.tolist()])
+    assert as_set(broadside.pairs(bounds)) == PAIRS
+    for numbers in (pandas.Series([1.0, 2.0]), pandas.Series([1, 2], dtype="Int64")):
+        with pytest.raises(ValueError, match=r"shape \(2,\)"):
+            broadside.pairs(numbers)
 
 
 def test_refuses_sets_in_two_reference_systems():

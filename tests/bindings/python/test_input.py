@@ -122,10 +122,10 @@ def test_refuses_arguments_that_do_not_fit():
         ({"algorithm": None}, TypeError, "algorithm is None"),
         ({"threads": 2**70}, ValueError, "threads is 1180591620717411303424; expected 1 to 1024"),
         ({"threads": True}, TypeError, "threads is a bool"),
-        ({"threads": 1.5}, TypeError, "float|int"),
+        ({"threads": 1.5}, TypeError, "threads is a float; expected an int, or None for all"),
         ({"output": "pandas"}, ValueError, "expected 'numpy', 'arrow' or 'sparse'"),
         ({"threads": 0}, ValueError, "threads is 0; expected 1 to 1024"),
-        ({"threads": "two"}, TypeError, "int"),
+        ({"threads": "all"}, TypeError, "threads is a str; expected an int, or None for all"),
         ({"threads": 2, "algorithm": "grid:threads=2"}, ValueError, "expected one of the two"),
         ({"filters": broadside.filters(9)}, ValueError, r"shape \(9,\); expected \(10,\)"),
         ({"filters": np.zeros(10)}, TypeError, "expected what broadside.filters"),
@@ -156,11 +156,20 @@ def test_refuses_arguments_that_do_not_fit():
         broadside.filters(2, is_static=[1, 0])
 
 
-def test_takes_whatever_is_true_for_a_flag():
+def test_takes_only_true_and_false_for_a_flag():
     boxes = scattered(100)
-    for flag in (1, np.bool_(True), "yes"):
+    for flag in (1, np.bool_(True)):
         np.testing.assert_array_equal(broadside.pairs(boxes, sort=flag), broadside.pairs(boxes, sort=True))
-    assert broadside.count(boxes, quarantine=None) == broadside.count(boxes)
+    for call, name in [
+        (lambda flag: broadside.pairs(boxes, touching=flag), "touching"),
+        (lambda flag: broadside.count(boxes, quarantine=flag), "quarantine"),
+        (lambda flag: broadside.Tracker(2, touching=flag), "touching"),
+        (lambda flag: broadside.Partition(boxes, 2).assign(boxes, quarantine=flag), "quarantine"),
+        (lambda flag: broadside.neighbour_lists([[0, 1]], 2, full=flag), "full"),
+    ]:
+        for flag, kind in (("no", "a str"), (None, "None"), (2, "an int")):
+            with pytest.raises(TypeError, match=f"{name} is {kind}; expected True or False"):
+                call(flag)
 
 
 def test_an_empty_list_is_no_boxes():

@@ -38,7 +38,9 @@ def test_tables_may_have_the_columns_of_intervals():
         assert as_set(broadside.pairs(table)) == expected
         assert as_set(broadside.pairs(table, same=table["chrom"], touching=False)) == by_definition(touching=False)
     table = pandas.DataFrame({"to": ENDS, "from": STARTS})
-    assert as_set(broadside.pairs(table, columns=["from", "to"])) == expected
+    with pytest.raises(ValueError, match=r"the columns of boxes are from, to: .*for intervals use intervals\(\)"):
+        broadside.pairs(table, columns=["from", "to"])
+    assert as_set(broadside.pairs(broadside.intervals(table["from"], table["to"]))) == expected
     assert as_set(broadside.pairs(np.column_stack([STARTS, ENDS]), columns="start,end")) == expected
     missing = pandas.DataFrame({"start": [1.0, np.nan], "end": [2.0, np.nan]})
     assert broadside.pairs(missing).tolist() == []
@@ -74,7 +76,7 @@ def test_refuses_what_is_no_intervals(arguments, error, message):
 
 
 def test_names_intervals_where_rows_have_two_numbers():
-    with pytest.raises(ValueError, match=r"for intervals see broadside.intervals\(\)"):
+    with pytest.raises(ValueError, match=r"for points say within=, or use nearest_pairs\(\); for intervals use intervals\(\)"):
         broadside.pairs(np.zeros((3, 2)))
     with pytest.raises(broadside.InvalidBoxError):
         broadside.pairs(broadside.intervals([1], [0]))

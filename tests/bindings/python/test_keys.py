@@ -67,6 +67,34 @@ def test_columns_of_tables_are_keys():
             broadside.pairs(BOXES[:2], same=missing)
 
 
+def test_several_keys_are_one_and_columns_go_by_name():
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    pyarrow = pytest.importorskip("pyarrow")
+    images, classes = RNG.integers(-3, 4, 400), RNG.choice(["cat", "dog"], 400)
+    columns = dict(zip(["xmin", "ymin", "xmax", "ymax"], BOXES.T)) | {"image": images, "class": classes}
+    structured = np.zeros(400, [(name, np.asarray(column).dtype) for name, column in columns.items()])
+    for name, column in columns.items():
+        structured[name] = column
+    equal = {(a, b) for a, b in brute_force(BOXES) if images[a] == images[b] and classes[a] == classes[b]}
+    unequal = brute_force(BOXES) - equal
+    assert equal and unequal
+    assert as_set(broadside.pairs(BOXES, same=(images, classes))) == equal
+    between = broadside.count(BOXES, BOXES, same=((images, classes), (images, classes)))
+    for table in (pandas.DataFrame(columns), polars.DataFrame(columns), pyarrow.table(columns), structured):
+        for keys in (["image", "class"], ("image", "class"), table[["image", "class"]] if hasattr(table, "loc") else ["class", "image"]):
+            assert as_set(broadside.pairs(table, same=keys)) == equal
+            assert as_set(broadside.pairs(table, different=keys)) == unequal
+        assert broadside.count(table, table, same=["image", "class"]) == between
+        assert broadside.count(table, same="image") == broadside.count(BOXES, same=images)
+        assert broadside.count(table, table, same=("image", "image")) == broadside.count(BOXES, BOXES, same=(images, images))
+        with pytest.raises(TypeError, match="same is 'imgae', which no column of the boxes is called"):
+            broadside.pairs(table, same="imgae")
+    with pytest.raises(ValueError, match="same has 400 and 3 keys"):
+        broadside.pairs(BOXES, same=(images, classes[:3]))
+    with pytest.raises(ValueError, match="same has 2 keys for a box and 1 for one of other"):
+        broadside.pairs(BOXES, BOXES, same=((images, classes), images))
+
+
 def test_arrow_columns_are_keys():
     pyarrow = pytest.importorskip("pyarrow")
     names = pyarrow.array(KEYS["strings"].tolist())
@@ -101,7 +129,7 @@ def test_filters_are_applied_as_well_or_refused():
         ({"same": [0.5] * 400}, TypeError, "same has dtype float64; expected integers, strings or categories"),
         ({"same": [[1]] * 400}, ValueError, r"same has shape \(400, 1\)"),
         ({"different": [None] * 400}, ValueError, "different has no key in row 0"),
-        ({"different": "layer"}, TypeError, "different is a str"),
+        ({"different": "layer"}, TypeError, "different is 'layer', which no column of the boxes is called"),
         ({"other": BOXES, "same": KEYS["all"]}, TypeError, "same is a ndarray; expected two arrays of keys"),
         ({"other": BOXES, "same": (KEYS["all"], KEYS["strings"])}, TypeError, "same has strings for one set"),
     ],

@@ -87,6 +87,28 @@ def test_reads_the_columns_that_a_caller_names(tmp_path):
     assert broadside.read(bbox, columns="bbox=xywh").tolist() == [[1, 2, 5, 8]]
     with pytest.raises(ValueError, match="the columns of the file are 'wh'; expected one of xyxy"):
         broadside.read(plain, columns="wh")
+    behind = tmp_path / "behind.csv"
+    behind.write_text("id,h,w,y,x\n9,6,4,2,1\n")
+    assert broadside.read(behind, columns=["x", "y", "w", "h"]).tolist() == [[1, 2, 5, 8]]
+    assert broadside.read(behind, columns="-,h,w,y,x").tolist() == [[1, 2, 5, 8]]
+    assert broadside.read(behind, columns="x,y,w,h").tolist() == [[9, 6, 13, 8]], "from left to right"
+    assert broadside.read(behind, columns=["-", "ymax", "xmax", "ymin", "xmin"]).tolist() == [[1, 2, 4, 6]], "none of its names"
+    with pytest.raises(broadside.FileError, match="'id,h,w,y,x'; expected a column 'width', as columns names it"):
+        broadside.read(behind, columns=["x", "y", "width", "h"])
+
+
+def test_speaks_of_its_own_arguments(tmp_path):
+    path = tmp_path / "boxes.csv"
+    path.write_text("0,0,10,10\n12,12,6,4\n")
+    with pytest.raises(broadside.FileError, match="say columns='x,y,w,h'"):
+        broadside.read(path)
+    path.write_text("1,2,3\n")
+    with pytest.raises(broadside.FileError, match="names with columns=") as caught:
+        broadside.read(path)
+    assert "--" not in str(caught.value)
+    for found, kind in ((np.zeros((2, 4)), "a ndarray|an ndarray"), (7, "an int")):
+        with pytest.raises(TypeError, match=f"path is ({kind}); expected the path of a file.*take them as they are"):
+            broadside.read(found)
 
 
 TEXT = "min_x,min_y,max_x,max_y\n0,0,1,1\n1,1,2,2\n"

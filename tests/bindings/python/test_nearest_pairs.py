@@ -45,6 +45,49 @@ def test_takes_points_and_widens_floats():
     assert [one.tolist() for one in near.pairs()] == [[2], [0]]
 
 
+@pytest.mark.parametrize("k", [1, 4, 200])
+@pytest.mark.parametrize("rules", [["same"], ["different"], ["same", "different"]])
+def test_neighbours_have_equal_or_unequal_keys(k, rules):
+    rng = np.random.default_rng(3)
+    points = rng.integers(0, 30, (210, 2)).astype(float)
+    keys = {"same": rng.choice(["a", "b", "c", "d"], 210), "different": rng.integers(0, 3, 210)}
+    keys["same"][120:130] = "e"  # which only the second set has
+    filters = broadside.filters(210, is_static=rng.random(210) < 0.5)
+    squares = ((points[:, None] - points[None]) ** 2).sum(axis=2)
+    for has_filters in (False, True):
+        allowed = (squares <= 81) & ~np.eye(210, dtype=bool)
+        for rule in rules:
+            allowed &= (keys[rule][:, None] == keys[rule]) == (rule == "same")
+        if has_filters:
+            allowed &= ~(filters["is_static"][:, None] & filters["is_static"])
+        of_one = {rule: keys[rule] for rule in rules} | ({"filters": filters} if has_filters else {})
+        of_two = {rule: (keys[rule][:120], keys[rule][120:]) for rule in rules}
+        of_two |= {"filters": filters[:120], "other_filters": filters[120:]} if has_filters else {}
+        for near, rows, first in [
+            (broadside.nearest_pairs(points, k=k, max_distance=9, **of_one), range(210), 0),
+            (broadside.nearest_pairs(points[:120], points[120:], k, max_distance=9, **of_two), range(120), 120),
+        ]:
+            for row in rows:
+                order = [j for j in np.argsort(squares[row, first:], kind="stable") if allowed[row, first + j]][:k]
+                some = len(order)
+                assert near.box[row, :some].tolist() == order
+                assert near.distance_squared[row, :some].tolist() == squares[row, first:][order].tolist()
+                assert (near.box[row, some:] == 2**32 - 1).all() and np.isinf(near.distance_squared[row, some:]).all()
+
+
+def test_refuses_keys_that_do_not_fit():
+    boxes = np.array([[0, 0, 1, 1]] * 3, np.float64)
+    with pytest.raises(ValueError, match=r"filters has shape \(2,\); expected \(3,\)"):
+        broadside.nearest_pairs(boxes, same=[1, 2, 3], filters=broadside.filters(2))
+    with pytest.raises(ValueError, match="same has 2 keys for 3 boxes"):
+        broadside.nearest_pairs(boxes, same=[1, 2])
+    with pytest.raises(ValueError, match="max_distance is -1"):
+        broadside.nearest_pairs(boxes, boxes, same=([1, 1, 1], [2, 2, 2]), max_distance=-1)
+    boxes[2, 0] = 7
+    with pytest.raises(broadside.InvalidBoxError, match="box 2"):
+        broadside.nearest_pairs(boxes, same=[1, 2, 2])
+
+
 def test_refuses_what_has_no_answer():
     boxes = np.array([[0, 0, 1, 1]] * 3, np.float64)
     bad = boxes.copy()

@@ -42,7 +42,8 @@ struct ReadOptions {
   std::string ids{};       ///< a table's column or a map's property with the ids, as in --ids; empty: not
                            ///< read
   bool finds_ids = false;  ///< with empty `ids`: reads them if a table has a column `id`
-  int dimension = 0;       ///< 2 or 3; in 2D, a file in 3D is projected along the z axis
+  bool selects_columns = false;  ///< `columns` selects columns of a table that has these names
+  int dimension = 0;             ///< 2 or 3; in 2D, a file in 3D is projected along the z axis
   std::optional<Precision> precision{};
   /// If set, invalid boxes are left out (replaced by absent boxes in formats that have these), and this is
   /// called for the first few. Otherwise a file with an invalid box is refused.

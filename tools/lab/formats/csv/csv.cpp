@@ -156,6 +156,7 @@ class CsvOpener {
     if (convention != nullptr && !is_table_row(fields_)) return take_convention(*convention);
     Fields names = fields_of(convention != nullptr ? convention->columns : list, Separator::comma);
     std::replace(names.begin(), names.end(), std::string_view("-"), std::string_view());
+    if (options_.selects_columns && convention == nullptr) select(names);
     const BoundsForm form = take_form(list, names);
     if (names.size() > fields_.size())
       lines_.refuse(fmt::format("{} column{}", fields_.size(), fields_.size() == 1 ? "" : "s"),
@@ -171,6 +172,24 @@ class CsvOpener {
       if (columns_.places[i] != BoxColumns::ignored) read.push_back(fields_[i]);
     }
     return !is_table_row(read);
+  }
+
+  /// If the first line has these names, makes them the names of its columns; empty where a column is not
+  /// named.
+  void select(Fields& names) const {
+    const auto is_there = [this](std::string_view name) {
+      return std::find(fields_.begin(), fields_.end(), name) != fields_.end();
+    };
+    if (is_table_row(fields_) || std::none_of(names.begin(), names.end(), is_there)) return;
+    const auto other = std::find_if_not(names.begin(), names.end(), is_there);
+    if (other != names.end())
+      lines_.refuse(shown(lines_.line(), 100),
+                    fmt::format("a column {}, as columns names it", shown(*other)));
+    Fields selected = fields_;
+    for (std::string_view& field : selected) {
+      if (std::find(names.begin(), names.end(), field) == names.end()) field = {};
+    }
+    names = std::move(selected);
   }
 
   /// Takes the order of the numbers in a column of bounds from names such as "bbox=xywh".
