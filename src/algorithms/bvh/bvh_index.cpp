@@ -282,8 +282,8 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no other
-  // box is as near as those.
+  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
+  // other box is as near as those.
   const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
   using Group = kernels::NearGroup<D>;
   const bool in_groups = options.filters.empty() && wanted + 1 <= Group::max_count;
