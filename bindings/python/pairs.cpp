@@ -20,15 +20,9 @@ namespace {
 
 std::vector<Pair> found(const SearchArguments& search, bool sorts) {
   return without_gil([&](WithoutGil& released) {
-    // Room for the pairs of most calls, since a vector that grows writes to twice as many new pages. Pages
-    // that get no pairs take no memory.
-    constexpr std::size_t max_reserved = std::size_t{1} << 25;
-    const std::size_t boxes = search.boxes.size() + (search.other ? search.other->size() : 0);
     std::vector<Pair> pairs;
-    InterruptibleCollector collector(pairs, std::min((search.within ? 16 : 3) * boxes, max_reserved),
-                                     released);
+    InterruptibleCollector collector(pairs, released);
     search.run(collector, released);
-    if (pairs.size() < pairs.capacity() / 2) pairs.shrink_to_fit();
     if (sorts) sort_for(released, pairs);
     return pairs;
   });

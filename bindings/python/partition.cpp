@@ -146,7 +146,7 @@ class PyPartition {
     std::vector<std::uint8_t> right;
     if (search.other) right = begins_before(part, *search.other, "other");
     std::vector<Pair> pairs;
-    InterruptibleCollector collector(pairs, 0, released);
+    InterruptibleCollector collector(pairs, released);
     PartPairs part_pairs(left, search.other ? right : left, collector);
     search.run(part_pairs, released);
     collector.flush();

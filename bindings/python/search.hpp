@@ -29,8 +29,8 @@ inline constexpr std::size_t long_search = 4096;
 /// Appends pairs to a vector, and checks for signals at intervals.
 class InterruptibleCollector final : public PairSink {
  public:
-  InterruptibleCollector(std::vector<Pair>& pairs, std::size_t expected, WithoutGil& released)
-      : collector_(pairs, expected), released_(released) {}
+  InterruptibleCollector(std::vector<Pair>& pairs, WithoutGil& released)
+      : collector_(pairs), released_(released) {}
 
  private:
   void consume(std::span<const Pair> pairs) override {
