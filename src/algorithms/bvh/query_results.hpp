@@ -77,8 +77,8 @@ class FirstHit final : public kernels::FoundBoxes {
   int exponent_;
 };
 
-/// The nearest boxes so far, at most `count`; of two at the same distance, that of the lower id is nearer. Few are
-/// kept sorted, on the stack; more are a max-heap.
+/// The nearest boxes so far, at most `count`; of two at the same distance, that of the lower id is nearer.
+/// Few are kept sorted, on the stack; more are a max-heap.
 class NearestBoxes {
  public:
   NearestBoxes(const NearestBoxes&) = delete;
