@@ -101,6 +101,9 @@ test-rust: | setup ## Test the Rust crate, and build what `cargo package` packs;
 	cargo test --quiet --all-features
 	cargo run --quiet --example falling_boxes
 	cargo package --quiet --allow-dirty
+
+test-bevy: export CARGO_TARGET_DIR := $(CURDIR)/build/rust
+test-bevy: | setup ## Test the plugin for Bevy; needs cargo 1.95 and the network
 	cargo test --quiet --manifest-path bindings/rust/bevy/Cargo.toml
 
 # The options instrument Rust's code too. They are of nightly compilers, but others take them with RUSTC_BOOTSTRAP.
@@ -192,21 +195,27 @@ clean: ## Remove everything that was built or fetched
 # docs/peers.md describes.
 PEERS := yes
 RUST_PEERS := $(if $(filter no,$(PEERS)),OFF)
-compare bench: setup_options := $(if $(filter no,$(PEERS)),,--peers)
+# What tools/setup/setup installs for each goal; all that building and testing takes if the goal is not listed.
+of_compare := $(if $(filter no,$(PEERS)),,--peers)
+of_bench := $(of_compare)
+of_paper := --paper
+of_experiments := --paper
+of_published := --peers --paper
+of_deb := --deb
+of_docs := --docs
+of_systems := --systems
+of_windows := --systems
+of_python := --python
+of_test-python := --python
+of_wasm := --wasm
+of_test-wasm := --wasm
+of_test-installed := --web
+of_compare-web := --web
+of_playground := --web
+of_film := --web
+setup_options := $(sort $(foreach goal,$(MAKECMDGOALS),$(or $(of_$(goal)),--build)))
 
-paper experiments: setup_options := --paper
-
-published: setup_options := --peers --paper
 published: RUST_PEERS := ENGINES
-
-deb: setup_options := --deb
-
-docs: setup_options := --docs
-
-systems windows: setup_options := --systems
-python test-python: setup_options := --python
-playground: setup_options := --web
-wasm test-wasm test-installed compare-web: setup_options := $(if $(filter test-installed compare-web,$(MAKECMDGOALS)),--web,--wasm)
 
 setup:
 	@tools/setup/setup $(setup_options)

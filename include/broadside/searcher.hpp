@@ -67,6 +67,10 @@ struct SearchInput {
   /// The threads to use: without the tunable `threads`, the calling thread alone. By `workers.checkpoint` the
   /// caller can cancel a long search: count tests with a Checkpoint, which calls it.
   const Workers& workers = default_workers;
+
+  /// Whether a search may also refuse, before it writes a pair, boxes that its structure does not suit: it
+  /// then calls finish(). Only `auto` asks for this, where it knows a better search.
+  bool may_refuse = false;
 };
 
 /// The part of a Finder that you write for an algorithm of your own: it finds every overlapping pair of an

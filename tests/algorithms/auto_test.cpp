@@ -12,6 +12,8 @@
 #include "broadside/sinks.hpp"
 #include "broadside/tracker.hpp"
 
+#include "algorithms/auto/auto_thresholds.hpp"
+#include "algorithms/grid/tile_cells.hpp"
 #include "lab/scenes/scene.hpp"
 #include "tests/support/rng.hpp"
 
@@ -41,6 +43,9 @@ TEST(Auto, TakesTheSameForEachSeedOfAScene) {
     }
   }
 }
+
+static_assert(algorithm::AutoThresholds<2>::boxes_of_an_even_tile == algorithm::TileCells<2>::max_boxes);
+static_assert(algorithm::AutoThresholds<3>::boxes_of_an_even_tile == algorithm::TileCells<3>::max_boxes);
 
 TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
   EXPECT_EQ(chosen_for("uniform", 20, 1), "brute_force");

@@ -125,7 +125,7 @@ class AutoSearcher final : public Searcher<D> {
     has_handed_over_ = false;
     if (choice_ == AutoReason::tile) {
       RefusedTile<D> refused;
-      const std::optional<Statistics> statistics = search_with_choice(input, refused, pairs);
+      const std::optional<Statistics> statistics = search_with_choice(input, refused, true, pairs);
       if (!refused.is_refused()) return statistics;
       take_sample(input.boxes);
       choice_ = tests_on_best_axis(input.boxes) <= Limits::tests_of_an_uneven_tiles_axis
@@ -133,7 +133,7 @@ class AutoSearcher final : public Searcher<D> {
                     : AutoReason::uneven_tile;
     }
     SegmentSuccessor<D> successor(input, pairs, segments_);
-    std::optional<Statistics> statistics = search_with_choice(input, successor, pairs);
+    std::optional<Statistics> statistics = search_with_choice(input, successor, false, pairs);
     has_handed_over_ = successor.work().has_value();
     if (has_handed_over_) {
       statistics->tests += successor.work()->tests;
@@ -172,8 +172,7 @@ class AutoSearcher final : public Searcher<D> {
       case AutoReason::few:
         return text + boxes + " are so few that comparing all of them costs less than sorting them";
       case AutoReason::uneven_tile:
-        return text + boxes +
-               " are too uneven for cells: these would take far more tests than they find pairs";
+        return text + boxes + " are too uneven for cells of one size";
       case AutoReason::one_axis:
         return text + "a sweep along one axis leaves few tests per box: " + rounded(tests_) + " in a sample";
       case AutoReason::intervals:
@@ -198,13 +197,14 @@ class AutoSearcher final : public Searcher<D> {
   }
 
   std::optional<Statistics> search_with_choice(const SearchInput<D>& input, Successor<D>& successor,
-                                               PairSink& pairs) {
+                                               bool may_refuse, PairSink& pairs) {
     auto& chosen = searchers_[static_cast<std::size_t>(choice_)];
     if (!chosen) {
       const Algorithm& algorithm = algorithm_of(choice_);
       chosen = algorithm.in<D>().searcher(settings_of(algorithm));
     }
-    return chosen->search({input.boxes, input.left_count, input.doubles, &successor, input.workers}, pairs);
+    return chosen->search(
+        {input.boxes, input.left_count, input.doubles, &successor, input.workers, may_refuse}, pairs);
   }
 
   void choose(const SearchInput<D>& input) {

@@ -56,7 +56,7 @@ class GridSearcher final : public Searcher<D> {
     const std::size_t boxes = input.boxes.size();
     if (is_tile(input.boxes)) {
       if (sort_tile(input.boxes, input.left_count)) return sweep_tile(input, pairs);
-      if (input.successor != nullptr) {
+      if (input.may_refuse) {
         // Cells of one size suit boxes badly that are so uneven. Nothing has been written yet.
         input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
         return Statistics{};
