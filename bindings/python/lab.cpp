@@ -191,9 +191,11 @@ std::string draw(nb::handle boxes, const std::string& algorithms, std::size_t mo
           rounded[i].max[axis] = static_cast<float>(all[i].max[axis]);
         }
       }
-      const std::vector<Box<D>> drawn = lab::thinned<D>(rounded, most);
+      const lab::Thinned<D> thin = lab::thinned<D>(rounded, most);
       const auto entries = algorithms.empty() ? std::vector<lab::Entry>() : catalogue().select(algorithms);
-      return lab::svg_of(lab::draw<D>(title, drawn, all.size(), entries));
+      lab::Drawing drawing = lab::draw<D>(title, thin.boxes, all.size(), entries);
+      drawing.largest = thin.largest;
+      return lab::svg_of(drawing);
     });
   });
 }

@@ -146,10 +146,11 @@ Verb add_draw(CLI::App& program, const lab::Catalogue& catalogue) {
                  "What to lay over the boxes: a spec such as quadtree:capacity=16, or several with commas, "
                  "side by side; own, paper or all: the ones that lay something over boxes "
                  "(default: only the boxes)");
-  verb->add_option("-n", arguments->boxes,
-                   fmt::format("Number of boxes (default: {}); of a file of more, this many are taken, the "
-                               "largest among them, and the others are made larger, as dense as all",
-                               drawn_boxes));
+  verb->add_option(
+      "-n", arguments->boxes,
+      fmt::format("Number of boxes (default: {}); of a file of more, this many are taken, and made "
+                  "larger, as dense as all, except for those far larger than most",
+                  drawn_boxes));
   verb->add_option("--dimension", arguments->dimension, "2 or 3 (default: 2 where the scene has it)")
       ->check(is_dimension);
   verb->add_option("--seed", arguments->seed, "The same seed gives the same boxes (default: 1)")

@@ -16,7 +16,8 @@ export async function gunzip(base64: string): Promise<Uint8Array<ArrayBuffer>> {
 
 export async function compile(bytes: BufferSource, name = "wasm"): Promise<WebAssembly.Module> {
   const start = ArrayBuffer.isView(bytes) ? new Uint8Array(bytes.buffer, bytes.byteOffset) : new Uint8Array(bytes);
-  if (start[0] !== 0 || start[1] !== 0x61) refuse(name, bytes, "the bytes of a WebAssembly module, which begin with '\\0asm'");
+  if (start[0] !== 0 || start[1] !== 0x61)
+    refuse(name, bytes, "the bytes of a WebAssembly module, which begin with '\\0asm'");
   try {
     return await WebAssembly.compile(bytes);
   } catch (error) {

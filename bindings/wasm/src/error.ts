@@ -20,8 +20,9 @@ export class BroadsideError extends Error {
     this.index = index;
   }
 
-  /** Each entry has a class of its own, and its errors are those of the others too. */
+  /** Each entry has a class of its own, and its errors are those of the others too. A derived class is as any other. */
   static override [Symbol.hasInstance](value: unknown): boolean {
+    if (this !== BroadsideError) return Function.prototype[Symbol.hasInstance].call(this, value);
     return value instanceof Error && value.name === "BroadsideError";
   }
 }
@@ -29,7 +30,7 @@ export class BroadsideError extends Error {
 /** A message of the library with this language's names instead of those of C++. */
 function translated(message: string): string {
   return message.replace(/WorldOptions::|, first_generation/g, "").replace("unknown tunable", "unknown option")
-    .replace("find_pairs", "pairs").replace(/_([a-z])/g, (_, letter: string) => letter.toUpperCase());
+    .replace("find_pairs()", "broadside.pairs(boxes)").replace(/_([a-z])/g, (_, letter: string) => letter.toUpperCase());
 }
 
 export function errorOf(status: number, message: string, index: number): BroadsideError {

@@ -75,7 +75,7 @@ test("a world's options have the names of the declarations", () => {
 
 test("messages of the library have JavaScript's names", () => {
   assert.equal(errorOf(() => broadside.world({ keepPairs: false }).pairs()).message,
-    "the world does not keep its pairs; expected keepPairs, or pairs()");
+    "the world does not keep its pairs; expected keepPairs, or broadside.pairs(boxes)");
   assert.equal(errorOf(() => broadside.world({ relativeMargin: -1 })).message,
     "world: relativeMargin is '-1'; expected a number of at least 0");
   assert.equal(errorOf(() => broadside.index([]).firstHit([0, 0], [1, 0], { tMax: -1 })).message,

@@ -202,6 +202,9 @@ test("an error of one entry is one of the others", async () => {
   assert.throws(() => pairs.pairs([0]), (error) => error instanceof BroadsideError);
   assert.equal(BroadsideError.name, "BroadsideError");
   assert.ok(!((new Error("another") as unknown) instanceof BroadsideError));
+  class Derived extends BroadsideError {}
+  assert.ok(new Derived() instanceof Derived && new Derived() instanceof BroadsideError);
+  assert.ok(!((new BroadsideError() as unknown) instanceof Derived), "a derived class is as any other");
 });
 
 test("modules are apart from each other", async () => {

@@ -20,6 +20,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 using testing::Not;
 
 /// Of a hundred units both ways, ten to one of the world.
@@ -156,7 +157,7 @@ TEST(Drawing, StaysWithinTheViewWhateverTheBoxes) {
 
 TEST(Drawing, OfManyBoxesKeepsTheirDensity) {
   const std::vector<Box2> all = ladder(4000);
-  const std::vector<Box2> some = thinned<2>(all, 400);
+  const std::vector<Box2> some = thinned<2>(all, 400).boxes;
   ASSERT_EQ(some.size(), 400U);
   const auto area = [](const std::vector<Box2>& boxes) {
     double sum = 0;
@@ -164,19 +165,44 @@ TEST(Drawing, OfManyBoxesKeepsTheirDensity) {
     return sum;
   };
   EXPECT_NEAR(area(some), area(all), 1e-3 * area(all));
-  EXPECT_EQ(thinned<2>(ladder(10), 10), ladder(10));
-  EXPECT_EQ(thinned<2>(std::vector<Box2>(3, {{-infinity, 0}, {infinity, 1}}), 1)[0].min[0], -infinity);
+  EXPECT_EQ(thinned<2>(ladder(10), 10).boxes, ladder(10));
+  EXPECT_EQ(thinned<2>(std::vector<Box2>(3, {{-infinity, 0}, {infinity, 1}}), 1).boxes[0].min[0], -infinity);
+}
+
+/// The picture of a scene of these boxes, of which 40 are drawn.
+std::string picture_of_40(const std::vector<Box2>& all) {
+  NamedScene named;
+  named.spec = Spec("level");
+  named.scene.fixed_count = true;
+  named.scene.boxes_2d = [&all](const Settings&, std::size_t, std::uint64_t) { return all; };
+  return svg_of(draw_scene(named, 2, 0, Catalogue().select("bvh"), 40));
 }
 
 TEST(Drawing, OfManyBoxesKeepsTheLargest) {
   std::vector<Box2> all = ladder(4000);
   const Box2 floor = {{0, -1}, {4000, 0}};
   all.insert(all.begin() + 1234, floor);
-  const std::vector<Box2> some = thinned<2>(all, 40);
-  EXPECT_EQ(some.size(), 40U);
-  EXPECT_THAT(some, Contains(floor));
-  EXPECT_THAT(svg_of(draw<2>("level", some, all.size(), Catalogue().select("bvh"))),
-              AllOf(HasSubstr("40 of 4,001 boxes, the largest among them"), HasSubstr("that of these 40.")));
+  const Thinned<2> some = thinned<2>(all, 40);
+  EXPECT_EQ(some.boxes.size(), 40U);
+  EXPECT_THAT(some.boxes, Contains(floor));
+  EXPECT_THAT(picture_of_40(all),
+              AllOf(HasSubstr("40 of 4,001 boxes, the largest among them."), HasSubstr("that of these 40.")));
+}
+
+TEST(Drawing, OfManyLargestBoxesKeepsAQuarterOfItsOwn) {
+  std::vector<Box2> all = ladder(4000);
+  for (int i = 0; i < 100; ++i)
+    all.push_back({{0, -1 - static_cast<float>(i)}, {4000, -static_cast<float>(i)}});
+  const Thinned<2> some = thinned<2>(all, 40);
+  EXPECT_EQ(some.boxes.size(), 40U);
+  EXPECT_EQ(some.largest, 10U);
+  EXPECT_THAT(some.boxes, IsSupersetOf(std::span(all).subspan(4000, 10)));
+  EXPECT_THAT(picture_of_40(all), HasSubstr("40 of 4,100 boxes, the 10 largest among them."));
+}
+
+TEST(Drawing, OfManyBoxesOfSimilarSizesSaysNothingOfTheLargest) {
+  EXPECT_EQ(thinned<2>(ladder(4000), 40).largest, 0U);
+  EXPECT_THAT(picture_of_40(ladder(4000)), AllOf(HasSubstr("40 of 4,000 boxes."), Not(HasSubstr("largest"))));
 }
 
 TEST(Drawing, OfASceneHasFewerBoxesOfTheSameDensity) {

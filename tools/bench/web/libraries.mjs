@@ -264,7 +264,8 @@ export function ours(broadside, name = "broadside") {
       (asked) => idsSum(index.nearestOfEach(asked, k).ids) :
       (asked) => sumOf(asked, (i) => idsSum(index.nearest([asked[i], asked[i + 1]], k).ids)));
     return {
-      search: ofEach ? undefined : (asked) => sumOf(asked, (i) => idsSum(index.overlapping([asked[i], asked[i + 1], asked[i + 2], asked[i + 3]]))),
+      search: ofEach ? undefined : (asked) =>
+        sumOf(asked, (i) => idsSum(index.overlapping([asked[i], asked[i + 1], asked[i + 2], asked[i + 3]]))),
       nearest1: nearest(1),
       nearest10: nearest(10),
     };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -96,7 +97,8 @@ std::vector<bool> touching(std::span<const Box<D>> boxes) {
   return touches;
 }
 
-/// The boxes that are far larger than most, such as a level's floor; at most `max_count`, the largest.
+/// The boxes that are far larger than most, such as a level's floor; at most `max_count`, the largest, the
+/// first of those that are equal.
 template <int D>
 std::vector<bool> far_larger(std::span<const Box<D>> boxes, std::size_t max_count) {
   constexpr double far = 8;  // times the median of the longest sides
@@ -106,11 +108,13 @@ std::vector<bool> far_larger(std::span<const Box<D>> boxes, std::size_t max_coun
     for (int axis = 0; axis < D; ++axis) longest = std::max(longest, double{box.max[axis]} - box.min[axis]);
     sides.push_back(longest);
   }
-  std::vector<double> sorted = sides;
-  std::ranges::sort(sorted, std::greater());
-  const double least = std::max(far * sorted[sorted.size() / 2], sorted[max_count]);
-  std::vector<bool> larger;
-  for (const double side : sides) larger.push_back(side > least);
+  std::vector<std::size_t> by_side(boxes.size());
+  std::iota(by_side.begin(), by_side.end(), 0);
+  std::ranges::stable_sort(by_side, std::greater(), [&sides](std::size_t i) { return sides[i]; });
+  const double least = far * sides[by_side[by_side.size() / 2]];
+  std::vector<bool> larger(boxes.size());
+  for (std::size_t rank = 0; rank < max_count && sides[by_side[rank]] > least; ++rank)
+    larger[by_side[rank]] = true;
   return larger;
 }
 
@@ -133,10 +137,10 @@ std::vector<Box<D>> boxes_at(std::size_t frame, const NamedScene& named, SceneRe
 }  // namespace
 
 template <int D>
-std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes) {
+Thinned<D> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes) {
   std::vector<Box<D>> present;
   std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
-  if (present.size() <= max_boxes) return present;
+  if (present.size() <= max_boxes) return {std::move(present)};
   const std::vector<bool> is_far_larger = far_larger<D>(present, max_boxes / 4);
   const auto kept = static_cast<std::size_t>(std::ranges::count(is_far_larger, true));
   const std::size_t others = present.size() - kept;
@@ -162,7 +166,7 @@ std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes
     }
     chosen.push_back(box);
   }
-  return chosen;
+  return {std::move(chosen), kept};
 }
 
 template <int D>
@@ -171,7 +175,7 @@ Drawing draw(const std::string& scene, std::span<const Box<D>> boxes, std::size_
   std::vector<Box<D>> present;
   std::ranges::copy_if(boxes, std::back_inserter(present), is_present<D, float>);
   const std::span<const Box<D>> drawn = present;
-  Drawing drawing{scene, D, drawn.size(), of, {}};
+  Drawing drawing{scene, D, drawn.size(), of, 0, {}};
   std::vector<std::pair<const Entry*, Outline<D>>> outlines;
   for (const Entry& entry : entries) {
     outlines.emplace_back(&entry, outline(*entry.algorithm, entry.spec, drawn));
@@ -214,11 +218,13 @@ Drawing draw_scene(const NamedScene& named, int dimension, std::size_t of, std::
     request.boxes = max_boxes;
     request.seed = seed;
     const std::vector<Box<D>> all = boxes_at<D>(frame, named, request);
-    const std::vector<Box<D>> boxes = thinned<D>(all, max_boxes);
+    const Thinned<D> thin = thinned<D>(all, max_boxes);
     const auto present = static_cast<std::size_t>(std::ranges::count_if(all, is_present<D, float>));
-    const bool is_own = named.scene.fixed_count || boxes.size() < present;
+    const bool is_own = named.scene.fixed_count || thin.boxes.size() < present;
     const std::string title = named.spec.text() + (frame > 0 ? fmt::format(", frame {}", frame) : "");
-    return draw<D>(title, boxes, is_own ? present : std::max(of, present), able);
+    Drawing drawing = draw<D>(title, thin.boxes, is_own ? present : std::max(of, present), able);
+    drawing.largest = thin.largest;
+    return drawing;
   };
   return dimension == 2 ? in_dimension.operator()<2>() : in_dimension.operator()<3>();
 }
@@ -245,8 +251,8 @@ nlohmann::json json_of(const Drawing& drawing) {
           {"views", views}};
 }
 
-template std::vector<Box<2>> thinned(std::span<const Box<2>>, std::size_t);
-template std::vector<Box<3>> thinned(std::span<const Box<3>>, std::size_t);
+template Thinned<2> thinned(std::span<const Box<2>>, std::size_t);
+template Thinned<3> thinned(std::span<const Box<3>>, std::size_t);
 template Drawing draw(const std::string&, std::span<const Box<2>>, std::size_t, std::span<const Entry>);
 template Drawing draw(const std::string&, std::span<const Box<3>>, std::size_t, std::span<const Entry>);
 

@@ -41,19 +41,27 @@ struct DrawingView {
 struct Drawing {
   std::string scene;
   int dimension = 2;
-  std::size_t boxes = 0;  ///< the number of boxes drawn
-  std::size_t of = 0;     ///< the number of boxes in the scene
+  std::size_t boxes = 0;    ///< the number of boxes drawn
+  std::size_t of = 0;       ///< the number of boxes in the scene
+  std::size_t largest = 0;  ///< how many of the boxes drawn are the scene's largest, see Thinned
   std::vector<DrawingView> views;
 };
 
 /// The number of boxes that an eye can distinguish in a picture.
 inline constexpr std::size_t max_drawn = 600;
 
-/// `max_boxes` of the boxes, so that the picture looks like the scene: those far larger than most (up to a
-/// quarter of `max_boxes`, the largest) as they are, and others evenly chosen from the array, each enlarged
-/// about its centre to keep the density of all. All of them if there are no more than that.
 template <int D>
-std::vector<Box<D>> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes = max_drawn);
+struct Thinned {
+  std::vector<Box<D>> boxes;
+  std::size_t largest = 0;  ///< how many are far larger than most and were left as they are
+};
+
+/// `max_boxes` of the boxes, so that the picture looks like the scene: those far larger than most (up to a
+/// quarter of `max_boxes`, the largest, if there are such) as they are, and others evenly chosen from the
+/// array, each enlarged about its centre to keep the density of all. All of them if there are no more than
+/// that.
+template <int D>
+Thinned<D> thinned(std::span<const Box<D>> boxes, std::size_t max_boxes = max_drawn);
 
 /// Draws these boxes and, over them, a layer for each entry with an outline in D dimensions. A view contains
 /// all boxes except far outliers, and clips whatever reaches beyond it. Ignores absent boxes. `of` is the

@@ -107,10 +107,13 @@ std::string panel_at(const Drawing& drawing, const Panel& panel, int x, int y, i
   return text + "</svg>\n</g>\n";
 }
 
-/// "300 of 3,442 boxes".
+/// "300 of 3,442 boxes, the 2 largest among them".
 std::string drawn_boxes(const Drawing& drawing) {
   if (drawing.of <= drawing.boxes) return counted(drawing.boxes, "box", "boxes");
-  return fmt::format("{} of {} boxes, the largest among them", grouped(drawing.boxes), grouped(drawing.of));
+  std::string text = fmt::format("{} of {} boxes", grouped(drawing.boxes), grouped(drawing.of));
+  if (drawing.largest == 1) text += ", the largest among them";
+  if (drawing.largest > 1) text += fmt::format(", the {} largest among them", grouped(drawing.largest));
+  return text;
 }
 
 /// The description of the picture for screen readers.

@@ -60,7 +60,11 @@ export function chooseScene(name: string): void {
   batch(() => {
     const { scene } = state.value;
     const start = startOf(name);
-    patch({ scene: { ...scene, name, count: entry === undefined ? scene.count : start.count }, edits: [], selected: -1 });
+    patch({
+      scene: { ...scene, name, count: entry === undefined ? scene.count : start.count },
+      // Files have maps and meshes.
+      edits: [], selected: -1, up: name === fileScene,
+    });
     // A scene without its own panels keeps the current ones.
     if (entry?.breaks !== undefined) patch({ panels: start.panels, panel: 0 });
     clock.value = 0;

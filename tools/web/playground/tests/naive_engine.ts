@@ -1,5 +1,5 @@
 // The engine's contract in a few lines: brute force under every name. For tests of the page alone.
-import type { Algorithm, Engine, Observation, Outline, Search } from "../engine/types.ts";
+import type { Algorithm, Engine, Observation, Outline, Search, Tunable } from "../engine/types.ts";
 
 function naive(boxes: Float32Array, dimension: number): Observation {
   const stride = 2 * dimension;
@@ -27,9 +27,15 @@ function naive(boxes: Float32Array, dimension: number): Observation {
   };
 }
 
-const algorithms = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"].map((name): Algorithm => ({
+// The tunables that lessons have sliders for.
+const cell: Tunable = { name: "cell", summary: "size of a cell", default: "auto", type: "number", min: 0 };
+const axis: Tunable = { name: "axis", summary: "along which", default: "auto", type: "choice", choices: ["auto", "x", "y"] };
+const tunables: Readonly<Record<string, Tunable>> = { grid: cell, paper_grid: cell, sweep_and_prune: axis };
+
+const names = ["auto", "brute_force", "grid", "sweep_and_prune", "quadtree", "bvh", "paper_grid"];
+const algorithms = names.map((name): Algorithm => ({
   name, summary: `A stand-in for ${name}`, source: "", kind: "own", dimensions: [2, 3], tracks: true,
-  tunables: name === "grid" ? [{ name: "cell", summary: "size of a cell", default: "auto", type: "number", min: 0 }] : [],
+  tunables: tunables[name] === undefined ? [] : [tunables[name]],
 }));
 
 /** Frames of a table with the columns frame, box and bounds, in order; or of a GeoJSON point. */

@@ -289,6 +289,10 @@ describe("the playground", { skip: missing }, () => {
       name: "map.geojson", mimeType: "application/json", buffer: Buffer.from('{"type":"Point","coordinates":[1,2]}') });
     await until(page, () => window.playground.shown!.boxes.length === 4);
     assert.equal(await page.locator(".notice").count(), 0);
+    assert.equal(await page.evaluate(() => window.playground.state.up), true);
+    await page.getByLabel("Scene", { exact: true }).selectOption("street");
+    await until(page, () => window.playground.state.scene.name === "street");
+    assert.equal(await page.evaluate(() => window.playground.state.up), false, "another scene's y is a screen's");
     assert.deepEqual(problems, []);
     await page.close();
   });

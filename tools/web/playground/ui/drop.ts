@@ -24,7 +24,7 @@ export async function openFile(file: File): Promise<void> {
 export function showFile({ name, boxes, frames, warning }: Opened): void {
   batch(() => {
     fileName.value = name;
-    patch({ mode: "play", up: true });
+    patch({ mode: "play" });
     chooseScene(fileScene);
     // The settings of the opening scene do not suit other boxes.
     if (state.value.panels === defaultState.panels) patch({ panels: [{ spec: "auto", follow: false }] });
