@@ -101,7 +101,7 @@ template <int D, typename Real>
 /// of the gaps along each axis, in order of the axes. A gap is the lower bound of one box less the upper
 /// bound of the other. Each gap, square and sum is rounded to double, also for boxes of floats. So among
 /// boxes of floats only the sum of squares is rounded, unless their coordinates differ in size by a factor of
-/// 2^29. Infinity if it overflows, which floats do not.
+/// 2^29. Infinity if it overflows, which floats do not. Without meaning unless both are present.
 ///
 /// It is compiled into the library, so that every program rounds it in the same way.
 template <int D, typename Real>
