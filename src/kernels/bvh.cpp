@@ -128,8 +128,8 @@ class DistanceFrom {
 
 using Keys = hn::RebindToSigned<Floats>;
 
-/// Copies `size` children, of which at most sixteen are, by descending distance. Each is counted to its
-/// place, since no processor could predict the branches of a sort.
+/// Copies `size` children, at most sixteen, in descending order of distance. The place of each is the number
+/// of those farther away, since no processor could predict the branches of a sort. Reads sixteen distances.
 HWY_INLINE void push_sorted(const std::uint32_t* children, float* distances, std::size_t size,
                             std::uint32_t* children_to, float* distances_to) {
   const Keys tag;
@@ -163,6 +163,8 @@ HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& fro
   std::size_t count = 1;
   waiting[0] = tree.root;
   distances[0] = 0;
+  HWY_ALIGN std::uint32_t children[2 * fan_out];
+  HWY_ALIGN float nearness[2 * fan_out] = {};
   while (count > 0) {
     if (!(distances[--count] <= limit())) continue;
     const std::uint32_t number = waiting[count];
@@ -170,8 +172,6 @@ HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& fro
       leaf(number & ~leaf_bit);
       continue;
     }
-    HWY_ALIGN std::uint32_t children[2 * fan_out];
-    HWY_ALIGN float nearness[2 * fan_out];
     std::size_t size = 0;
     for (std::size_t at = 0; at < fan_out; at += lanes) {
       FloatVector sum;
@@ -204,9 +204,9 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
       });
 }
 
-/// Up to this length, inserting a box into lists that it is too far for costs less than a branch, which no
-/// processor could predict.
-constexpr std::size_t max_unasked = 4;
+/// Up to this length, lists are gone through even for a box that is too far away to be in one: that costs
+/// less than a branch that no processor could predict.
+constexpr std::size_t max_always_gone_through = 4;
 
 /// Inserts a box into the lists of the queries from `at` on, which have `count` boxes each: `sum` are its
 /// distances. Returns 1 if it is in any, else 0.
@@ -218,7 +218,7 @@ HWY_INLINE unsigned insert_near(NearGroup<D>& group, std::size_t count, std::siz
   auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
   const auto is_near = hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at));
   const unsigned inserts = all_false(tag, is_near) ? 0 : 1;
-  if ((inserts | (count <= max_unasked ? 1U : 0U)) == 0) return 0;
+  if ((inserts | (count <= max_always_gone_through ? 1U : 0U)) == 0) return 0;
   for (std::size_t i = 0; i < count; ++i) {
     std::int32_t* const place = group.keys[i].data() + at;
     const auto other = hn::Load(tag, place);

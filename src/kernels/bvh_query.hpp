@@ -87,10 +87,10 @@ template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
   static constexpr std::int32_t number_mask = 0x7ff;  ///< the bits of a key that are a number
-  static constexpr std::size_t max_tested = 1024;     ///< a leaf more may be tested
+  static constexpr std::size_t max_tested = 1024;     ///< and up to a leaf's boxes more
   static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
-  /// Empties the lists, which each will have `size` boxes, from 2 to max_count.
+  /// Empties the lists, and gives each room for `size` boxes, from 2 to max_count.
   void start(std::size_t size);
 
   Block<D> queries;  ///< lanes without a query hold nan_box()

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -116,6 +118,83 @@ TEST(BvhNear, FindsTheBoxesWithinADistance) {
           expected.push_back(static_cast<std::uint32_t>(i));
       }
       EXPECT_EQ(ids, expected);
+    }
+  });
+}
+
+/// The squared distance in units that differ by axis, which are powers of two.
+template <int D>
+float weighted_distance(Box<D> a, Box<D> b, const std::array<float, D>& weight) {
+  for (int axis = 0; axis < D; ++axis) {
+    for (float* const coordinate : {&a.min[axis], &a.max[axis], &b.min[axis], &b.max[axis]})
+      *coordinate *= weight[axis];
+  }
+  return static_cast<float>(distance_squared(a, b));
+}
+
+TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
+  using Bits = std::int32_t;
+  on_each_instruction_set([]<int D>() {
+    Rng rng(8);
+    for (int round = 0; round < 60; ++round) {
+      const std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
+      algorithm::DynamicBvh<D> tree;
+      tree.build(boxes);
+      NearGroup<D> group;
+      group.queries.clear();
+      const std::size_t queries = 1 + rng.below(fan_out);
+      for (std::size_t lane = 0; lane < queries; ++lane)
+        group.queries.set(lane, random_box<D>(rng, {.places = rng.whole(1, 20), .max_extent = 2}));
+      for (float& weight : group.weight) weight = rng.one_in(2) ? 1.0F : 0.25F;
+      const float asked = rng.one_in(2) ? infinity : static_cast<float>(rng.whole(0, 90));
+      group.limit = asked;
+      group.start(2 + rng.below(NearGroup<D>::max_count - 1));
+      find_near(tree.view(), group);
+
+      EXPECT_LE(group.limit, asked);
+      const auto rounded = [](float distance) {
+        return std::bit_cast<Bits>(distance) & ~NearGroup<D>::number_mask;
+      };
+      bool are_full = true;  // all lists but for their last place
+      float farthest = 0;    // in these
+      for (std::size_t lane = 0; lane < queries; ++lane) {
+        const auto distance_of = [&](const Box<D>& box) {
+          return weighted_distance<D>(group.queries.box(lane), box, group.weight);
+        };
+        std::vector<float> nearest;
+        for (const Box<D>& box : boxes) nearest.push_back(distance_of(box));
+        std::ranges::sort(nearest);
+        std::vector<std::uint32_t> listed;
+        for (std::size_t i = 0; i < group.count; ++i) {
+          const Bits key = group.keys[i][lane];
+          const bool is_reached = i < nearest.size() && nearest[i] <= group.limit;
+          if (key == NearGroup<D>::no_key) {
+            are_full &= i + 1 == group.count;
+            ASSERT_FALSE(is_reached) << "lane " << lane << ", place " << i;
+            continue;
+          }
+          const auto number = static_cast<std::size_t>(key & NearGroup<D>::number_mask);
+          listed.push_back(group.ids[number]);
+          ASSERT_EQ(group.found[number], boxes[listed.back()]);
+          const float distance = distance_of(group.found[number]);
+          ASSERT_EQ(key & ~NearGroup<D>::number_mask, rounded(distance));
+          if (is_reached) {
+            ASSERT_EQ(rounded(distance), rounded(nearest[i])) << "lane " << lane << ", place " << i;
+          }
+          if (i + 1 < group.count) farthest = std::max(farthest, distance);
+        }
+        std::ranges::sort(listed);
+        EXPECT_TRUE(std::ranges::adjacent_find(listed) == listed.end()) << "lane " << lane;
+      }
+      // A little beyond what the lists hold, and not far.
+      if (group.limit < asked) {
+        EXPECT_GT(group.limit, farthest);
+      }
+      if (are_full) {
+        EXPECT_LE(group.limit, farthest * 1.001F + 0x1p-120F);
+      } else {
+        EXPECT_EQ(group.limit, asked);
+      }
     }
   });
 }
