@@ -192,7 +192,7 @@ class CsvOpener {
   }
 
   /// If the first line or the comment before it names the columns, gives the user's names to the columns that
-  /// are called so, and none to others of bounds. Names without a meaning are those of the bounds in order.
+  /// are called so, and none to others of bounds. Names without a meaning stand for the bounds in order.
   void select(Fields& names, std::string_view comment) const {
     const auto has_one = [&names](const Fields& header) {
       return std::any_of(names.begin(), names.end(), [&header](std::string_view name) {
@@ -204,11 +204,10 @@ class CsvOpener {
       header = names_in(comment);
       if (header.size() != fields_.size() || !has_one(header)) return;
     }
-    const bool has_meaning = std::any_of(names.begin(), names.end(), [](std::string_view name) {
-      return is_column_name(name) || is_geometry_name(name.substr(0, name.find('=')));
-    });
     Fields meanings = names;
-    if (!has_meaning && (names.size() == 4 || names.size() == 6))
+    BoxColumns meant;
+    if ((names.size() == 4 || names.size() == 6) && options_.columns.find('=') == std::string::npos &&
+        !resolve(names, meant, true).empty())
       meanings =
           fields_of(convention_named(names.size() == 4 ? "xyxy" : "xyzxyz")->columns, Separator::comma);
     Fields selected = header;
