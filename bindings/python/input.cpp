@@ -58,6 +58,8 @@ std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
     }
     return filters;
   }
+  if (buffer.text().size() != count * 4 * sizeof(std::uint64_t))
+    throw std::logic_error("broadside._convert.filters() gave an array with neither 8 nor 32 bytes a row");
   // Four uint64 a row: category, mask, group as 64 bits with a sign, is_static.
   const auto* numbers = reinterpret_cast<const std::uint64_t*>(buffer.text().data());
   for (std::size_t i = 0; i < count; ++i, numbers += 4)

@@ -193,7 +193,8 @@ def _meant(columns: list[str], name: str) -> Choice:
     """The choice of columns by the names that a caller gives them."""
     choice, problem = _resolved(columns, True)
     if choice is None:
-        raise ValueError(f"the columns of {name} are {', '.join(columns)}: {problem}; expected {_EXPECTED}{_hint(len(columns))}")
+        expected = _EXPECTED + _hint(len(columns))
+        raise ValueError(f"the columns of {name} are {', '.join(columns)}: {problem}; expected {expected}")
     return choice
 
 

@@ -63,7 +63,9 @@ def with_other_conventions(error: InvalidBoxError, found: Any, name: str, column
 
 def _are_valid(found: Any, name: str, columns: Columns) -> bool:
     try:
-        return not _core.invalid_rows(boxes(found, name, columns)).size
+        rows = boxes(found, name, columns)
+        # Names may be fewer than columns; those of boxes in 2D are no meaning of rows in 3D.
+        return rows.shape == boxes(found, name).shape and not _core.invalid_rows(rows).size
     except (TypeError, ValueError):  # another number of columns, or names with another meaning
         return False
 
@@ -452,7 +454,10 @@ def filters(found: Any, count: int, name: str) -> NDArray[np.uint64 | np.int64]:
 
 def query_filters(found: Any, count: int, name: str) -> NDArray[np.uint64 | np.int64]:
     """Likewise, or one for all queries."""
-    if isinstance(found, Keyed):
-        return filters(found, count, name)
-    array = np.asarray(found)
-    return filters(np.broadcast_to(array, (count,)) if array.shape in ((), (1,)) else array, count, name)
+    return filters(one_or_each(found, count), count, name)
+
+
+def one_or_each(found: Any, count: int) -> Any:
+    """Filters of queries; one for all is repeated."""
+    is_one = found is not None and not isinstance(found, Keyed) and np.shape(found) in ((), (1,))
+    return np.broadcast_to(np.asarray(found), (count,)) if is_one else found

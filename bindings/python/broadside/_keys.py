@@ -34,7 +34,8 @@ def with_keys(
     name = "different" if same is None else "same"
     sets = [boxes] if other is None else [boxes, other]
     groups = groups_of(different if same is None else same, name, sets)
-    made = [_keyed(group, old, name) for group, old in zip(groups, (filters, other_filters), strict=False)]
+    given = ((filters, "filters"), (other_filters, "other_filters"))
+    made = [_keyed(group, *old, name) for group, old in zip(groups, given, strict=False)]
     also_different = None if same is None or different is None else tuple(groups_of(different, "different", sets))
     return made[0], other_filters if other is None else made[1], also_different
 
@@ -166,18 +167,21 @@ def _counted_from(array: NDArray[Any], least: int) -> NDArray[np.int64]:
     return (wide - np.uint64(least % 2**64)).view(np.int64) + 1
 
 
-def _keyed(groups: NDArray[np.int64], filters: Any, name: str) -> Keyed:
+def _keyed(groups: NDArray[np.int64], filters: Any, filters_name: str, name: str) -> Keyed:
     groups = groups if name == "same" else -groups
     if filters is None:
         return Keyed(name, groups)
     from broadside import _convert
 
-    packed = _convert.filters(filters, len(groups), "filters")
+    shape = np.shape(filters)
+    if len(shape) == 1 and shape != groups.shape:
+        raise ValueError(f"{filters_name} has {shape[0]} filters and {name} {len(groups)} keys; expected one for each box")
+    packed = _convert.filters(filters, len(groups), filters_name)
     if packed[:, 2].any():
-        raise ValueError(f"filters with groups are given with {name}; expected filters of group 0, since keys are groups")
+        raise ValueError(f"{filters_name} with groups are given with {name}; expected those of group 0, as keys are groups")
     if name == "same":
         if ((packed[:, 0] != 1) | (packed[:, 1] != 2**64 - 1)).any():
-            raise ValueError("filters with categories or masks are given with same; expected one of the two")
+            raise ValueError(f"{filters_name} with categories or masks are given with same; expected one of the two")
         packed[:, :2] = 0
     packed[:, 2] = groups.view(np.uint64)
     return Keyed(name, packed)

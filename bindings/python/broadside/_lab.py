@@ -100,7 +100,8 @@ def advise(
     if not tried:
         raise ValueError("threads is empty; expected a number at least")
     tried = [_arguments.integer(count, "threads", 1, 1024) for count in tried]
-    return Advice(*_core.advise(_convert.valid_boxes(boxes, "boxes", columns), _arguments.text(algorithms, "algorithms"), tried, budget))
+    rows = _convert.valid_boxes(boxes, "boxes", columns)
+    return Advice(*_core.advise(rows, _arguments.text(algorithms, "algorithms"), tried, budget))
 
 
 def read(
@@ -122,9 +123,10 @@ def read(
             until its writers have closed it.
         format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
         boxes: What the boxes are of, where the format has a choice, such as "triangles".
-        columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. The
-            names are given to the columns of a CSV file from left to right if it has no names, or none of these. A str
-            such as "-,x,y,w,h" gives names from left to right, whatever the file says; ``-`` leaves a column out.
+        columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. Four
+            or six names without a meaning are the minima, then the maxima. A CSV file's columns ``frame`` and ``box``
+            are read as well; if it has no names, the list gives them from left to right. So does, whatever the file
+            says, a str such as "-,x,y,w,h" or a list with ``-``, which leaves a column out.
         dimension: 2 or 3, where the format has a choice.
         frame: The frame of a recording, counted from 0.
         quarantine: Treat invalid boxes as absent, as rows of minima inf and maxima -inf, with a warning instead of
@@ -189,6 +191,7 @@ _IN_PYTHON = {
 
 
 def _in_python(text: str) -> str:
+    text = re.sub(r"--columns (?:names|is) (?=')", "columns=", text)
     text = re.sub(r"--columns[= ]([\w-]+(?:[,=][\w-]+)+)", r"columns='\1'", text)
     for option, argument in _IN_PYTHON.items():
         text = text.replace(option, argument)
@@ -278,7 +281,8 @@ def draw(
         boxes: n boxes, whatever `pairs` takes.
         algorithms: What to lay over them: a spec such as ``"quadtree:capacity=16"``, or several with commas between,
             side by side; empty: only the boxes.
-        most: The number of boxes drawn, up to 20,000. Of more, this many are taken and made larger, as dense as all.
+        most: The number of boxes drawn, up to 20,000. Of more, those far larger than most are drawn as they are, up to
+            a quarter of this number, and others, evenly chosen, are made larger, so that all look as dense.
         title: What the picture is called.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 

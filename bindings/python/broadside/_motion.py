@@ -357,7 +357,10 @@ class Tracker(_ArrayTracker):
         touching: bool = True,
     ) -> None:
         self._tracker = _core.make_tracker(
-            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, _arguments.truth(quarantine, "quarantine"),
+            *self._set_kind(dimension, dtype),
+            _arguments.text(algorithm, "algorithm"),
+            threads,
+            _arguments.truth(quarantine, "quarantine"),
             _arguments.truth(touching, "touching"),
         )
 
@@ -423,7 +426,10 @@ class BatchTracker(_ArrayTracker):
         touching: bool = True,
     ) -> None:
         self._tracker = _core.make_batch_tracker(
-            *self._set_kind(dimension, dtype), _arguments.text(algorithm, "algorithm"), threads, _arguments.truth(touching, "touching")
+            *self._set_kind(dimension, dtype),
+            _arguments.text(algorithm, "algorithm"),
+            threads,
+            _arguments.truth(touching, "touching"),
         )
 
     def update(

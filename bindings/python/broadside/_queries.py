@@ -35,7 +35,10 @@ class Hits(NamedTuple):
 
 
 class FirstHits(NamedTuple):
-    """What each ray hits first: a row for each ray. One that hits nothing has the box 4294967295 (of a world 2**64 - 1) at t ``inf``."""
+    """What each ray hits first: a row for each ray.
+
+    One that hits nothing has the box 4294967295 (of a world 2**64 - 1) at t ``inf``.
+    """
 
     box: NDArray[Any]
     """The box hit: a row (uint32), of a world a handle (uint64). Of several at the same t, the least row."""
@@ -267,7 +270,6 @@ def nearest_pairs(
     Cost: about that of an `Index` and, for each box, some hundred nanoseconds and what it finds; with `same`, also some ten
     microseconds for each key. Where space is periodic, `pairs` finds neighbours, by ``within`` and ``period``.
     """
-    filters, other_filters, _ = with_keys(filters, other_filters, None, different, boxes, other)
     groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
     as_rows = _convert.boxes if groups is None else _convert.valid_boxes
     left = as_rows(boxes, "boxes", columns, or_points=True)
@@ -275,7 +277,7 @@ def nearest_pairs(
         for value, name in ((other_columns, "other_columns"), (other_filters, "other_filters")):
             if value is not None:
                 raise ValueError(f"{name} are given without other boxes; expected both or neither")
-        right, other_filters, exclude = left, filters, np.arange(len(left))
+        right, exclude = left, np.arange(len(left))
     else:
         _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")
         right, exclude = as_rows(other, "other", other_columns, or_points=True), None
@@ -285,22 +287,26 @@ def nearest_pairs(
             )
         dtype = np.result_type(left, right)
         left, right = left.astype(dtype, copy=False), right.astype(dtype, copy=False)
+        filters = _convert.one_or_each(filters, len(left))
+    filters, other_filters, _ = with_keys(filters, other_filters, None, different, boxes, other)
+    for given, rows, name in ((filters, left, "filters"), (other_filters, right, "other_filters")):
+        if given is not None:
+            _convert.filters(given, len(rows), name)
+    if other is None:
+        other_filters = filters
     how: dict[str, Any] = {"max_distance": _checked_distance(max_distance), "threads": threads}
     if groups is None:
         return Index(right, filters=other_filters).nearest(left, k, filters=filters, exclude=exclude, **how)
-    searched = _Set("other", right, groups[-1], other_filters)
-    asked = _Set("boxes", left, groups[0], filters)
+    searched, asked = _Set(right, groups[-1], other_filters), _Set(left, groups[0], filters)
     return _nearest_by_key(asked, searched, _checked_k(k, len(right)), exclude is not None, how)
 
 
 class _Set:
     """A set of boxes by their keys."""
 
-    def __init__(self, name: str, boxes: NDArray[Any], groups: NDArray[np.int64], filters: Any) -> None:
+    def __init__(self, boxes: NDArray[Any], groups: NDArray[np.int64], filters: Any) -> None:
         if len(groups) != len(boxes):
             raise ValueError(f"same has {len(groups)} keys for {len(boxes)} boxes; expected one for each box")
-        if filters is not None:
-            _convert.filters(filters, len(boxes), "filters" if name == "boxes" else "other_filters")
         self.boxes, self.filters = boxes, filters
         self.rows = rows_by_group(groups)
 
@@ -315,6 +321,7 @@ def _nearest_by_key(left: _Set, right: _Set, k: int, is_one_set: bool, how: dict
     none = np.uint32(2**32 - 1)
     box = np.full((len(left.boxes), k), none)
     distances = np.full(box.shape, np.inf)
+    Index(right.boxes[:0]).nearest(left.boxes[:0], **how)  # checks `how`, also if the sets have no key in common
     for key in left.rows.keys() & right.rows.keys():
         rows, boxes, filters = left.part(key)
         others, other_boxes, other_filters = right.part(key)

@@ -115,7 +115,8 @@ def pairs(
     width, dtype = _kind(sets, looks)
     partition = _partition_of(looks, width, dtype, wanted)
     sides = tuple(_side(one, its, ids) for one, its in zip(sets, looks, strict=True))
-    plan = Plan(partition, sides, width, dtype, algorithm, threads, _arguments.truth(sort, "sort"), _arguments.truth(quarantine, "quarantine"))
+    sorts, skips = _arguments.truth(sort, "sort"), _arguments.truth(quarantine, "quarantine")
+    plan = Plan(partition, sides, width, dtype, algorithm, threads, sorts, skips)
     return _frame(sets, looks, plan)
 
 

@@ -125,6 +125,10 @@ def test_names_the_convention_by_which_all_rows_are_valid():
     with pytest.raises(broadside.InvalidBoxError) as caught:
         broadside.pairs(rows)
     assert "columns=" not in str(caught.value)
+    solid = np.array([[0, 0, 1, 1, 5, 6], [0, 1, 2, 3, 4, np.nan]])  # four of its columns are boxes in 2D
+    with pytest.raises(broadside.InvalidBoxError) as caught:
+        broadside.pairs(solid)
+    assert "columns=" not in str(caught.value)
 
 
 @pytest.mark.parametrize("order", [["xmin", "xmax", "ymin", "ymax"], ["xmin", "ymax", "xmax", "ymin"]])
@@ -327,7 +331,8 @@ def test_points_of_a_table_are_points_of_an_array(table, names):
     for columns, found in [(names, frame), (names, backwards), (None, table(columns_of(points, names)))]:
         near = broadside.pairs(found, within=0.1, columns=columns, sort=True)
         assert near.tolist() == broadside.pairs(points, within=0.1, sort=True).tolist()
-        assert broadside.count(found, frame, within=0.1, columns=columns, other_columns=names) == broadside.count(points, points, within=0.1)
+        between = broadside.count(found, frame, within=0.1, columns=columns, other_columns=names)
+        assert between == broadside.count(points, points, within=0.1)
         assert broadside.components(found, within=0.1, columns=columns).tolist() == broadside.components(points, within=0.1).tolist()
         expected = broadside.distances(points, near)
         np.testing.assert_array_equal(broadside.distances(found, near, columns=columns), expected)

@@ -81,7 +81,8 @@ def test_several_keys_are_one_and_columns_go_by_name():
     assert as_set(broadside.pairs(BOXES, same=(images, classes))) == equal
     between = broadside.count(BOXES, BOXES, same=((images, classes), (images, classes)))
     for table in (pandas.DataFrame(columns), polars.DataFrame(columns), pyarrow.table(columns), structured):
-        for keys in (["image", "class"], ("image", "class"), table[["image", "class"]] if hasattr(table, "loc") else ["class", "image"]):
+        both = table[["image", "class"]] if hasattr(table, "loc") else ["class", "image"]
+        for keys in (["image", "class"], ("image", "class"), both):
             assert as_set(broadside.pairs(table, same=keys)) == equal
             assert as_set(broadside.pairs(table, different=keys)) == unequal
         assert broadside.count(table, table, same=["image", "class"]) == between

@@ -95,6 +95,27 @@ def test_reads_the_columns_that_a_caller_names(tmp_path):
     assert broadside.read(behind, columns=["-", "ymax", "xmax", "ymin", "xmin"]).tolist() == [[1, 2, 4, 6]], "none of its names"
     with pytest.raises(broadside.FileError, match="'id,h,w,y,x'; expected a column 'width', as columns names it"):
         broadside.read(behind, columns=["x", "y", "width", "h"])
+    with pytest.raises(broadside.FileError, match="'id,h,w,y,x'; expected a column 'xmin', as columns names it"):
+        broadside.read(behind, columns=["xmin", "ymin", "xmax", "ymax"])
+    with pytest.raises(broadside.FileError, match="columns='a,b,c,d': no columns"):
+        broadside.read(plain, columns="a,b,c,d")
+
+
+def test_selects_columns_in_any_spelling_and_keeps_frames(tmp_path):
+    names = ["xmin", "ymin", "xmax", "ymax"]
+    path = tmp_path / "selected.csv"
+    for header in ("id,XMIN,YMIN,XMAX,YMAX", "7,x_min,Y-min,XMax,ymax", "# id xMin yMin xMax yMax"):
+        path.write_text(f"{header}\n9,1,2,4,6\n")
+        assert broadside.read(path, columns=names).tolist() == [[1, 2, 4, 6]], header
+    path.write_text("XMIN,xmin,ymin,xmax,ymax\n9,1,2,4,6\n")
+    assert broadside.read(path, columns=names).tolist() == [[1, 2, 4, 6]], "the exact name first"
+    path.write_text("e,c,d,a,b\n9,4,6,1,2\n")
+    assert broadside.read(path, columns=["a", "b", "c", "d"]).tolist() == [[1, 2, 4, 6]], "minima, then maxima"
+    path.write_text('id,bounds,bbox\n9,"[0, 0, 1, 1]","[1, 2, 3, 4]"\n')
+    assert broadside.read(path, columns=["BBox=xywh"]).tolist() == [[1, 2, 4, 6]]
+    path.write_text("frame,box,cx,xmin,ymin,xmax,ymax\n0,0,9,1,2,4,6\n0,1,9,0,0,1,1\n1,0,9,1,2,4,7\n")
+    assert broadside.read(path, columns=names).tolist() == [[1, 2, 4, 6], [0, 0, 1, 1]]
+    assert broadside.read(path, columns=names, frame=1).tolist() == [[1, 2, 4, 7], [0, 0, 1, 1]]
 
 
 def test_speaks_of_its_own_arguments(tmp_path):

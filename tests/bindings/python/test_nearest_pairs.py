@@ -77,8 +77,15 @@ def test_neighbours_have_equal_or_unequal_keys(k, rules):
 
 def test_refuses_keys_that_do_not_fit():
     boxes = np.array([[0, 0, 1, 1]] * 3, np.float64)
-    with pytest.raises(ValueError, match=r"filters has shape \(2,\); expected \(3,\)"):
+    with pytest.raises(ValueError, match=r"^filters has shape \(2,\); expected \(3,\)"):
         broadside.nearest_pairs(boxes, same=[1, 2, 3], filters=broadside.filters(2))
+    for keys in ({}, {"same": ([1, 1, 1], [1, 1, 1])}):
+        with pytest.raises(ValueError, match=r"^other_filters has shape \(2,\); expected \(3,\)"):
+            broadside.nearest_pairs(boxes, boxes, other_filters=broadside.filters(2), **keys)
+    with pytest.raises(ValueError, match="^other_filters has 2 filters and different 3 keys"):
+        broadside.nearest_pairs(boxes, boxes, other_filters=broadside.filters(2), different=([1] * 3, [1] * 3))
+    with pytest.raises(ValueError, match="^threads is -5"):
+        broadside.nearest_pairs(boxes, boxes, same=([1, 1, 1], [2, 2, 2]), threads=-5)
     with pytest.raises(ValueError, match="same has 2 keys for 3 boxes"):
         broadside.nearest_pairs(boxes, same=[1, 2])
     with pytest.raises(ValueError, match="max_distance is -1"):
@@ -86,6 +93,13 @@ def test_refuses_keys_that_do_not_fit():
     boxes[2, 0] = 7
     with pytest.raises(broadside.InvalidBoxError, match="box 2"):
         broadside.nearest_pairs(boxes, same=[1, 2, 2])
+
+
+def test_takes_one_filter_for_all_with_keys_as_without():
+    boxes = np.array([[0, 0, 1, 1], [3, 0, 4, 1]], np.float64)
+    statics = {"filters": broadside.filters(1, is_static=True), "other_filters": broadside.filters(2, is_static=[True, False])}
+    for keys in ({}, {"same": ([1, 1], [1, 1])}, {"different": ([1, 1], [2, 2])}):
+        assert broadside.nearest_pairs(boxes, boxes, **statics, **keys).box.tolist() == [[1], [1]]
 
 
 def test_refuses_what_has_no_answer():

@@ -229,6 +229,10 @@ bool is_column_name(std::string_view name) {
   return is_frame(name) || is_box(name) || is_radius(name) || meaning_of(name);
 }
 
+bool gives_bounds(std::string_view name) {
+  return is_radius(name) || meaning_of(name) || is_geometry_name(name);
+}
+
 bool is_geometry_name(std::string_view name) { return is_one_of(name, geometry_names); }
 
 std::string resolve(std::span<const std::string_view> names, BoxColumns& columns, bool are_chosen) {

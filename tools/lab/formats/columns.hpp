@@ -140,6 +140,9 @@ std::string plain(std::string_view name);
 /// Whether this is the name of a known column, in any spelling.
 bool is_column_name(std::string_view name);
 
+/// Whether a column of this name gives bounds, alone or with others.
+bool gives_bounds(std::string_view name);
+
 /// Whether this is the name of a column of geometries as text, or of bounds in one field.
 bool is_geometry_name(std::string_view name);
 

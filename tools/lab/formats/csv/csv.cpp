@@ -85,7 +85,8 @@ class CsvOpener {
     if (separator_ == Separator::blanks && is_geometry_name(fields_of(lines_.line(), separator_).front()))
       separator_ = Separator::tab;
     fields_ = fields_of(lines_.line(), separator_);
-    const bool has_header = options_.columns.empty() ? find_columns(comment) : take_columns(options_.columns);
+    const bool has_header =
+        options_.columns.empty() ? find_columns(comment) : take_columns(options_.columns, comment);
     if (!has_header) lines_ = rows_;
     look_into_rows();
     std::vector<std::string> others = other_meanings(columns_);
@@ -119,6 +120,11 @@ class CsvOpener {
     }
   }
 
+  static Fields names_in(std::string_view comment) {
+    comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
+    return fields_of(comment, separator_of(comment));
+  }
+
   /// Resolves the columns by the names in the first line or in a comment before it (numpy.savetxt writes
   /// one), or by their number. Returns whether the first line holds names.
   bool find_columns(std::string_view comment) {
@@ -135,8 +141,7 @@ class CsvOpener {
                     fmt::format("{}; --columns can name them{}", expected_columns,
                                 other_ways(lines_, separator_, corner_or_centre(fields_))));
     }
-    comment.remove_prefix(std::min(comment.find_first_not_of("# \t"), comment.size()));
-    const Fields names = fields_of(comment, separator_of(comment));
+    const Fields names = names_in(comment);
     if (names.size() == fields_.size() && resolve(names, columns_).empty()) return false;
     are_named_ = false;
     problem = is_kitti(fields_) ? resolve(fields_of(unnamed_meanings(15).front(), Separator::comma), columns_)
@@ -149,14 +154,14 @@ class CsvOpener {
     return false;
   }
 
-  /// Resolves the columns that the user names, from left to right, or by a convention such as "xywh". Returns
-  /// whether the first line holds names.
-  bool take_columns(std::string_view list) {
+  /// Resolves the columns that the user names, from left to right, by the table's own names, or by a
+  /// convention such as "xywh". Returns whether the first line holds names.
+  bool take_columns(std::string_view list, std::string_view comment) {
     const Convention* const convention = convention_named(list);
     if (convention != nullptr && !is_table_row(fields_)) return take_convention(*convention);
     Fields names = fields_of(convention != nullptr ? convention->columns : list, Separator::comma);
     std::replace(names.begin(), names.end(), std::string_view("-"), std::string_view());
-    if (options_.selects_columns && convention == nullptr) select(names);
+    if (options_.selects_columns && convention == nullptr) select(names, comment);
     const BoundsForm form = take_form(list, names);
     if (names.size() > fields_.size())
       lines_.refuse(fmt::format("{} column{}", fields_.size(), fields_.size() == 1 ? "" : "s"),
@@ -174,20 +179,45 @@ class CsvOpener {
     return !is_table_row(read);
   }
 
-  /// If the first line has these names, makes them the names of its columns; empty where a column is not
-  /// named.
-  void select(Fields& names) const {
-    const auto is_there = [this](std::string_view name) {
-      return std::find(fields_.begin(), fields_.end(), name) != fields_.end();
+  /// The columns of this name, up to an "="; if none has exactly this name, those that have it in any
+  /// spelling.
+  static std::vector<std::size_t> called(const Fields& header, std::string_view name) {
+    name = name.substr(0, name.find('='));
+    const bool is_exact = std::find(header.begin(), header.end(), name) != header.end();
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (is_exact ? header[i] == name : plain(header[i]) == plain(name)) columns.push_back(i);
+    }
+    return columns;
+  }
+
+  /// If the first line or the comment before it names the columns, gives the user's names to the columns that
+  /// are called so, and none to others of bounds. Names without a meaning stand for the bounds in order.
+  void select(Fields& names, std::string_view comment) const {
+    const auto has_one = [&names](const Fields& header) {
+      return std::any_of(names.begin(), names.end(), [&header](std::string_view name) {
+        return !is_number(name) && !called(header, name).empty();
+      });
     };
-    if (is_table_row(fields_) || std::none_of(names.begin(), names.end(), is_there)) return;
-    const auto other = std::find_if_not(names.begin(), names.end(), is_there);
-    if (other != names.end())
-      lines_.refuse(shown(lines_.line(), 100),
-                    fmt::format("a column {}, as columns names it", shown(*other)));
-    Fields selected = fields_;
-    for (std::string_view& field : selected) {
-      if (std::find(names.begin(), names.end(), field) == names.end()) field = {};
+    Fields header = fields_;
+    if (is_table_row(fields_) && !has_one(fields_)) {
+      header = names_in(comment);
+      if (header.size() != fields_.size() || !has_one(header)) return;
+    }
+    Fields meanings = names;
+    BoxColumns meant;
+    if ((names.size() == 4 || names.size() == 6) && options_.columns.find('=') == std::string::npos &&
+        !resolve(names, meant, true).empty())
+      meanings =
+          fields_of(convention_named(names.size() == 4 ? "xyxy" : "xyzxyz")->columns, Separator::comma);
+    Fields selected = header;
+    std::replace_if(selected.begin(), selected.end(), gives_bounds, std::string_view());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::vector<std::size_t> columns = called(header, names[i]);
+      if (columns.empty())
+        lines_.refuse(shown(fmt::to_string(fmt::join(header, ",")), 100),
+                      fmt::format("a column {}, as columns names it", shown(names[i])));
+      for (const std::size_t column : columns) selected[column] = meanings[i];
     }
     names = std::move(selected);
   }
@@ -212,10 +242,7 @@ class CsvOpener {
     names = fields_;
     std::replace_if(
         names.begin(), names.end(),
-        [only](std::string_view other) {
-          return other != only && (meaning_of(other) || is_geometry_name(other));
-        },
-        std::string_view());
+        [only](std::string_view other) { return other != only && gives_bounds(other); }, std::string_view());
     return form;
   }
 
