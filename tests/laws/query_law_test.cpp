@@ -75,11 +75,11 @@ class QueryLaw : public testing::Test {
 
   /// A coordinate where something happens: one that a box has, or close to it.
   Real coordinate(const Boxes& boxes, int axis) {
-    if (boxes.empty() || rng_.one_in(8)) return rng_.between(-12, 12) * unit_[axis];
+    if (boxes.empty() || rng_.one_in(4)) return rng_.between(-12, 12) * unit_[axis];
     const Box<D, Real>& box = boxes[rng_.below(boxes.size())];
     const Real at = rng_.one_in(2) ? box.min[axis] : box.max[axis];
-    if (rng_.one_in(8)) return at + rng_.between(-1, 1) * unit_[axis];
-    if (rng_.one_in(8)) return std::nextafter(at, Real(rng_.one_in(2) ? -1e30 : 1e30));
+    if (rng_.one_in(4)) return at + rng_.between(-1, 1) * unit_[axis];
+    if (rng_.one_in(4)) return std::nextafter(at, Real(rng_.one_in(2) ? -1e30 : 1e30));
     return at;
   }
 
@@ -93,7 +93,7 @@ class QueryLaw : public testing::Test {
     Box<D, Real> box;
     for (int axis = 0; axis < D; ++axis) {
       const Real a = coordinate(boxes, axis);
-      const Real b = rng_.one_in(8) ? a : coordinate(boxes, axis);
+      const Real b = rng_.one_in(4) ? a : coordinate(boxes, axis);
       box.min[axis] = std::min(a, b);
       box.max[axis] = std::max(a, b);
     }
@@ -122,7 +122,7 @@ class QueryLaw : public testing::Test {
       if (way == 0) direction = std::isfinite(to - from) ? to - from : 1;
       if (way == 1) direction = axis == along ? Real(rng_.one_in(2) ? 1 : -1) : Real(0);
       if (way == 2) direction = Real(rng_.whole(-3, 3));
-      if (way == 3) direction = rng_.between(-1, 1) * (rng_.one_in(8) ? Real(1e-12) : Real(1));
+      if (way == 3) direction = rng_.between(-1, 1) * (rng_.one_in(4) ? Real(1e-12) : Real(1));
       direction *= length;
       cast.direction[axis] = std::isfinite(direction) ? direction : 1;
       cast.box.min[axis] = cast.box.max[axis] = from;
@@ -145,9 +145,9 @@ class QueryLaw : public testing::Test {
                       std::size_t rounds) {
     Filter query_filter{.category = 2, .mask = 1};
     for (std::size_t round = 0; round < rounds; ++round) {
-      const Filter* const filter = rng_.one_in(8) ? &query_filter : nullptr;
+      const Filter* const filter = rng_.one_in(4) ? &query_filter : nullptr;
       const std::optional<BoxId> except =
-          rng_.one_in(8) ? std::optional(BoxId(rng_.below(boxes.size() + 2))) : std::nullopt;
+          rng_.one_in(4) ? std::optional(BoxId(rng_.below(boxes.size() + 2))) : std::nullopt;
       const auto counts = [&](std::size_t i) {
         const Filter own = filters.empty() ? Filter{} : filters[i];
         return is_present(boxes[i]) && except != BoxId(i) && (filter == nullptr || accepts(*filter, own));
@@ -244,7 +244,7 @@ class QueryLaw : public testing::Test {
     std::vector<Filter> of_queries(!are_many && rng_.one_in(3) ? queries.size() : 0);
     for (Filter& filter : of_queries) filter.mask = rng_.one_in(2) ? 1 : 3;
     std::vector<BoxId> except(rng_.one_in(2) ? queries.size() : 0);
-    for (BoxId& id : except) id = rng_.one_in(8) ? no_box : BoxId(rng_.below(boxes.size() + 1));
+    for (BoxId& id : except) id = rng_.one_in(4) ? no_box : BoxId(rng_.below(boxes.size() + 1));
     const std::size_t count = are_many         ? 1 + rng_.below(31)
                               : rng_.one_in(5) ? boxes.size() + 1
                                                : 1 + rng_.below(12);
