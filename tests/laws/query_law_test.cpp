@@ -75,11 +75,11 @@ class QueryLaw : public testing::Test {
 
   /// A coordinate where something happens: one that a box has, or close to it.
   Real coordinate(const Boxes& boxes, int axis) {
-    if (boxes.empty() || rng_.one_in(4)) return rng_.between(-12, 12) * unit_[axis];
+    if (boxes.empty() || rng_.one_in(8)) return rng_.between(-12, 12) * unit_[axis];
     const Box<D, Real>& box = boxes[rng_.below(boxes.size())];
     const Real at = rng_.one_in(2) ? box.min[axis] : box.max[axis];
     if (rng_.one_in(4)) return at + rng_.between(-1, 1) * unit_[axis];
-    if (rng_.one_in(4)) return std::nextafter(at, Real(rng_.one_in(2) ? -1e30 : 1e30));
+    if (rng_.one_in(8)) return std::nextafter(at, Real(rng_.one_in(2) ? -1e30 : 1e30));
     return at;
   }
 
