@@ -30,8 +30,8 @@ const example = "import { load } from \"broadside\";\n" +
  * they grow.
  */
 const limits: readonly (readonly [string, string, number])[] = [
-  ["index.js", "broadside-2d.js", 187_000], ["index.js", "broadside-3d.js", 192_000],
-  ["pairs.js", "broadside-pairs-2d.js", 158_500], ["pairs.js", "broadside-pairs-3d.js", 161_500],
+  ["index.js", "broadside-2d.js", 188_000], ["index.js", "broadside-3d.js", 193_000],
+  ["pairs.js", "broadside-pairs-2d.js", 159_000], ["pairs.js", "broadside-pairs-3d.js", 162_500],
 ];
 
 for (const [entry, module, most] of limits) {
