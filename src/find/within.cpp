@@ -178,8 +178,8 @@ Real less_than(double rounded) {
   return number == -std::numeric_limits<Real>::infinity() ? number : detail::next_below(number);
 }
 
-/// Writes straight to `to`: to copy a box whose coordinates have just been stored one by one, the processor
-/// would have to wait until they all are.
+/// Writes to `to` rather than returning a box: a copy of the box would have to wait for the stores of its
+/// coordinates.
 template <typename Real, int D, typename Given>
 void enlarge_outwards(const Box<D, Given>& box, double by, Box<D, Real>& to) {
   if (!is_present(box)) {

@@ -81,8 +81,7 @@ void find_near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes
 /// in ascending order. A key is a squared distance as in DistanceQuery, rounded down, with the box's number
 /// as its last bits. So one minimum and one maximum take a box a step down a list.
 ///
-/// A list's last key tells how near a box may be that is in none of the places before it: no such box is
-/// nearer if it is within `limit`.
+/// A list's last key is a bound: if it is within `limit`, no box outside the list's other places is nearer.
 template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
@@ -102,7 +101,7 @@ struct NearGroup {
   float limit;
 
   std::size_t count;
-  std::size_t tested;  ///< boxes whose distance from each query was computed
+  std::size_t tested;  ///< boxes that were compared with each query
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
   std::array<std::uint32_t, max_tested + fan_out> ids;  ///< of the boxes, by number
   std::array<Box<D>, max_tested + fan_out> found;       ///< the boxes, as the tree has them

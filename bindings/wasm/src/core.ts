@@ -84,8 +84,8 @@ export class Core {
   }
 
   /**
-   * The algorithm for so many boxes. The smaller module has no `auto`, so this is its rule: below, comparing all of them
-   * costs less than cells.
+   * The algorithm for this many boxes. The smaller module has no `auto`, and chooses by this rule: comparing all of few
+   * boxes costs less than sorting them into cells.
    */
   algorithmFor(count: number, named = "auto"): string {
     if (named !== "auto" || this.algorithms.includes("auto")) return named;

@@ -127,7 +127,8 @@ class AutoSearcher final : public Searcher<D> {
       RefusedTile<D> refused;
       const std::optional<Statistics> statistics = search_with_choice(input, refused, true, pairs);
       if (!refused.is_refused()) return statistics;
-      take_sample(input.boxes);
+      if (input.boxes.size() <= Limits::boxes_of_a_tile)
+        take_sample(input.boxes);  // else it is taken already
       choice_ = tests_on_best_axis(input.boxes) <= Limits::tests_of_an_uneven_tiles_axis
                     ? AutoReason::one_axis
                     : AutoReason::uneven_tile;

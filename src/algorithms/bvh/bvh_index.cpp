@@ -229,8 +229,8 @@ constexpr std::size_t max_compared_queries = 64;
 constexpr std::size_t min_dense_queries = 256;
 constexpr std::size_t max_boxes_per_dense_query = 32;
 
-/// After a group with too many boxes near, so many groups are searched query by query before the next is
-/// tried as one: twice as many after each further failure, so that trying costs little where all would fail.
+/// After a group has given up, this many groups are searched query by query before one is tried again. The
+/// number doubles, up to max_pause, with each further failure, so that trying costs little where all fail.
 constexpr std::size_t min_pause = 8;
 constexpr std::size_t max_pause = 64;
 

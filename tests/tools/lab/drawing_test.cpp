@@ -169,7 +169,7 @@ TEST(Drawing, OfManyBoxesKeepsTheirDensity) {
   EXPECT_EQ(thinned<2>(std::vector<Box2>(3, {{-infinity, 0}, {infinity, 1}}), 1).boxes[0].min[0], -infinity);
 }
 
-/// The picture of a scene of these boxes, of which 40 are drawn.
+/// The picture of a scene of these boxes, limited to 40.
 std::string picture_of_40(const std::vector<Box2>& all) {
   NamedScene named;
   named.spec = Spec("level");

@@ -99,8 +99,8 @@ export class Panel {
   }
 
   /**
-   * The time of a search of which one run took `once`: the median of the last frames. The first run
-   * allocates memory and takes far longer; and the clock is too coarse for a short one.
+   * The time of a search: the median of the last frames, or of batches where `once`, the time of a single run, is too
+   * short for the clock. The first run does not count, since it also allocates memory.
    */
   private timeOf(once: number, boxes: Float32Array, dimension: Dimension): number {
     const isDue = !(this.batched > coarse) && performance.now() - this.batchedAt > batchEvery;

@@ -9,7 +9,7 @@ export const coarse = 0.5;
 /** The number of frames whose times are kept. */
 const maxRecent = 40;
 
-/** A batch of runs takes at least so many ticks of the clock, so that it is right to 5 %. */
+/** A batch of runs takes at least this many ticks of the clock: its time is then right to 5 %. */
 const minTicks = 20;
 
 /** With a very coarse clock, batches of 20 ticks would take seconds. In ms. */
