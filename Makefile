@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust sanitize-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust test-bevy sanitize-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
