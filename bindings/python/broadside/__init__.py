@@ -1,4 +1,4 @@
-"""Broadside: every overlapping pair of axis-aligned boxes, once or frame after frame, and queries.
+"""Broadside finds every overlapping pair of axis-aligned boxes, once or frame after frame, and answers queries.
 
 A box is a row of its minima and then its maxima: ``xmin, ymin, xmax, ymax`` in 2D and
 ``xmin, ymin, zmin, xmax, ymax, zmax`` in 3D. Boxes are closed: boxes that touch overlap. Results are exact in the

@@ -6,8 +6,8 @@ from __future__ import annotations
 class InvalidBoxError(ValueError):
     """A box with a NaN, or with a minimum greater than its maximum.
 
-    ``row`` is the place of the first such box in its array, and ``argument`` the name of the argument that this is:
-    "boxes" or "other", or "velocities" where one of these is not finite.
+    ``row`` is the row of the first such box, and ``argument`` is the name of the argument that holds it: "boxes" or
+    "other", or "velocities" if a velocity is not finite.
     """
 
     def __init__(self, message: str, row: int | None = None, argument: str | None = None) -> None:
@@ -20,11 +20,12 @@ class InvalidBoxError(ValueError):
 
 
 class InvalidQueryError(ValueError):
-    """A query with a NaN, or with an infinity where there may be none. The text names the query's row."""
+    """A query with a NaN, or with an infinity where none is allowed. The text names the query's row."""
 
 
 class InvalidAlgorithmError(ValueError):
-    """An algorithm that does not exist, or a tunable of it that does not exist or has a value out of its range."""
+    """An algorithm that does not exist, or a tunable that the algorithm does not have or whose value is out of
+    range."""
 
 
 class InvalidHandleError(ValueError):
@@ -32,7 +33,7 @@ class InvalidHandleError(ValueError):
 
 
 class InvalidSnapshotError(ValueError):
-    """Bytes that are no snapshot of a world like this one."""
+    """Bytes that are not a snapshot of a world like this one."""
 
 
 class FileError(ValueError):

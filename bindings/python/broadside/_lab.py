@@ -44,7 +44,7 @@ class Algorithm:
 
 
 def algorithms() -> list[Algorithm]:
-    """The algorithms there are, the library's own first."""
+    """All algorithms, the library's own first."""
     return [
         Algorithm(
             name, summary, source, kind, dimensions, {tunable: (text, value) for tunable, text, value in tunables}
@@ -121,27 +121,26 @@ def read(
         path: The file's path, or an object with ``read()``, such as an open file or ``io.BytesIO``. Such an object is read
             from its current position to its end; its ``name``, if it has one, is used like a path. A named pipe is read
             until its writers have closed it.
-        format: The format's name, such as "csv" or "parquet"; by default it is told by the file's content and name.
-        boxes: What the boxes are of, where the format has a choice, such as "triangles".
-        columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. Four
-            or six names without a meaning are the minima, then the maxima. A CSV file's columns ``frame`` and ``box``
-            are read as well; if it has no names, the list gives them from left to right. So does, whatever the file
-            says, a str such as "-,x,y,w,h" or a list with ``-``, which leaves a column out.
-        dimension: 2 or 3, where the format has a choice.
+        format: The format's name, such as "csv" or "parquet"; by default the file's content and name decide.
+        boxes: What the boxes enclose, such as "triangles", if the format has a choice.
+        columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. Four or
+            six names without a meaning are the minima, then the maxima. A CSV file's columns ``frame`` and ``box`` are
+            read as well; if it has no names, the list gives them from left to right. A str such as "-,x,y,w,h", or a
+            list with ``-``, which leaves a column out, does so whatever names the file has.
+        dimension: 2 or 3, if the format has a choice.
         frame: The frame of a recording, counted from 0.
-        quarantine: Treat invalid boxes as absent, as rows of minima inf and maxima -inf, with a warning instead of
-            raising.
+        quarantine: Make invalid boxes absent (minima inf and maxima -inf), with a warning, instead of raising.
 
     Returns:
-        An array of shape (n, 4) or (n, 6), of float32 or float64, as the file has it. Of GeoParquet these are the
-        bounds in its covering column or, where it has none, of its geometries, which takes shapely; of other Parquet the
-        columns of bounds, found by the names that `pairs` knows.
+        An array of shape (n, 4) or (n, 6), of float32 or float64 as in the file. For GeoParquet, these are the bounds
+        in its covering column or, if it has none, the bounds of its geometries, which needs shapely. For other Parquet,
+        these are the columns of bounds, found by the names that `pairs` knows.
 
     Raises:
         FileNotFoundError: There is no such file.
         FileError: It cannot be read; the text says where and why. Arrays in .npz are read by ``numpy.load``, meshes of
             other formats by the program.
-        ImportError: It takes pyarrow or shapely, which is not installed.
+        ImportError: The file needs pyarrow or shapely, which is not installed.
 
     Cost: a file is read in place. The content of an object with ``read()`` is held in memory, and that of
     ``io.BytesIO`` is not copied.
@@ -281,9 +280,10 @@ def draw(
         boxes: n boxes, whatever `pairs` takes.
         algorithms: What to lay over them: a spec such as ``"quadtree:capacity=16"``, or several with commas between,
             side by side; empty: only the boxes.
-        most: The number of boxes drawn, up to 20,000. Of more, those far larger than most are drawn as they are, up to
-            a quarter of this number, and others, evenly chosen, are made larger, so that all look as dense.
-        title: What the picture is called.
+        most: The maximum number of boxes drawn, up to 20,000. If there are more boxes, up to a quarter of those drawn
+            are boxes far larger than most, as they are. The others are chosen evenly and made larger, so that the
+            picture looks as dense as all boxes.
+        title: The title of the picture.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
     Raises InvalidBoxError, InvalidAlgorithmError, ValueError.

@@ -34,7 +34,7 @@ def _next_first_generation() -> int:
 
 
 class Events(NamedTuple):
-    """What an update brought: pairs, each of shape (k, 2) and sorted."""
+    """The pairs that began and ended in an update, each of shape (k, 2) and sorted."""
 
     begun: NDArray[Any]
     """The pairs that hold now and did not before."""
@@ -43,25 +43,25 @@ class Events(NamedTuple):
 
 
 class World:
-    """Boxes that come, move and go under handles, and the pairs that begin and end.
+    """Boxes under handles that are added, moved and removed, and the pairs that begin and end.
 
-    A handle is one uint64: the box's slot in its lower half, the slot's generation in its upper one. It names one box
-    for as long as that is in the world, and never another one; a world refuses handles of removed boxes and, unless
-    very many worlds were made, of other worlds. What is done to boxes shows its effect on pairs at the next `update`.
+    A handle is one uint64: the box's slot is its lower half, the slot's generation its upper half. It names one box for
+    as long as that box is in the world, and never another one. A world refuses handles of removed boxes and, unless
+    very many worlds were made, of other worlds. Changes to boxes affect pairs at the next `update`.
 
     Args:
         dimension: 2 or 3.
-        dtype: float64 or float32: of the boxes. Boxes of float64 are refused by a world of float32 unless they are
-            exact in it.
+        dtype: The dtype of the boxes: float64 or float32. A world of float32 refuses float64 boxes that are not exact
+            in float32.
         algorithm: A spec: see `algorithms`.
-        threads: The most threads of an update; None: all cores, if there is enough to do.
-        first_generation: The generation of the first handles; by default each world has another one.
+        threads: The maximum number of threads of an update; None: all cores, if there is enough to do.
+        first_generation: The generation of the first handles; by default it differs from world to world.
         **options: {options}
 
     Calls from several threads take turns. `update`, queries and `join` release the GIL and end at Ctrl-C, but not while
-    the first query after a change builds its index. You can repeat an update that Ctrl-C ended. Functions of many boxes
-    do all or, if one is wrong, nothing. A world can be pickled and copied, with its handles. Its queries take `filters`
-    and `exclude` as those of `Index` do; `exclude` takes handles.
+    the first query after a change builds its index. You can repeat an update that Ctrl-C ended. A function that takes
+    many boxes changes nothing if one of them is wrong. A world can be pickled and copied, with its handles. Its queries
+    take `filters` and `exclude` as those of `Index` do; `exclude` takes handles.
     """
 
     __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
@@ -106,7 +106,8 @@ class World:
     ) -> NDArray[np.uint64]:
         """Adds n boxes, whatever `pairs` takes with these `columns`, and returns their handles, shape (n,).
 
-        Adds none, and raises InvalidBoxError if one is invalid or absent, ValueError if there would be more than `max_boxes`.
+        Adds none and raises InvalidBoxError if a box is invalid or absent, or ValueError if there would be more than
+        `max_boxes`.
         """
         crs = _convert.common_crs(self._crs, "the world", boxes, "boxes")
         handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
@@ -116,7 +117,7 @@ class World:
     def move(
         self, handles: ArrayLike, boxes: Any, *, velocities: Any = None, columns: Columns | None = None
     ) -> None:
-        """Replaces boxes: those of `handles`, shape (n,), by `boxes`, whatever `pairs` takes with these `columns`.
+        """Replaces the boxes of `handles`, shape (n,), by `boxes`, whatever `pairs` takes with these `columns`.
 
         `velocities`, shape (n, dimension), says how far each box is expected to go in a frame, for `predicted_frames`.
         Raises InvalidHandleError, InvalidBoxError.
@@ -129,21 +130,22 @@ class World:
         self._world.move(handles, _convert.given(boxes, "boxes", columns), velocities)
 
     def remove(self, handles: ArrayLike) -> None:
-        """Takes boxes out; their pairs end at the next update. Raises InvalidHandleError."""
+        """Removes boxes; their pairs end at the next update. Raises InvalidHandleError."""
         self._world.remove(handles)
 
     def update(self) -> Events:
-        """Brings the pairs up to date, and returns those of handles, uint64, that began and ended since."""
+        """Brings the pairs up to date, and returns the pairs of handles, uint64, that began and ended since the last
+        update."""
         return Events(*self._world.update())
 
     def pairs(self) -> NDArray[np.uint64]:
-        """The pairs of handles that hold since the last update, shape (k, 2), sorted by slots."""
+        """The current pairs of handles, as of the last update, shape (k, 2), sorted by slots."""
         return self._world.pairs()
 
     def boxes(self, handles: ArrayLike | None = None, *, enlarged: bool = False) -> NDArray[Any]:
-        """The boxes of these handles, or of all (see `handles`), as they were last set; or enlarged by the margins.
+        """The boxes of these handles, or of all (see `handles`), as they were last set, or enlarged by the margins.
 
-        That of a removed box can be read until the update after the one that told of its ended pairs.
+        A removed box can be read until the update after the one that reported that its pairs ended.
         """
         return self._world.boxes(self.handles() if handles is None else handles, _arguments.truth(enlarged, "enlarged"))
 
@@ -160,9 +162,9 @@ class World:
         self._world.set_filters(handles, filters)
 
     def ignore(self, pairs: ArrayLike) -> None:
-        """Lets pairs of handles, shape (n, 2), never count, as bodies that a joint connects.
+        """Ignores pairs of handles, shape (n, 2), such as bodies that a joint connects.
 
-        It is forgotten when one of the boxes is removed. Raises InvalidHandleError.
+        A pair is ignored until one of its boxes is removed. Raises InvalidHandleError.
         """
         self._world.ignore(pairs, True)
 
@@ -171,9 +173,9 @@ class World:
         self._world.ignore(pairs, False)
 
     def join(self, other: World) -> NDArray[np.uint64]:
-        """The pairs of a box of this world and an overlapping one of `other`, as they are now, shape (k, 2).
+        """The pairs of a box of this world and an overlapping box of `other`, as they are now, shape (k, 2).
 
-        Both are of the same dimension and dtype. A world and itself are joined like two.
+        Both worlds have the same dimension and dtype. A world joined with itself counts as two worlds.
         """
         if not isinstance(other, World):
             raise TypeError(f"other is {_arguments.kind_of(other)}; expected a World")
@@ -238,7 +240,7 @@ class World:
         return self._world.snapshot()
 
     def restore(self, snapshot: bytes | bytearray | memoryview) -> None:
-        """Makes the world what it was when the snapshot was taken, of this world or of another one like it.
+        """Puts the world into the state of a snapshot, taken of this world or of another one like it.
 
         Raises InvalidSnapshotError, and changes nothing, for other bytes.
         """
@@ -335,7 +337,7 @@ class Tracker(_ArrayTracker):
         dimension: 2 or 3.
         dtype: float64 or float32, as in `World`.
         algorithm: A spec: see `algorithms`.
-        threads: The most threads; None: all cores, if there is enough to do.
+        threads: The maximum number of threads; None: all cores, if there is enough to do.
         quarantine: Treat invalid boxes as absent instead of raising.
         touching: Whether boxes that only touch overlap, as in `pairs`.
 
@@ -374,22 +376,24 @@ class Tracker(_ArrayTracker):
     ) -> Events:
         """Takes the boxes of the next frame and returns the pairs of rows, uint32, that began and ended.
 
-        Rows beyond the last frame's are new boxes; a shorter array, or absent boxes, end those there were.
+        Rows beyond those of the last frame are new boxes. A shorter array, or an absent box, removes boxes.
 
         Args:
             boxes: n boxes, whatever `pairs` takes.
-            changed: The rows that may differ from the frame before; a change that is not listed is not seen. None: any.
-            filters: A filter for each box, made by `broadside.filters`; a change of one is listed as well.
+            changed: The rows that may differ from the frame before; a change of another row is not seen. None: any row
+                may differ.
+            filters: A filter for each box, made by `broadside.filters`. A row whose filter changes must be in `changed`
+                as well.
             columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
-        Raises InvalidBoxError and ValueError, and has taken nothing then; so does Ctrl-C, after which the next update
-        tells of all events since the last one that ended.
+        Raises InvalidBoxError and ValueError. The tracker has not changed then, nor after Ctrl-C: the next update
+        returns all events since the last complete one.
         """
         return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
 
 
 class BatchEvents(NamedTuple):
-    """What an update brought in each world."""
+    """The pairs that began and ended in each world in an update."""
 
     begun: BatchPairs
     """The pairs that hold now and did not before."""
@@ -400,13 +404,13 @@ class BatchEvents(NamedTuple):
 class BatchTracker(_ArrayTracker):
     """Follows the boxes of many small worlds, such as the simulations in which a policy is trained.
 
-    One call takes all boxes of a frame, and tells for each world which pairs of rows begin and end.
+    One call takes all boxes of a frame, and returns for each world which pairs of rows begin and end.
 
     Args:
         dimension: 2 or 3.
         dtype: float64 or float32, as in `World`.
         algorithm: A spec: see `algorithms`.
-        threads: The most threads, which share the worlds; None: all cores, if there is enough to do.
+        threads: The maximum number of threads, which share the worlds; None: all cores, if there is enough to do.
         touching: Whether boxes that only touch overlap, as in `pairs`.
 
     Calls from several threads take turns. A batch tracker cannot be pickled or copied.
@@ -445,14 +449,14 @@ class BatchTracker(_ArrayTracker):
         In the first update all pairs begin.
 
         Args:
-            boxes: The boxes of all worlds, as in `find_pairs_batch`: in an array of shape (worlds, n, 4) or
-                (worlds, n, 6), or in any form that `pairs` takes, with offsets. Each world has as many boxes as in the
-                update before; absent ones take the places of bodies that are missing.
+            boxes: The boxes of all worlds, as in `find_pairs_batch`: in an array of shape (worlds, n, 4) or (worlds, n,
+                6), or in any form that `pairs` takes, with offsets. Each world has as many boxes as in the update
+                before; absent boxes stand for bodies that are missing.
             offsets: World i has the rows from ``offsets[i]`` up to ``offsets[i + 1]``.
             filters: A filter for each box of all worlds.
             columns: As in `pairs`.
 
-        Raises InvalidBoxError and ValueError, and has taken nothing then; nor has it at Ctrl-C.
+        Raises InvalidBoxError and ValueError. The tracker has not changed then, nor after Ctrl-C.
         """
         if offsets is None:
             boxes, offsets = _convert.worlds(boxes, "boxes")

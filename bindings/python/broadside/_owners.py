@@ -14,13 +14,14 @@ _MOST = 2**64 - 1
 
 
 class OwnerPairs:
-    """Tells which pairs of owners touch, such as bodies made of several boxes, from the pairs of boxes that begin and end.
+    """Tells which owners touch, such as bodies made of several boxes, from the pairs of boxes that begin and end.
 
-    Two owners touch while at least one box of each touches a box of the other. Boxes of one owner never count as a pair;
-    ``different=owners`` also keeps a search from finding them. An owner is an integer from 0 to 2**64 - 1. A box that is
-    removed ends its pairs, as its `Tracker` or `World` tells; its owner must be the same as when its pairs began.
+    Two owners touch while at least one box of each touches a box of the other. Boxes of one owner never count as a
+    pair; ``different=owners`` also keeps a search from finding them. An owner is an integer from 0 to 2**64 - 1. When a
+    box is removed, its `Tracker` or `World` reports that its pairs end; the box's owner must be the same as when they
+    began.
 
-    With ``owners`` an array that has one for each box::
+    If the array ``owners`` has the owner of each box::
 
         events = tracker.update(boxes)
         of_cars = cars.update(owners[events.begun], owners[events.ended])

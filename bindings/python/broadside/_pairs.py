@@ -108,26 +108,27 @@ def pairs(
     """Every pair of overlapping boxes, once. Boxes that touch overlap, unless `touching` is False.
 
     Args:
-        boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. Arrays of float32 and float64
-            are taken as they are, without a copy if they are C-contiguous; rows farther apart are gathered by the
-            search, and other strides, integers (refused where float64 does not hold one), float16 and nested lists
-            are converted once. So are shapely geometries, GeoSeries and GeoDataFrames (by their bounds; empty ones
-            overlap nothing), objects with ``__array__`` or ``__dlpack__``, and tables: pandas and polars DataFrames,
-            structured arrays, and Arrow tables and arrays (structs of columns, lists of a fixed size). Only a table's
-            columns of bounds are read; a row without any bound is an absent box, as an empty geometry is. An empty
-            list stands for no boxes. No other thread may change the array during the call.
+        boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. C-contiguous arrays of float32 and
+            float64 are not copied, and rows farther apart are gathered by the search. Other strides, float16, integers
+            (refused where float64 does not hold one) and nested lists are converted once. So are shapely geometries,
+            GeoSeries and GeoDataFrames (by their bounds; empty ones overlap nothing), objects with ``__array__`` or
+            ``__dlpack__``, and tables: pandas and polars DataFrames, structured arrays, and Arrow tables and arrays
+            (structs of columns, lists of a fixed size). Only a table's columns of bounds are read. A row without any
+            bound is an absent box, as an empty geometry is. An empty list stands for no boxes. No other thread may
+            change the array during the call.
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
             found. If one set is float32 and the other float64, the former is widened, which is exact.
         algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
         sort: Sort the pairs. Otherwise their order is fixed by the algorithm and the boxes, whatever the threads.
         output: ``"numpy"``; ``"arrow"`` for a `PairTable`; ``"sparse"`` for a ``scipy.sparse.csr_array`` of booleans
-            with n rows and as many columns as the second set has boxes, whose true elements are the pairs: of one set
+            with n rows and as many columns as the second set has boxes. Its true elements are the pairs; for one set,
             those above the diagonal.
-        threads: The most threads; None: all cores. A thread has at least 4096 boxes, so few boxes take one.
+        threads: The maximum number of threads; None: all cores. A thread gets at least 4096 boxes, so few boxes take
+            one thread.
         columns: Either the names of a table's columns, or a layout.
             A list of names, such as ``["x", "y", "w", "h"]``, selects columns of a table and names those of an array.
-            Four or six names that say nothing, such as ``["a", "b", "c", "d"]``, are the minima and then the maxima.
-            With `within`, two or three names are points; ``["start", "end"]`` are intervals.
+            Four or six names without a meaning, such as ``["a", "b", "c", "d"]``, are the minima and then the maxima.
+            With `within`, two or three names mean points; ``["start", "end"]`` mean intervals.
             A layout, ``"xyxy"``, ``"xywh"``, ``"cxcywh"``, ``"xyzxyz"``, ``"xyzwhd"`` or ``"cxcyczwhd"``, is the
             meaning of the numbers in a row of an array, or in a table's column `bbox` of lists (in Arrow and polars
             lists of a fixed size), and of columns called x, y, w and h.
@@ -136,41 +137,42 @@ def pairs(
         other_columns: Likewise for `other`.
         filters: Which boxes may pair: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
-        ignored: Pairs that never count, shape (m, 2), in either order; of one set alone.
+        ignored: Pairs of one set that never count, shape (m, 2), in either order.
         quarantine: Leave invalid boxes out instead of raising; `invalid_rows` tells which these are.
         touching: Whether boxes that only touch overlap. If False, boxes are half-open (min <= p < max), except on an
             axis where minimum and maximum are equal. Exact.
         same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Keys are integers,
-            strings or categories, in an array or a column of pandas, polars or Arrow, row by row: the index of pandas
-            is not looked at. If the boxes are a table, the name of its column will do. Several keys, as a tuple of
-            arrays, a list of names or a table, are equal if all are. Of two sets, both sets' keys as a tuple, or names
-            of columns of both. With `same`, filters may set only `is_static`.
-        different: Likewise: only boxes with unequal keys pair; filters of group 0 may leave out more. With `same` as
-            well, both must hold, such as the same image and different classes.
-        within: A distance, such as a cutoff: find the boxes that are at most so far apart (Euclidean), instead of those
-            that overlap. Or a radius for each box, shape (n,): two boxes pair if they are at most the sum of their radii
-            apart; of two sets, both sets' radii as a tuple. The boxes may then be points: arrays of shape (n, 2) or
-            (n, 3), or tables with columns x and y, or others that `columns` names. `distances` and `neighbour_lists`
-            take the pairs.
-        period: Space repeats: the length after which it does on each axis, None on an axis on which it does not. For
-            ``(360, None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie
-            in any cell; one at least as long as the period is the whole axis. With `within`, the distance is that of
-            the nearest images.
-        to: The boxes move: `boxes` are at the beginning of a step and these, as many, at its end, and each bound moves
-            at a constant speed. Two pair if they overlap at some time of the step; not if they pass through a place one
-            after the other. Of two sets, the ends of both as a tuple. `overlap_times` tells when pairs overlap.
+            strings or categories, in an array or a column of pandas, polars or Arrow. They are taken row by row, and
+            the index of pandas is ignored. If the boxes are a table, the name of its column is enough. Several keys (a
+            tuple of arrays, a list of names or a table) are equal if all are. For two sets, give both sets' keys as a
+            tuple, or names of columns that both have. With `same`, filters may set only `is_static`.
+        different: Likewise: only boxes with different keys pair. Filters of group 0 may leave out more pairs. With
+            `same` as well, both must hold, such as the same image and different classes.
+        within: A distance, such as a cutoff: find the boxes whose Euclidean distance is at most this, instead of those
+            that overlap. Or a radius for each box, shape (n,): two boxes pair if their distance is at most the sum of
+            their radii. For two sets, give both sets' radii as a tuple. The boxes may then be points: arrays of shape
+            (n, 2) or (n, 3), or tables with columns x and y, or others that `columns` names. `distances` and
+            `neighbour_lists` take the pairs.
+        period: The length after which space repeats on each axis; None for an axis on which it does not. For ``(360,
+            None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie in any
+            cell. A box at least as long as the period covers the whole axis. With `within`, the distance is that of the
+            nearest images.
+        to: The boxes at the end of a step, as many as `boxes`, which are then those at its beginning. Each bound moves
+            at a constant speed. Two boxes pair if they overlap at some time of the step, but not if they only pass
+            through a place one after the other. For two sets, give the ends of both as a tuple. `overlap_times` tells
+            when pairs overlap.
 
     Returns:
-        uint32 of shape (k, 2): the rows of each pair's boxes. Of one set the first is the lesser; of two sets, the
-        first is a row of `boxes` and the second one of `other`. The array owns the memory that the search wrote.
+        uint32 of shape (k, 2): the rows of each pair's boxes. In one set the first row is the lower one. Of two sets,
+        the first is a row of `boxes` and the second a row of `other`. The array owns the memory that the search wrote.
 
     Raises:
         InvalidBoxError: A box has a NaN or a minimum greater than its maximum; ``row`` and ``argument`` say which.
         InvalidAlgorithmError: `algorithm` does not exist or has no such tunable or value.
-        TypeError: Something is of another type or dtype than these.
-        InvalidQueryError: `within` has a number that is not finite, or is negative; `period` has one that is not above
-            0, or not one for each axis.
-        ValueError: Something has another shape, or does not fit to the rest.
+        TypeError: An argument has another type or dtype than these.
+        InvalidQueryError: `within` has a number that is not finite, or is negative; `period` has a number that is not
+            above 0, or does not have one for each axis.
+        ValueError: An argument has another shape, or does not fit the others.
 
     Cost: about that of sorting the boxes, and of writing the pairs. The GIL is released. At Ctrl-C a search ends
     within a few million tests, and sorting pairs within as many comparisons; signals are checked at most once every 50
@@ -237,14 +239,14 @@ def overlap_times(boxes: Any, to: Any, pairs: ArrayLike, other: Any = None) -> N
 
     Args:
         boxes: The boxes at the beginning of the step, as `pairs` takes them.
-        to: The boxes at its end; of two sets, those of both as a tuple.
+        to: The boxes at its end; for two sets, a tuple of both.
         pairs: Rows of two ids, shape (k, 2), such as ``pairs(boxes, to=to)``.
         other: The second set, if the pairs are of two sets.
 
     Returns:
         float64 of shape (k, 2): the first and the last time at which the boxes overlap; ``inf, -inf`` for boxes that
-        never do. Contacts tie exactly where differences of coordinates and their products are exact, as of whole
-        numbers.
+        never do. Boxes that only touch for a moment are decided exactly where differences of coordinates and their
+        products are exact, as for whole numbers.
 
     Raises ValueError for an id that is out of range, or ends of another shape.
     """
@@ -274,7 +276,7 @@ def count(
     period: Any = None,
     to: Any = None,
 ) -> int:
-    """The number of pairs that `pairs` gives for the same arguments; none are kept."""
+    """The number of pairs that `pairs` returns for the same arguments. It stores no pairs."""
     filters, other_filters, keys = with_keys(filters, other_filters, same, different, boxes, other)
     reach = _within.checked(within, period, other is not None)
     boxes, other = _sets(boxes, other, columns, other_columns, reach is not None)
@@ -310,10 +312,10 @@ def find_pairs_batch(
     Args:
         boxes: The boxes of all worlds, one world after another, in any form that `pairs` takes; or, without offsets, an
             array of shape (worlds, n, 4) or (worlds, n, 6). Fill up smaller worlds with absent boxes.
-        offsets: World i has the rows from ``offsets[i]`` up to ``offsets[i + 1]``: one more number than there are
-            worlds, none less than the one before, from 0 to the number of boxes.
+        offsets: World i has the rows from ``offsets[i]`` up to, not including, ``offsets[i + 1]``. So there is one
+            offset more than there are worlds. Offsets never decrease, and go from 0 to the number of boxes.
         algorithm: As in `pairs`.
-        threads: The most threads, which share the worlds; None: all cores.
+        threads: The maximum number of threads, which share the worlds; None: all cores.
         columns: As in `pairs`.
         filters: A filter for each box of all worlds.
         ignored: Pairs to leave out in every world, shape (m, 2); rows count from the world's first box.
@@ -349,13 +351,13 @@ def components(
     period: Any = None,
     to: Any = None,
 ) -> NDArray[np.uint32]:
-    """The connected components of the pairs that `pairs` gives for the same arguments.
+    """The connected components of the pairs that `pairs` returns for the same arguments.
 
-    No pairs are kept, however many there are.
+    It stores no pairs, however many there are.
 
     Returns:
-        uint32 of shape (n,): for each box the least row of the boxes in its component. A box without pairs, an absent
-        one for example, has its own row.
+        uint32 of shape (n,): for each box, the lowest row in its component. A box without pairs, such as an absent box,
+        has its own row.
     """
     filters, _, keys = with_keys(filters, None, same, different, boxes, None)
     reach = _within.checked(within, period, False)
@@ -376,13 +378,14 @@ def filters(
 ) -> NDArray[np.void]:
     """A filter for each of `n` boxes: each argument is one value for all, or n of them.
 
-    Two boxes count as a pair if they overlap and their filters accept each other: each one's `mask` has a bit of the
-    other one's `category`, and not both are static. Two of the same `group` other than 0 pair whatever their bits if it
-    is positive, and never if it is negative. So ``filters(n, category=0, mask=0, group=1 + image)`` lets only boxes of
-    one image pair: where a function has no `same`, as with `World`, `Tracker` and `Index`.
+    Two boxes count as a pair if they overlap and their filters accept each other: the `mask` of each has a bit of the
+    other's `category`, and at most one of them is static. Two boxes of the same `group` other than 0 pair whatever
+    their bits if the group is positive, and never if it is negative. So ``filters(n, category=0, mask=0, group=1 +
+    image)`` lets only boxes of one image pair. Use it where a function has no `same`, as with `World`, `Tracker` and
+    `Index`.
 
     Returns:
-        A structured array of shape (n,), to be changed at will.
+        A structured array of shape (n,), which you may change.
 
     Raises:
         ValueError: An argument has another shape, or is beyond uint64 (`category`, `mask`) or int32 (`group`).
@@ -409,10 +412,9 @@ def filters(
 def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
     """Intervals as boxes, which all functions and classes take.
 
-    An interval becomes the row start, 0, end, 0: it lies on the x axis, where a point is ``x, 0``. Intervals are closed;
-    for half-open ones, such as those of BED files, say ``touching=False``. A start of ``inf`` with an end of ``-inf`` is an
-    absent interval. A table with columns ``start`` and
-    ``end`` instead of bounds needs no call of this.
+    An interval becomes the row start, 0, end, 0: it lies on the x axis, where a point is ``x, 0``. Intervals are
+    closed; for half-open ones, such as those of BED files, say ``touching=False``. A start of ``inf`` with an end of
+    ``-inf`` is an absent interval. A table with columns ``start`` and ``end`` instead of bounds can be passed as it is.
 
     Returns:
         A float64 array of shape (n, 4).
@@ -435,6 +437,6 @@ def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
 def invalid_rows(boxes: Any, *, columns: Columns | None = None) -> NDArray[np.int64]:
     """The rows of invalid boxes, ascending: those with a NaN or a minimum greater than its maximum.
 
-    These are what `pairs` raises InvalidBoxError about, and leaves out with ``quarantine=True``. Absent boxes are valid.
+    `pairs` raises InvalidBoxError for these rows, and leaves them out with ``quarantine=True``. Absent boxes are valid.
     """
     return _core.invalid_rows(_convert.given(boxes, "boxes", columns))

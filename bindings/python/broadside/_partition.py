@@ -21,27 +21,28 @@ class Assignment(NamedTuple):
 
 
 class Partition:
-    """Space cut into parts that can be joined apart from each other, on one machine or on many.
+    """Space, cut into parts that can be joined independently, on one machine or on many.
 
-    Every place lies in exactly one part. `assign` gives each part the boxes that touch it, a box on a cut to several
-    parts; `pairs` finds the pairs that belong to a part: those for which the part owns the greater of the two minima on
-    every axis. So the pairs of all parts are disjoint, and together they are all pairs. A part can be joined again
-    without the others. `broadside.dask.pairs` does this on a cluster.
+    Every point lies in exactly one part. `assign` gives each part the boxes that touch it, and a box on a cut goes to
+    several parts. `pairs` finds the pairs that belong to a part. A pair belongs to the part that holds the greater of
+    its two minima on every axis, so the parts' pairs are disjoint, and together they are all pairs. A part can be
+    joined again without the others. `broadside.dask.pairs` does this on a cluster.
 
     Args:
-        sample: Some of the boxes, whatever `pairs` takes: some ten thousand say enough. The partition is of their
+        sample: Some of the boxes, whatever `pairs` takes; some ten thousand are enough. The partition has their
             dimension and dtype.
-        parts: How many parts of about equal cost to cut space into. There are fewer where no cut tells boxes apart, as
-            with all boxes at one place.
-        boxes: How many boxes the sample stands for. Then their pairs count among the costs; 0: boxes alone.
+        parts: The number of parts, which have about equal cost. There are fewer if no cut separates the boxes, as when
+            all are at one place.
+        boxes: The number of boxes that the sample stands for, so that costs include their pairs; 0: costs are of boxes
+            alone.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
     Raises:
         InvalidBoxError: A box of the sample has a NaN or a minimum greater than its maximum.
         TypeError, ValueError: As `pairs` does, and if `parts` is less than 1 or beyond 2**31 - 2.
 
-    Cost: O(s log s) for each doubling of the parts, with a sample of s boxes. A partition does not change, can be used by
-    several threads at once, and can be pickled: as its cuts, some 20 bytes each.
+    Cost: O(s log s) for each doubling of the parts, with a sample of s boxes. A partition never changes, so several
+    threads can use it at once. It can be pickled, in some 20 bytes for each cut.
     """
 
     __slots__ = ("__weakref__", "_partition")
@@ -63,7 +64,8 @@ class Partition:
 
     @property
     def regions(self) -> NDArray[Any]:
-        """The bounds of each part as a box, infinite where nothing was cut. A part has its minima and not its maxima."""
+        """The bounds of each part as a box, infinite where nothing was cut. A part includes its minima but not its
+        maxima."""
         found: NDArray[Any] = self._partition.regions()
         return found
 
@@ -77,8 +79,8 @@ class Partition:
         """Which of these boxes touch which part; absent boxes touch none.
 
         Args:
-            boxes: n boxes, whatever `pairs` takes, of the partition's dimension. Boxes of float64 are refused by a
-                partition of float32 unless they are exact in it.
+            boxes: n boxes, whatever `pairs` takes, of the partition's dimension. A partition of float32 refuses float64
+                boxes that are not exact in float32.
             quarantine: Leave invalid boxes out instead of raising.
             columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
 
@@ -104,14 +106,14 @@ class Partition:
 
         Args:
             part: Its number, from 0.
-            boxes: The boxes that touch the part: those that `assign` gives it, whatever array they came in.
+            boxes: The boxes that touch the part, as `assign` selects them, in any array.
             other: Those of a second set, if there is one.
             algorithm: A spec: see `algorithms`.
             sort: Sort the pairs.
-            threads: The most threads; None: all cores.
+            threads: The maximum number of threads; None: all cores.
 
         Returns:
-            uint32 of shape (k, 2), as of `pairs`.
+            uint32 of shape (k, 2), as `pairs` returns.
 
         Raises:
             ValueError: A box does not touch the part; and whatever else `pairs` raises.

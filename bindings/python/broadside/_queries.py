@@ -15,7 +15,7 @@ from broadside._keys import Keyed, groups_of, rows_by_group, with_keys
 
 
 class Found(NamedTuple):
-    """What overlaps or contains: two arrays of the same length, ordered by query."""
+    """The boxes that queries found: two arrays of the same length, ordered by query."""
 
     query: NDArray[np.uint32]
     """The rows of the queries."""
@@ -37,7 +37,7 @@ class Hits(NamedTuple):
 class FirstHits(NamedTuple):
     """What each ray hits first: a row for each ray.
 
-    One that hits nothing has the box 4294967295 (of a world 2**64 - 1) at t ``inf``.
+    A ray that hits nothing has the box 4294967295 (in a world 2**64 - 1) at t ``inf``.
     """
 
     box: NDArray[Any]
@@ -49,8 +49,8 @@ class FirstHits(NamedTuple):
 class Neighbours(NamedTuple):
     """The nearest boxes of each query: two arrays of shape (m, k).
 
-    If a query has fewer than k neighbours, the places left have the box 4294967295, the greatest uint32 (of a world
-    2**64 - 1), at the distance ``inf``.
+    If a query has fewer than k neighbours, the remaining places have the box 4294967295, the greatest uint32 (in a
+    world 2**64 - 1), at the distance ``inf``.
     """
 
     box: NDArray[Any]
@@ -60,33 +60,33 @@ class Neighbours(NamedTuple):
     its square and their sum are rounded to float64, also for boxes of float32."""
 
     def pairs(self) -> Found:
-        """Each query with each of its neighbours: two arrays of the same length, without places that hold no box."""
+        """Each query with each of its neighbours: two arrays of the same length, in which empty places are left out."""
         rows, places = np.nonzero(self.box != np.iinfo(self.box.dtype).max)
         return Found(rows.astype(np.uint32), self.box[rows, places])
 
 
 class Index:
-    """Boxes for queries: which overlap a box, contain a point, meet a ray, or are nearest to a point or a box.
+    """An index for queries: which boxes overlap a box, contain a point, meet a ray, or are nearest to a point or a box.
 
     Args:
         boxes: n boxes, whatever `pairs` takes. They are copied.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
         filters: A filter for each box, made by `broadside.filters`, for queries with filters.
-        dtype: float32 or float64, to widen the boxes. Queries are of the same dtype: those of float64 to an index of
-            float32 are refused unless they are exact in float32, so that answers are exact.
+        dtype: float32 or float64, to widen the boxes. Queries have the same dtype. So that answers are exact, an index
+            of float32 refuses float64 queries that are not exact in float32.
 
     Raises:
         InvalidBoxError: A box has a NaN or a minimum greater than its maximum.
         TypeError, ValueError: As `pairs`.
 
-    Cost: about that of finding all pairs; 100 to 200 bytes a box. A query takes some hundred nanoseconds, and what it
-    finds. Queries release the GIL, end at Ctrl-C, and may be asked by several threads at once. Making an index releases
-    the GIL and is not interrupted. An index can be pickled.
+    Cost: about that of finding all pairs; 100 to 200 bytes a box. A query takes some hundred nanoseconds, and the time
+    to write what it finds. Queries release the GIL, end at Ctrl-C, and may come from several threads at once. Making an
+    index releases the GIL and cannot be interrupted. An index can be pickled.
 
     Each function takes `filters` and `exclude`, with one value for each query or one for all. `filters` are made by
-    `broadside.filters`: a query finds only boxes whose filters accept its own. Filters of ``category=0, mask=0, group=1 +
-    image``, of the boxes and of the queries, find only boxes of the query's image. `exclude` names a box that the query leaves
-    out, such as the box that a point belongs to. If there is no such box, nothing is left out.
+    `broadside.filters`: a query finds only boxes whose filters accept its own. If boxes and queries have filters with
+    ``category=0, mask=0, group=1 + image``, a query finds only boxes of its own image. `exclude` names a box that the
+    query leaves out, such as the box that a point belongs to. If there is no such box, nothing is left out.
     """
 
     __slots__ = ("__weakref__", "_boxes", "_crs", "_filters", "_index")
@@ -131,18 +131,18 @@ class Index:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """float32 or float64: of the boxes and of t."""
+        """The dtype of the boxes and of t: float32 or float64."""
         return self._boxes.dtype
 
     @property
     def nbytes(self) -> int:
-        """The bytes that the index holds beside its boxes."""
+        """The bytes that the index holds besides its boxes."""
         return self._index.bytes()
 
     def overlapping(
         self, queries: Any, *, filters: NDArray[np.void] | None = None, exclude: ArrayLike | None = None
     ) -> Found:
-        """The boxes that overlap each of `queries`, m boxes. An absent one overlaps nothing."""
+        """The boxes that overlap each of `queries`, m boxes. An absent box overlaps nothing."""
         _convert.common_crs(self._crs, "the index", queries, "queries")
         return Found(*self._index.overlapping(queries, filters, exclude))
 
@@ -165,8 +165,8 @@ class Index:
         """All boxes that each ray meets: the points origin + t * direction, 0 <= t <= t_max.
 
         `origins` and `directions` have shape (m, dimension) and are finite. Raises InvalidQueryError otherwise. With
-        `entering`, only boxes that the ray enters: not those that its origin is in or on, unless it is on the border
-        and the ray moves into the box.
+        `entering`, only boxes that the ray enters. A box that holds the origin counts only if the origin is on its
+        border and the ray moves into the box.
         """
         limit = _arguments.number(t_max, "t_max")
         return Hits(*self._index.hits(origins, directions, limit, entering, filters, exclude))
@@ -198,8 +198,9 @@ class Index:
         """The k boxes nearest to each of `queries`, at a distance of at most `max_distance`.
 
         `queries` are points, shape (m, dimension), or boxes, as for `overlapping`. `k` is from 1 to 65,536, or to the
-        number of boxes where these are more. `threads` are the most to use; None: all cores. Raises InvalidQueryError
-        for a NaN; an infinite point is infinitely far from every finite box, and nothing is near an absent box.
+        number of boxes if that is greater. `threads` is the maximum number of threads; None: all cores. Raises
+        InvalidQueryError for a NaN; an infinite point is infinitely far from every finite box, and nothing is near an
+        absent box.
         """
         return _nearest(self, self._index, queries, _checked_k(k, len(self)), max_distance, threads, filters, exclude)
 
@@ -242,33 +243,34 @@ def nearest_pairs(
     same: Any = None,
     different: Any = None,
 ) -> Neighbours:
-    """For each box of a set the k nearest ones: of `other` or, without it, of the same set, itself left out.
+    """The k nearest boxes of each box: in `other` or, without it, in the same set, without the box itself.
 
     Args:
         boxes: n boxes, whatever `pairs` takes, or points: arrays of shape (n, 2) or (n, 3), or tables with columns x and
             y, or others that `columns` names.
         other: A second set, likewise, of the same dimension. If one set is float32 and the other float64, the former
             is widened.
-        k: How many, from 1 to 65,536, or to the number of boxes where these are more.
-        max_distance: Boxes that are farther away are not found. A box at exactly this distance is.
-        threads: The most threads; None: all cores. A thread has at least 4096 boxes.
-        columns: As in `pairs`; two or three names are points.
+        k: The number of neighbours: from 1 to 65,536, or to the number of boxes if that is greater.
+        max_distance: Boxes that are farther away are left out. A box at exactly this distance is found.
+        threads: The maximum number of threads; None: all cores. A thread has at least 4096 boxes.
+        columns: As in `pairs`; two or three names mean points.
         other_columns: Likewise for `other`.
         filters: Which boxes may be neighbours: a filter for each, made by `filters`.
         other_filters: Likewise for `other`.
         same: A key for each box, such as its image or class, as in `pairs`: only boxes with equal keys are neighbours.
-        different: Likewise: only boxes with unequal keys are neighbours. With `same` as well, both must hold.
+        different: Likewise: only boxes with different keys are neighbours. With `same` as well, both must hold.
 
     Returns:
-        For each box its neighbours, by distance and then by row, whatever the threads. Two boxes with the same bounds
-        are neighbours of each other, at distance 0. ``nearest_pairs(...).pairs()`` lists them as pairs.
+        The neighbours of each box, ordered by distance and then by row, whatever the threads. Two boxes with the same
+        bounds are neighbours of each other, at distance 0. ``nearest_pairs(...).pairs()`` lists them as pairs.
 
     Raises:
         InvalidBoxError, InvalidQueryError: A box has a NaN or a minimum greater than its maximum.
         TypeError, ValueError: As `pairs`.
 
-    Cost: about that of an `Index` and, for each box, some hundred nanoseconds and what it finds; with `same`, also some ten
-    microseconds for each key. Where space is periodic, `pairs` finds neighbours, by ``within`` and ``period``.
+    Cost: about that of making an `Index`, and for each box some hundred nanoseconds and the time to write what it
+    finds. With `same`, each key costs some ten microseconds more. In periodic space, find neighbours by `pairs` with
+    ``within`` and ``period``.
     """
     groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
     as_rows = _convert.boxes if groups is None else _convert.valid_boxes

@@ -93,13 +93,13 @@ def distances(
 
 
 def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> NeighbourLists:
-    """The neighbours of each of `n` boxes, of pairs in any order.
+    """The neighbours of each of `n` boxes, from pairs in any order.
 
     Args:
         pairs: Rows of two ids, shape (k, 2), such as ``pairs(points, within=cutoff)``.
-        n: How many boxes there are; of two sets, in the first.
-        full: Each box of a pair has the other one as a neighbour (each pair twice). If False, the first has the second
-            (each pair once): a half list, or one of two sets.
+        n: The number of boxes; of two sets, of the first.
+        full: If True, each box of a pair is a neighbour of the other, so each pair is listed twice. If False, only the
+            second is a neighbour of the first: a half list, or a list between two sets.
 
     Raises ValueError for an id that is out of range.
     """

@@ -52,9 +52,9 @@ def pairs(
 ) -> Any:
     """Every pair of overlapping boxes, once, as a Dask DataFrame; boxes are closed, so boxes that touch overlap.
 
-    Space is cut into parts of about equal cost. Each part is given the boxes that touch it and joined by one task, which
-    reports the pairs that belong to the part. No part needs another one: when a worker dies, what it held is computed
-    again, and nothing else. The pairs are those of ``broadside.pairs``, whatever the chunks, parts and workers.
+    Space is cut into parts of about equal cost. Each part is given the boxes that touch it and joined by one task,
+    which reports the pairs that belong to the part. No part needs another part: when a worker dies, only what it held
+    is computed again. The pairs are those of ``broadside.pairs``, whatever the chunks, parts and workers.
 
     Args:
         boxes: n boxes in chunks, in 2D or 3D. A Dask array of shape (n, 4) or (n, 6), minima first. A Dask DataFrame, as
@@ -65,21 +65,21 @@ def pairs(
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are found.
         columns: The names of the frames' columns of bounds, or a layout such as "xywh": see ``broadside.pairs``.
         other_columns: Likewise of `other`.
-        ids: What a box is called: ``"row"``, its row number counted over all chunks; or ``"index"``, its label in the
-            index of its frame. Labels need not be unique.
-        parts: How many parts; by default as many as both sets have chunks. There are fewer where no cut tells boxes
-            apart.
+        ids: How the result names a box: ``"row"``, its row number counted over all chunks; or ``"index"``, its label in
+            the index of its frame. Labels need not be unique.
+        parts: The number of parts; by default as many as both sets have chunks. There are fewer if no cut separates the
+            boxes.
         sort: Sort all pairs, by row numbers. The result then has a partition for each chunk of `boxes`, in their order,
             with the pairs whose first box is in the chunk. Otherwise it has one for each part.
         algorithm: A spec: see `algorithms`. Each part is joined by it.
-        threads: The most threads of one task; None: all cores. 1 suits workers that run a task on each core. A spec that
-            says how many threads needs None here.
+        threads: The maximum number of threads of one task; None: all cores. 1 suits workers that run a task on each
+            core. If the spec gives a number of threads, this must be None.
         quarantine: Leave invalid boxes out instead of raising.
 
     Returns:
         A Dask DataFrame with the columns ``first`` and ``second``: int64, or of the index's dtype. Nothing is joined
-        until it is computed or written: ``.compute()``, ``.to_parquet(folder)``. Of one set the first box has the lesser
-        row number; of two sets it is one of `boxes`.
+        until it is computed or written: ``.compute()``, ``.to_parquet(folder)``. In one set, the first box has the
+        lower row number; of two sets, it is a box of `boxes`.
 
     Raises:
         InvalidBoxError: A box has a NaN or a minimum greater than its maximum. ``row`` is its row number over all chunks,
@@ -88,14 +88,14 @@ def pairs(
         TypeError, ValueError: As ``broadside.pairs`` does; the text names the chunk. When the result is computed,
             ValueError if a chunk then has another number of boxes, or boxes in parts where it had none.
 
-    The call computes all chunks once, to check the boxes and to make the cuts from a sample of some ten thousand; the
-    result computes them again. ``boxes.persist()`` saves that where they are costly. Both use Dask's default scheduler,
-    such as a ``distributed.Client``. Filters and ignored pairs, which ``broadside.pairs`` takes, are not taken.
+    The call computes all chunks once, to check the boxes and to make the cuts from a sample of some ten thousand. The
+    result computes them again. If chunks are costly to compute, ``boxes.persist()`` saves that. Both use Dask's default
+    scheduler, such as a ``distributed.Client``. It does not take filters and ignored pairs, as ``broadside.pairs``
+    does.
 
-    Cost: a task has one chunk, or one part's boxes and pairs, in memory. What waits between tasks, as much as all boxes
-    and pairs, is kept by Dask's workers, which spill it to disk. There are about ``chunks * parts`` tasks, fewer where
-    chunks lie apart in space, and where there would be more than 16384, about ``chunks * sqrt(parts) + parts *
-    sqrt(chunks)``.
+    Cost: a task has one chunk, or one part's boxes and pairs, in memory. Dask's workers keep the data between tasks, as
+    much as all boxes and pairs, and spill it to disk. There are about ``chunks * parts`` tasks, or fewer if chunks lie
+    apart in space. If there would be more than 16384, there are about ``chunks * sqrt(parts) + parts * sqrt(chunks)``.
     """
     sets = [chunked_set(boxes, "boxes", columns, ids)]
     if other is not None:
