@@ -143,7 +143,8 @@ class World:
         return self._world.pairs()
 
     def boxes(self, handles: ArrayLike | None = None, *, enlarged: bool = False) -> NDArray[Any]:
-        """The boxes of these handles, or of all (see `handles`), as they were last set, or enlarged by the margins.
+        """The boxes of these handles, or of all (see `handles`), as they were last set; if `enlarged`, with their
+        margins.
 
         A removed box can be read until the update after the one that reported that its pairs ended.
         """

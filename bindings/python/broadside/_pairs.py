@@ -109,7 +109,7 @@ def pairs(
 
     Args:
         boxes: n boxes: an array of shape (n, 4) in 2D or (n, 6) in 3D, minima first. C-contiguous arrays of float32 and
-            float64 are not copied, and rows farther apart are gathered by the search. Other strides, float16, integers
+            float64 are not copied, and the search gathers rows that lie farther apart. Other strides, float16, integers
             (refused where float64 does not hold one) and nested lists are converted once. So are shapely geometries,
             GeoSeries and GeoDataFrames (by their bounds; empty ones overlap nothing), objects with ``__array__`` or
             ``__dlpack__``, and tables: pandas and polars DataFrames, structured arrays, and Arrow tables and arrays
@@ -157,10 +157,10 @@ def pairs(
             None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie in any
             cell. A box at least as long as the period covers the whole axis. With `within`, the distance is that of the
             nearest images.
-        to: The boxes at the end of a step, as many as `boxes`, which are then those at its beginning. Each bound moves
-            at a constant speed. Two boxes pair if they overlap at some time of the step, but not if they only pass
-            through a place one after the other. For two sets, give the ends of both as a tuple. `overlap_times` tells
-            when pairs overlap.
+        to: As many boxes, at the end of a step; `boxes` are then those at its beginning. Each bound moves at a constant
+            speed. Two boxes pair if they overlap at some time of the step, but not if they only pass through a place
+            one after the other. For two sets, give the ends of both as a tuple. `overlap_times` tells when pairs
+            overlap.
 
     Returns:
         uint32 of shape (k, 2): the rows of each pair's boxes. In one set the first row is the lower one. Of two sets,
@@ -380,9 +380,9 @@ def filters(
 
     Two boxes count as a pair if they overlap and their filters accept each other: the `mask` of each has a bit of the
     other's `category`, and at most one of them is static. Two boxes of the same `group` other than 0 pair whatever
-    their bits if the group is positive, and never if it is negative. So ``filters(n, category=0, mask=0, group=1 +
-    image)`` lets only boxes of one image pair. Use it where a function has no `same`, as with `World`, `Tracker` and
-    `Index`.
+    their bits if the group is positive, and never if it is negative. With ``filters(n, category=0, mask=0, group=1 +
+    image)``, boxes pair only if they are of the same image. Use this where a function has no `same`, as with `World`,
+    `Tracker` and `Index`.
 
     Returns:
         A structured array of shape (n,), which you may change.

@@ -90,8 +90,7 @@ def pairs(
 
     The call computes all chunks once, to check the boxes and to make the cuts from a sample of some ten thousand. The
     result computes them again. If chunks are costly to compute, ``boxes.persist()`` saves that. Both use Dask's default
-    scheduler, such as a ``distributed.Client``. It does not take filters and ignored pairs, as ``broadside.pairs``
-    does.
+    scheduler, such as a ``distributed.Client``. Unlike ``broadside.pairs``, it takes no filters and no ignored pairs.
 
     Cost: a task has one chunk, or one part's boxes and pairs, in memory. Dask's workers keep the data between tasks, as
     much as all boxes and pairs, and spill it to disk. There are about ``chunks * parts`` tasks, or fewer if chunks lie
