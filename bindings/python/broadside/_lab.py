@@ -281,7 +281,7 @@ def draw(
         algorithms: What to lay over them: a spec such as ``"quadtree:capacity=16"``, or several with commas between,
             side by side; empty: only the boxes.
         most: The maximum number of boxes drawn, up to 20,000. If there are more boxes, up to a quarter of those drawn
-            are boxes far larger than most, as they are. The others are chosen evenly and made larger, so that the
+            are boxes far larger than most, at their own size. The others are chosen evenly and made larger, so that the
             picture looks as dense as all boxes.
         title: The title of the picture.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
