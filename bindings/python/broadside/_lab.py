@@ -126,7 +126,7 @@ def read(
         columns: A list of names selects columns of a table; a layout such as "xywh" says what its numbers mean. Four or
             six names without a meaning are the minima, then the maxima. A CSV file's columns ``frame`` and ``box`` are
             read as well; if it has no names, the list gives them from left to right. A str such as "-,x,y,w,h", or a
-            list with ``-``, which leaves a column out, does so whatever names the file has.
+            list with ``-``, gives them from left to right in any case; ``-`` leaves a column out.
         dimension: 2 or 3, if the format has a choice.
         frame: The frame of a recording, counted from 0.
         quarantine: Make invalid boxes absent (minima inf and maxima -inf), with a warning, instead of raising.
