@@ -54,6 +54,7 @@ async function bundle(modules, folder) {
     outdir: folder,
     bundle: true,
     minify: true,
+    lineLimit: 200, // Node prints the line that throws before the error
     format: "esm",
     target: "es2022",
     charset: "utf8",

@@ -35,6 +35,8 @@ function translated(message: string): string {
 
 export function errorOf(status: number, message: string, index: number): BroadsideError {
   const code = codes[status] ?? "FAILED";
+  if (code === "INVALID_INPUT" && message.includes("min <= max") && !message.includes("nan"))
+    message += "; a box is its minima and then its maxima, not its size";
   // A spec is written as in C++.
   return new BroadsideError(code, code === "INVALID_SPEC" ? message : translated(message),
     code === "INVALID_INPUT" ? index : undefined);

@@ -66,7 +66,10 @@ class Asker<Numbers extends Uint32Array | Float64Array> implements Queries<Numbe
 
   /** Puts numbers of a question into the module, and returns where the next ones go. */
   #ask(at: number, numbers: ArrayLike<number>, count: number, name: string): number {
-    if (countIn(numbers, 1, name) !== count) refuse(`the length of ${name}`, numbers.length, String(count));
+    if (countIn(numbers, 1, name) !== count) {
+      const expected = name === "box" ? `${count}, with a point given as minima and as maxima` : String(count);
+      refuse(`the length of ${name}`, numbers.length, expected);
+    }
     const core = this.#core;
     core.refresh();
     // For so few numbers, set() takes longer.

@@ -257,6 +257,7 @@ export interface Hit {
 /** Boxes by distance, the nearest first. */
 export interface Neighbours<Numbers> {
   readonly ids: Numbers;
+  /** Euclidean distances, not squared. */
   readonly distances: Float64s;
 }
 

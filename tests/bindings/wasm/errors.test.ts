@@ -35,7 +35,9 @@ test("invalid boxes are named, in the library's words", () => {
     assert.equal(error.message, `box ${count - 1} has min (1, nan) and max (1, 1); expected numbers with min <= max ` +
       "on every axis, or the absent box (min = +inf, max = -inf)");
   }
-  assert.equal(errorOf(() => broadside.pairs([2, 0, 1, 1])).index, 0);
+  const size = errorOf(() => broadside.pairs([20, 20, 10, 10]));
+  assert.equal(size.index, 0);
+  assert.match(size.message, /; a box is its minima and then its maxima, not its size$/);
   assert.equal(errorOf(() => broadside.pairs([0, 0, 0, 0, 0, -1], { dimension: 3 })).code, "INVALID_INPUT");
   assert.match(errorOf(() => broadside.join([0, 0, 1, 1], [0, NaN, 1, 1])).message, /^right box 0 has/);
   assert.match(errorOf(() => broadside.pairs([0.1, 0, -1e-30, 1])).message,

@@ -73,7 +73,7 @@ async function shownBy(address) {
 
 /** Builds a page by Vite and opens it. Says what a visitor downloads. */
 async function built(folder, name, code, expected) {
-  writeFileSync(join(folder, "index.html"), '<!doctype html><script type="module" src="/main.js"></script>');
+  writeFileSync(join(folder, "index.html"), '<!doctype html><canvas></canvas><script type="module" src="/main.js"></script>');
   writeFileSync(join(folder, "main.js"), code);
   execFileSync(join(folder, "node_modules/.bin/vite"), ["build", "--logLevel", "warn"], { cwd: folder, stdio: "inherit" });
   const { server, sent, address } = await serve(join(folder, "dist"));
@@ -100,6 +100,9 @@ try {
     import wasm from "broadside/broadside-2d.wasm?url";
     const broadside = await load({ wasm });
     document.title = [...broadside.pairs([0, 0, 2, 2, 1, 1, 3, 3, 5, 5, 6, 6])].join();`, "0,1");
+  const [, tutorial] = readFileSync(join(web, "../../docs/tutorials/javascript.md"), "utf8").match(/`page.js`:\n\n```js\n([^]*?)```/);
+  await built(site, "the tutorial's page", `${tutorial}
+    setTimeout(() => { document.title = world.pairs().length > 0 ? "drawn" : "no pairs"; }, 500);`, "drawn");
   const node = join(project("node", `node@${oldestNode}`), "node_modules/node/bin/node");
   const files = readdirSync(tests).filter((file) => file.endsWith(".test.mjs")).map((file) => join(resolve(tests), file));
   const report = execFileSync(node, ["--test", ...files], {

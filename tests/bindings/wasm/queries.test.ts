@@ -124,7 +124,7 @@ test("questions that cannot be", async () => {
   assert.throws(() => index.firstHit([0, 0], [Infinity, 0]),
     { code: "INVALID_QUERY", message: "a cast's direction is inf, 0; expected finite numbers" });
   assert.throws(() => index.overlapping([0, 0, 1]),
-    { code: "INVALID_ARGUMENT", message: "the length of box is 3; expected 4" });
+    { code: "INVALID_ARGUMENT", message: "the length of box is 3; expected 4, with a point given as minima and as maxima" });
   assert.throws(() => index.nearest([0, 0], -1), { code: "INVALID_ARGUMENT" });
   assert.throws(() => index.nearest([0, 0], 1, { maxDistance: -1 }), { code: "INVALID_ARGUMENT" });
   assert.throws(() => index.nearest([0, 0, 1], 1), { code: "INVALID_ARGUMENT", message: "the length of point is 3; expected 2" });
