@@ -85,7 +85,7 @@ test("the README's examples run", async () => {
 
 test("the tutorial prints what its page shows", () => {
   const page = readFileSync(join(web, "../../docs/tutorials/javascript.md"), "utf8");
-  const [, code, shown] = page.match(/```js\n([\s\S]*?)```[\s\S]*\n```\n([\s\S]*?)```/) as string[];
+  const [, code, shown] = page.match(/```js\n([\s\S]*?)```[\s\S]*?\n```\n(frame [\s\S]*?)```/) as string[];
   const folder = join(work, "tutorial");
   install(folder);
   writeFileSync(join(folder, "drift.mjs"), code as string);
