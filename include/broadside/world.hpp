@@ -279,10 +279,10 @@ class BROADSIDE_PUBLIC World {
   [[nodiscard]] bool is_ignored(Handle a, Handle b) const;
 
   /// Makes update() ask `predicate` about each pair before it begins, in the order of slots and in the
-  /// calling thread. The next update also asks about all current pairs. The predicate may read the world and
-  /// must not change it; update() lets its exceptions through. An empty predicate accepts all pairs. Takes
-  /// some 50 bytes for each pair of boxes that overlap. Throws std::logic_error after the first update of a
-  /// world without `keep_pairs`.
+  /// calling thread. The next update also asks about all current pairs. The predicate may read the world, but
+  /// calls that would change it throw std::logic_error; update() lets its exceptions through. An empty
+  /// predicate accepts all pairs. Takes some 50 bytes for each pair of boxes that overlap. Throws
+  /// std::logic_error after the first update of a world without `keep_pairs`.
   void set_predicate(PairPredicate predicate);
 
   /// Makes the next update ask the predicate again, about the pairs of one box or about all. No effect

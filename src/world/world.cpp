@@ -34,6 +34,18 @@ void check_lengths(std::size_t found, const char* things, std::size_t count, con
       core::message({found, " ", things, " for ", count, " ", expected, "; expected one for each"}));
 }
 
+/// Sets a flag as long as it exists.
+class Updating {
+ public:
+  explicit Updating(bool& flag) noexcept : flag_(flag) { flag_ = true; }
+  Updating(const Updating&) = delete;
+  Updating& operator=(const Updating&) = delete;
+  ~Updating() { flag_ = false; }
+
+ private:
+  bool& flag_;
+};
+
 }  // namespace
 
 template <int D, typename Real>
@@ -62,6 +74,7 @@ World<D, Real>::~World() = default;
 template <int D, typename Real>
 Handle World<D, Real>::add(const Box<D, Real>& box, const BoxOptions& options) {
   const core::DefaultEnvironment environment;
+  state_->refuse_from_predicate("add");
   const Box<D, Real> added = box;  // a copy: `box` may be in one of our arrays, which may grow
   state_->parts.boxes.check(added, 0, "the box for slot", state_->parts.slots.next());
   state_->reserve(1, options.filter != Filter{}, options.user_data != 0);
@@ -72,6 +85,7 @@ template <int D, typename Real>
 void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
                          std::span<const BoxOptions> options) {
   const core::DefaultEnvironment environment;
+  state_->refuse_from_predicate("add");
   check_lengths(handles.size(), "handles", boxes.size(), "boxes");
   if (!options.empty()) check_lengths(options.size(), "options", boxes.size(), "boxes");
   state_->add(boxes, handles, options);
@@ -80,6 +94,7 @@ void World<D, Real>::add(BoxView<D, Real> boxes, std::span<Handle> handles,
 template <int D, typename Real>
 void World<D, Real>::move_to(Handle handle, const Box<D, Real>& box, const Point<D, Real>* velocity) {
   const core::DefaultEnvironment environment;
+  state_->refuse_from_predicate("move");
   world::BoxTable<D, Real>& boxes = state_->parts.boxes;
   const std::uint32_t slot = state_->parts.slots.live_slot(handle, "move");
   boxes.check(box, 0, "the box for slot", slot);
@@ -93,6 +108,7 @@ template <int D, typename Real>
 void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxes,
                           std::span<const Point<D, Real>> velocities) {
   const core::DefaultEnvironment environment;
+  state_->refuse_from_predicate("move");
   world::WorldParts<D, Real>& parts = state_->parts;
   check_lengths(handles.size(), "handles", boxes.size(), "boxes");
   if (!velocities.empty()) check_lengths(velocities.size(), "velocities", boxes.size(), "boxes");
@@ -110,6 +126,7 @@ void World<D, Real>::move(std::span<const Handle> handles, BoxView<D, Real> boxe
 
 template <int D, typename Real>
 void World<D, Real>::remove(std::span<const Handle> handles) {
+  state_->refuse_from_predicate("remove");
   world::WorldParts<D, Real>& parts = state_->parts;
   parts.boxes.reserve_changes(handles.size());
   parts.ignored.reserve_forgetting();
@@ -128,11 +145,13 @@ void World<D, Real>::shift_origin(const Point<D, Real>& origin) {
     throw std::invalid_argument(core::message({"coordinate ", axis, " of a new origin is ",
                                                core::text_of(origin[axis]), "; expected a finite number"}));
   }
+  state_->refuse_from_predicate("shift_origin");
   state_->shift_origin(origin);
 }
 
 template <int D, typename Real>
 void World<D, Real>::set_filter(Handle handle, const Filter& filter) {
+  state_->refuse_from_predicate("set_filter");
   world::BoxTable<D, Real>& boxes = state_->parts.boxes;
   const std::uint32_t slot = state_->parts.slots.live_slot(handle, "filter");
   if (filter == boxes.filters().get(slot)) return;
@@ -166,6 +185,7 @@ bool World<D, Real>::is_ignored(Handle a, Handle b) const {
 
 template <int D, typename Real>
 void World<D, Real>::set_predicate(PairPredicate predicate) {
+  state_->refuse_from_predicate("set_predicate");
   world::WorldParts<D, Real>& parts = state_->parts;
   if (!parts.refiner.is_refining() && parts.has_updated) {
     if (!parts.options.keep_pairs) {
@@ -191,6 +211,8 @@ void World<D, Real>::refilter() {
 /// The tracker's events are candidates. They are refined if there is a margin or a predicate.
 template <int D, typename Real>
 Events World<D, Real>::update() {
+  state_->refuse_from_predicate("update");
+  const Updating updating(state_->is_updating);
   world::WorldParts<D, Real>& parts = state_->parts;
   state_->query_index.drop_outdated(parts.slots.size());
   parts.update_failed = true;
@@ -329,6 +351,7 @@ void World<D, Real>::write_snapshot(detail::Output<std::byte>& bytes) const {
 template <int D, typename Real>
 void World<D, Real>::restore(std::span<const std::byte> snapshot) {
   const core::DefaultEnvironment environment;
+  state_->refuse_from_predicate("restore");
   state_->restore(snapshot);
 }
 

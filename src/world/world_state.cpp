@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <utility>
 
 #include "core/message.hpp"
@@ -12,6 +13,13 @@
 #include "world/snapshot_codec.hpp"
 
 namespace broadside::world {
+
+template <int D, typename Real>
+void WorldState<D, Real>::refuse_from_predicate(const char* function) const {
+  if (!is_updating) return;
+  throw std::logic_error(
+      core::message({"a predicate called World::", function, "(); expected one that only reads the world"}));
+}
 
 template <int D, typename Real>
 void WorldState<D, Real>::reserve(std::size_t count, bool with_filters, bool with_user_data) {

@@ -62,6 +62,9 @@ struct WorldState {
   WorldState(WorldTracker<D, Real> its_tracker, const WorldOptions& options)
       : parts(options), tracker(std::move(its_tracker)) {}
 
+  /// Throws std::logic_error if the world's own predicate calls `function`, which would change the world.
+  void refuse_from_predicate(const char* function) const;
+
   /// Makes room for `count` calls of add(), and begins to use filters and user data if asked to.
   void reserve(std::size_t count, bool with_filters, bool with_user_data);
 
@@ -87,6 +90,7 @@ struct WorldState {
   std::mutex joining;
   std::optional<Finder<D, Real>> joiner;  // none until worlds are joined
   bool wants_release = false;             // by the next update
+  bool is_updating = false;
 };
 
 }  // namespace broadside::world

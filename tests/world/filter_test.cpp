@@ -1,5 +1,9 @@
 // World: filters, ignored pairs and the predicate, and that changing them brings the right events.
+#include <array>
+#include <cstddef>
+#include <functional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -225,6 +229,42 @@ TEST_F(WorldFilterTest, ReportsNoEndOfAPairThatCameBackBeforeTheUpdateWasTriedAg
   EXPECT_TRUE(events.ended.empty());
   EXPECT_EQ(listed(world_.pairs()), (HandlePairs{{a, b}}));
   world_.remove(c);
+}
+
+TEST_F(WorldFilterTest, RefusesAPredicateThatChangesTheWorld) {
+  const Handle a = world_.add(at(0));
+  const Handle b = world_.add(at(0));
+  const std::vector<std::byte> snapshot = world_.snapshot();
+  std::function<void()> change;
+  world_.set_predicate([&](Handle, Handle) {
+    change();
+    return true;
+  });
+  const auto message = [&](std::function<void()> call) {
+    change = std::move(call);
+    return message_of<std::logic_error>([&] { world_.update(); });
+  };
+  EXPECT_EQ(message([&] { world_.update(); }),
+            "a predicate called World::update(); expected one that only reads the world");
+  EXPECT_EQ(message([&] { world_.remove(b); }),
+            "a predicate called World::remove(); expected one that only reads the world");
+  const std::array handles{a};
+  const std::array boxes{at(0)};
+  std::array<Handle, 1> added;
+  const std::vector<std::function<void()>> others{[&] { world_.add(at(0)); },
+                                                  [&] { world_.add(boxes, added); },
+                                                  [&] { world_.move(a, at(1)); },
+                                                  [&] { world_.move(handles, boxes); },
+                                                  [&] { world_.set_filter(a, {.mask = 2}); },
+                                                  [&] { world_.set_predicate({}); },
+                                                  [&] {
+                                                    world_.shift_origin({1, 1});
+                                                  },
+                                                  [&] { world_.restore(snapshot); }};
+  for (const std::function<void()>& other : others)
+    EXPECT_EQ(message(other).substr(0, 26), "a predicate called World::");
+  change = [] {};
+  EXPECT_EQ(listed(world_.update().begun), (HandlePairs{{a, b}})) << "and nothing has changed";
 }
 
 TEST_F(WorldFilterTest, TakesAPredicateLateOnlyWherePairsAreKept) {
