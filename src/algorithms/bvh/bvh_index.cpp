@@ -16,6 +16,7 @@
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "kernels/block_pool.hpp"
 #include "kernels/squared_distances.hpp"
 
 namespace broadside::algorithm {
@@ -33,10 +34,15 @@ float in_tree(Real t_max, int exponent) {
     return rounded_up(std::ldexp(t_max, exponent));
 }
 
+template <int D, typename Real>
+bool is_point(const Box<D, Real>& box) {
+  return box.min == box.max;
+}
+
 }  // namespace
 
 template <int D, typename Real>
-void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
+void BvhIndex<D, Real>::update(const Frame<D, Real>& frame, const Workers& workers) {
   core::check_frame(frame, size_, dirty_);
   const bool rebuild = std::exchange(dirty_, true);  // stays true if this update throws
   take_filters_of(frame, rebuild);
@@ -46,17 +52,18 @@ void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
   const std::span<const Box<D, Real>> boxes = frame.boxes;
   // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
   if (rebuild || changed_.size() > tree_.size() / 4 + boxes.size() / 64 + 16) {
-    build(boxes);
+    build(boxes, workers);
   } else {
     if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
     for (const BoxId id : changed_) {
       const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);
       tree_.set(id, is_there ? in_tree(boxes[index(id)]) : absent_box<D>());
+      are_points_ &= !is_there || is_point(boxes[index(id)]);
       if constexpr (!is_float<Real>) {
         if (index(id) < boxes.size()) exact_[index(id)] = boxes[index(id)];
       }
     }
-    if (tree_.needs_rebuild()) build(boxes);
+    if (tree_.needs_rebuild()) build(boxes, workers);
   }
   size_ = boxes.size();
   dirty_ = false;
@@ -86,9 +93,11 @@ void BvhIndex<D, Real>::list_changes(const Frame<D, Real>& frame) {
 }
 
 template <int D, typename Real>
-void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
+void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes, const Workers& workers) {
+  are_points_ = std::all_of(boxes.begin(), boxes.end(),
+                            [](const Box<D, Real>& box) { return is_point(box) || !is_present(box); });
   if constexpr (is_float<Real>) {
-    tree_.build(boxes);
+    tree_.build(boxes, workers);
   } else {
     exact_.assign(boxes.begin(), boxes.end());
     rounding_.fit(exact_);
@@ -96,7 +105,7 @@ void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
     rounded.reserve(exact_.size());
     for (const Box<D, Real>& box : exact_)
       rounded.push_back(is_present(box) ? rounding_.box(box) : absent_box<D>());
-    tree_.build(rounded);
+    tree_.build(rounded, workers);
   }
 }
 
@@ -220,6 +229,37 @@ bool BvhIndex<D, Real>::find_nearest(const Box<D, Real>& box, std::size_t count,
 
 namespace {
 
+/// Sixteen queries or fewer: their rows in the results, their boxes, and what they do not find.
+template <int D, typename Real>
+struct QueryGroup {
+  std::size_t size;
+  std::array<std::uint32_t, fan_out> row;
+  std::array<Box<D, Real>, fan_out> box;
+  std::array<BoxId, fan_out> except;
+};
+
+/// Whether squares of the coordinates are finite floats.
+template <int D>
+bool is_moderate(const Box<D>& box) {
+  constexpr float limit = 0x1p60F;
+  bool is = true;
+  for (int axis = 0; axis < D; ++axis) is &= box.min[axis] >= -limit && box.max[axis] <= limit;
+  return is;
+}
+
+/// How far the distance of two points of doubles may be from that of the lower bounds of their boxes in the
+/// tree, if one of them is within `bounds` and the distance is small beside them. Conservative rounding moves
+/// a coordinate by at most one and a half units in the last place of a float, or to the least normal number.
+template <int D>
+double rounding_error(const Box<D>& bounds) {
+  double squared = 0;
+  for (int axis = 0; axis < D; ++axis) {
+    const double greatest = std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]));
+    squared += greatest * greatest;
+  }
+  return std::sqrt(squared) * 0x1p-21 + 0x1p-123;
+}
+
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
@@ -276,52 +316,42 @@ std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries
 
 }  // namespace
 
+/// Writes the rows of `groups` groups of queries. gather(number, group, asked) reads group `number`. A group
+/// is searched as one if `may_group`, for `wanted` boxes, so many that `count` are left without those
+/// excepted.
 template <int D, typename Real>
-void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
-                                             std::span<BoxId> found, std::span<double> distances_squared,
-                                             const NearestOfEachOptions& options) const {
-  std::vector<NumberedBox<D>> queries;
-  queries.reserve(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box<D, Real> box = boxes[i];
-    if (!is_present(box) && !is_absent(box))
-      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
-    if (is_present(box)) queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
-  }
-  std::fill(found.begin(), found.end(), no_box);
-  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
-  if (is_empty() || queries.empty()) return;
-
+template <typename Gather>
+void BvhIndex<D, Real>::search_groups(std::size_t groups, bool may_group, bool are_points, std::size_t count,
+                                      std::size_t wanted, core::Parallel& parallel, const Gather& gather,
+                                      std::span<BoxId> found, std::span<double> distances_squared,
+                                      const NearestOfEachOptions& options) const {
+  using Group = kernels::NearGroup<D>;
   const double max_squared = options.max_distance * options.max_distance;
-  core::Parallel parallel;
-  parallel.start(options.workers, queries.size());
-  const bool is_dense =
-      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
-  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
-  // other box is as near as those.
-  const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
-  using Group = kernels::NearGroup<D>;
-  const bool may_group = is_dense && options.filters.empty() && wanted + 1 <= Group::max_count;
-  const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
+  are_points = are_points && are_points_ && is_moderate(kernels::bounds_of(tree_.root())) &&
+               std::all_of(weight.begin(), weight.end(), [](float one) { return one == 1; });
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
+    QueryGroup<D, Real> asked;
     Group group;
+    group.weight = weight;
+    group.are_points = are_points;
     std::size_t paused = 0;  // groups to go until the next is searched as one
     std::size_t pause = min_pause;
     for (std::size_t number = range.begin; number < range.end; ++number) {
-      const bool in_groups = may_group && paused == 0;
+      gather(number, group, asked);
+      for (std::size_t lane = 0; lane < asked.size; ++lane) {
+        kernels::prefetch(&found[asked.row[lane] * count]);
+        kernels::prefetch(&distances_squared[asked.row[lane] * count]);
+      }
+      const bool in_groups = may_group && paused == 0 && asked.size > 0;
       paused -= paused > 0 ? 1 : 0;
       std::size_t tests = 0;
-      const std::span<const std::uint32_t> some =
-          std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
+      double error = 0;
       if (in_groups) {
-        group.queries.clear();
-        for (std::size_t lane = 0; lane < some.size(); ++lane)
-          group.queries.set(lane, in_tree(boxes[some[lane]]));
-        group.weight = weight;
+        if (are_points && !is_float<Real>) error = rounding_error(kernels::bounds_of(group.queries));
+        group.error = static_cast<float>(error);
         group.limit = limit_in_tree(max_squared * unit);
         group.start(wanted + 1);
         kernels::find_near(tree_.view(), group);
@@ -329,38 +359,40 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         if (group.limit < 0) paused = pause;
         pause = group.limit < 0 ? std::min(2 * pause, max_pause) : min_pause;
       }
-      for (std::size_t lane = 0; lane < some.size(); ++lane) {
-        const std::size_t query = some[lane];
-        const Box<D, Real> box = boxes[query];
-        const BoxId except = options.except.empty() ? no_box : options.except[query];
-        const bool in_group = in_groups && group.limit >= 0;
+      const bool in_group = in_groups && group.limit >= 0;
+      for (std::size_t lane = 0; lane < asked.size; ++lane) {
+        const Box<D, Real>& box = asked.box[lane];
+        const BoxId except = asked.except[lane];
         NearestBoxes nearest(in_group ? wanted : count, max_squared);
         bool is_sure = false;
         if (in_group) {
-          for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
-            const auto at = static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask);
-            const BoxId id{group.ids[at]};
-            if constexpr (is_float<Real>)
-              nearest.offer({id, kernels::squared_distance(box, group.found[at])});
-            else
-              nearest.offer({id, kernels::squared_distance(box, exact_[id])});
+          for (std::size_t i = 0; i < wanted && group.keys[i][lane] != Group::no_key; ++i) {
+            const std::uint32_t slot = group.slot(group.keys[i][lane]);
+            const BoxId id = id_at(slot);
+            const Box<D, Real> other = exact(slot, id);
+            nearest.offer({id, are_points ? kernels::squared_distance(box.min, other.min)
+                                          : kernels::squared_distance(box, other)});
           }
-          const float reached = limit_in_tree(nearest.limit() * unit);
+          // By the kernel's distances, all other boxes are at least as far away as the last one.
+          const double reached = nearest.limit() * unit;
+          const double with_error = std::sqrt(reached) + error;
           const std::int32_t last = group.keys[wanted][lane];
-          is_sure = reached <= group.limit &&
-                    (last == Group::no_key || reached < core::bit_cast<float>(last & ~Group::number_mask));
+          is_sure = limit_in_tree(reached) <= group.limit &&
+                    (last == Group::no_key || limit_in_tree(error > 0 ? with_error * with_error : reached) <
+                                                  core::bit_cast<float>(last & ~Group::number_mask));
         }
+        const std::size_t row = asked.row[lane];
         if (!is_sure) {
           QueryOptions eligible;
-          if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          if (!options.filters.empty()) eligible.filter = &options.filters[row];
           if (except != no_box) eligible.except = except;
           nearest.start_over();
           tests += fan_out * (fan_out + count);
           search_nearest(box, eligible, nearest);
         }
-        std::size_t to = query * count;
+        std::size_t to = row * count;
         for (const Neighbour& one : nearest.sorted()) {
-          if (one.box == except || to == (query + 1) * count) continue;
+          if (one.box == except || to == (row + 1) * count) continue;
           found[to] = one.box;
           distances_squared[to++] = one.distance_squared;
         }
@@ -368,6 +400,75 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
       if (checkpoint != nullptr) checkpoint->count(tests);
     }
   });
+}
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
+                                             std::span<BoxId> found, std::span<double> distances_squared,
+                                             const NearestOfEachOptions& options) const {
+  std::vector<NumberedBox<D>> queries;
+  queries.reserve(boxes.size());
+  bool are_points = true;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D, Real> box = boxes[i];
+    if (!is_present(box) && !is_absent(box))
+      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
+    if (!is_present(box)) continue;
+    queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
+    are_points &= is_point(box) && is_moderate(queries.back().box);
+  }
+  std::fill(found.begin(), found.end(), no_box);
+  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
+  if (is_empty() || queries.empty()) return;
+
+  core::Parallel parallel;
+  parallel.start(options.workers, queries.size());
+  const bool is_dense =
+      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
+  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
+  // other box is as near as those.
+  const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
+  const bool may_group =
+      is_dense && options.filters.empty() && wanted + 1 <= kernels::NearGroup<D>::max_count;
+  const auto gather = [&](std::size_t number, kernels::NearGroup<D>& group, QueryGroup<D, Real>& asked) {
+    asked.size = std::min(fan_out, order.size() - number * fan_out);
+    group.queries.clear();
+    for (std::size_t lane = 0; lane < asked.size; ++lane) {
+      const std::uint32_t row = order[number * fan_out + lane];
+      asked.row[lane] = row;
+      asked.box[lane] = boxes[row];
+      asked.except[lane] = options.except.empty() ? no_box : options.except[row];
+      if (may_group) group.queries.set(lane, in_tree(asked.box[lane]));
+    }
+  };
+  search_groups((order.size() + fan_out - 1) / fan_out, may_group, are_points, count, wanted, parallel,
+                gather, found, distances_squared, options);
+}
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::find_nearest_of_all(std::size_t count, std::span<BoxId> found,
+                                            std::span<double> distances_squared,
+                                            const NearestOfEachOptions& options) const {
+  std::fill(found.begin(), found.end(), no_box);
+  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
+  if (is_empty()) return;
+  core::Parallel parallel;
+  parallel.start(options.workers, tree_.size());
+  const auto gather = [&](std::size_t number, kernels::NearGroup<D>& group, QueryGroup<D, Real>& asked) {
+    const auto node = static_cast<std::uint32_t>(number);
+    asked.size = tree_.is_leaf(node) ? tree_.child_count(node) : 0;
+    if (asked.size == 0) return;
+    group.own_leaf = node;
+    group.queries = tree_.view().nodes[node];
+    asked.row = group.queries.id;
+    for (std::size_t lane = 0; lane < asked.size; ++lane) {
+      asked.except[lane] = BoxId{asked.row[lane]};
+      asked.box[lane] = exact(static_cast<std::uint32_t>(node * fan_out + lane), asked.except[lane]);
+    }
+  };
+  search_groups(tree_.node_numbers(), count + 1 <= kernels::NearGroup<D>::max_count, true, count, count,
+                parallel, gather, found, distances_squared, options);
 }
 
 template class BvhIndex<2, float>;

@@ -36,8 +36,8 @@ class BvhIndex {
   static BvhIndex& of(BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
   static const BvhIndex& of(const BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
 
-  /// Does the work of BoxIndex::update().
-  void update(const Frame<D, Real>& frame);
+  /// Does the work of BoxIndex::update(). A build takes `workers`.
+  void update(const Frame<D, Real>& frame, const Workers& workers = default_workers);
 
   /// For a follower of floats that moves the boxes in the tree itself, instead of update(). It then passes
   /// the boxes' filters: none, or one for each. The array must stay valid until the next call.
@@ -57,6 +57,10 @@ class BvhIndex {
                     Visitor<Neighbour>& visitor, const QueryOptions& options) const;
   void find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
                             std::span<double> distances_squared, const NearestOfEachOptions& options) const;
+
+  /// The same for all boxes of the index, each without itself. Takes no filters and no `except`.
+  void find_nearest_of_all(std::size_t count, std::span<BoxId> found, std::span<double> distances_squared,
+                           const NearestOfEachOptions& options) const;
 
   std::size_t bytes() const noexcept {
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
@@ -96,7 +100,7 @@ class BvhIndex {
 
   void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
   void list_changes(const Frame<D, Real>& frame);
-  void build(std::span<const Box<D, Real>> boxes);
+  void build(std::span<const Box<D, Real>> boxes, const Workers& workers);
 
   Box<D> in_tree(const Box<D, Real>& box) const {
     if constexpr (is_float<Real>)
@@ -108,6 +112,11 @@ class BvhIndex {
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
   double distance_unit(std::array<float, D>& weight) const;
   void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  template <typename Gather>
+  void search_groups(std::size_t groups, bool may_group, bool are_points, std::size_t count,
+                     std::size_t wanted, core::Parallel& parallel, const Gather& gather,
+                     std::span<BoxId> found, std::span<double> distances_squared,
+                     const NearestOfEachOptions& options) const;
   const kernels::Block<D>& leaf_of(std::uint32_t slot) const {
     return tree_.view().nodes[slot / kernels::fan_out];
   }
@@ -120,6 +129,7 @@ class BvhIndex {
   std::vector<Filter> own_filters_;  // the array behind filters_ after update()
   std::vector<BoxId> changed_;       // the frame's list, and places added or cut off at the end
   std::size_t size_ = 0;             // of the last frame
+  bool are_points_ = false;          // all boxes, since the last build
   bool dirty_ = true;                // the last update failed, or there was none
 };
 

@@ -69,6 +69,11 @@ class DynamicBvh {
     return nodes_[slot / kernels::fan_out].box(slot % kernels::fan_out);
   }
 
+  /// Nodes have numbers below this one; a free node is a leaf or not, without children.
+  std::size_t node_numbers() const noexcept { return nodes_.size(); }
+  bool is_leaf(std::uint32_t node) const noexcept { return info_[node].is_leaf; }
+  const kernels::Block<D>& root() const noexcept { return nodes_[root_ & ~kernels::leaf_bit]; }
+
   /// The tree for searches. There must be a box.
   kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
 
