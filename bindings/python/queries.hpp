@@ -28,6 +28,13 @@ struct QueryChoice {
   nb::handle exclude;
 };
 
+/// Refuses more answers than an array of them may have.
+inline void check_answers(std::size_t k, std::size_t queries) {
+  if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(queries, 1))
+    throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(queries) +
+                                " queries; expected at most 2^32 answers");
+}
+
 /// Queries a BoxIndex. `Asked` has `Number`, the type by which Python names a box. Its ask(body) calls
 /// body(index, number_of, place_of) with the GIL released and the index up to date.
 template <template <int, typename> class Asked, int D, typename Real>
@@ -97,6 +104,7 @@ class Queries {
                      nb::handle max_threads, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", are_points ? D : 2 * D, are_doubles);
     std::vector<Box> boxes;
+    boxes.reserve(rows.size());
     if (are_points) {
       std::vector<Point> scratch;
       for (const Point& point : rows.array(scratch)) boxes.push_back({point, point});
@@ -105,9 +113,7 @@ class Queries {
       for (const Box& box : rows.array(scratch)) boxes.push_back(asked_.as_kept(box));
     }
     const std::size_t count = boxes.size();
-    if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(count, 1))
-      throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(count) +
-                                  " queries; expected at most 2^32 answers");
+    check_answers(k, count);
     const Excluded excluded(choice, count);
     NearestOfEachOptions options{.max_distance = max_distance, .filters = excluded.filters};
     options.workers.threads = threads_of(max_threads, "");

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "algorithms/bvh/bvh_index.hpp"
 #include "core/float_environment.hpp"
 #include "core/input_check.hpp"
 #include "find/deliver.hpp"
@@ -28,25 +27,18 @@ void detail::nearest_pairs(BoxView<D, Real> left, const BoxView<D, Real>* right,
   const std::span<const Box<D, Real>> sought = find::array_of(view, memory);
   for (std::size_t i = 0; right != nullptr && i < left.size(); ++i) core::check_box(left[i], i, "left ");
   if (right != nullptr) core::check_boxes(sought, 0, BadInput::reject, "right ");
-  const Workers workers{.threads = options.threads, .executor = options.executor};
   BoxIndex<D, Real> index;
-  algorithm::BvhIndex<D, Real>& tree = algorithm::BvhIndex<D, Real>::of(index);
-  tree.update({.boxes = sought, .filters = right == nullptr ? options.filters : options.right_filters},
-              workers);
-  if (right == nullptr && options.filters.empty() && options.right_filters.empty()) {
-    const NearestOfEachOptions of_each{.max_distance = options.max_distance, .workers = workers};
-    index.nearest_of_each({}, k, {}, {}, of_each);  // checks k and the distance
-    return tree.find_nearest_of_all(k, boxes, distances_squared, of_each);
-  }
+  index.update({.boxes = sought, .filters = right == nullptr ? options.filters : options.right_filters});
   std::vector<BoxId> itself;
   for (std::size_t i = 0; right == nullptr && i < left.size(); ++i) itself.push_back(BoxId(i));
   // Without filters, left boxes have the default one, which the right boxes' filters may reject.
   std::vector<Filter> defaults;
   if (options.filters.empty() && !options.right_filters.empty()) defaults.resize(left.size());
-  index.nearest_of_each(
-      left, k, boxes, distances_squared,
-      {options.max_distance, defaults.empty() ? options.filters : std::span<const Filter>(defaults), itself,
-       workers});
+  index.nearest_of_each(left, k, boxes, distances_squared,
+                        {options.max_distance,
+                         defaults.empty() ? options.filters : std::span<const Filter>(defaults),
+                         itself,
+                         {.threads = options.threads, .executor = options.executor}});
 }
 
 template void detail::nearest_pairs(BoxView<2>, const BoxView<2>*, std::size_t, const NearestPairsOptions&,

@@ -54,8 +54,6 @@ const std::vector<Rule>& rules() {
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
-      // It asks an index for its own boxes, which no user can.
-      {"src/find/nearest_pairs", find + R"(|"algorithms/bvh/bvh_index\.hpp")"},
       {"src/find/", find},
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp"|"kernels/enlarged_boxes\.hpp")"},

@@ -36,8 +36,8 @@ class BvhIndex {
   static BvhIndex& of(BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
   static const BvhIndex& of(const BoxIndex<D, Real>& index) noexcept { return *index.tree_; }
 
-  /// Does the work of BoxIndex::update(). A build takes `workers`.
-  void update(const Frame<D, Real>& frame, const Workers& workers = default_workers);
+  /// Does the work of BoxIndex::update().
+  void update(const Frame<D, Real>& frame);
 
   /// For a follower of floats that moves the boxes in the tree itself, instead of update(). It then passes
   /// the boxes' filters: none, or one for each. The array must stay valid until the next call.
@@ -57,10 +57,6 @@ class BvhIndex {
                     Visitor<Neighbour>& visitor, const QueryOptions& options) const;
   void find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count, std::span<BoxId> found,
                             std::span<double> distances_squared, const NearestOfEachOptions& options) const;
-
-  /// The same for all boxes of the index, each without itself. Takes no filters and no `except`.
-  void find_nearest_of_all(std::size_t count, std::span<BoxId> found, std::span<double> distances_squared,
-                           const NearestOfEachOptions& options) const;
 
   std::size_t bytes() const noexcept {
     return core::bytes_of(own_filters_, changed_, exact_) + tree_.bytes();
@@ -100,7 +96,7 @@ class BvhIndex {
 
   void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
   void list_changes(const Frame<D, Real>& frame);
-  void build(std::span<const Box<D, Real>> boxes, const Workers& workers);
+  void build(std::span<const Box<D, Real>> boxes);
 
   Box<D> in_tree(const Box<D, Real>& box) const {
     if constexpr (is_float<Real>)
@@ -112,11 +108,24 @@ class BvhIndex {
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
   double distance_unit(std::array<float, D>& weight) const;
   void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  std::span<const Neighbour> listed(const kernels::NearGroup<D>& group, std::size_t lane, std::size_t wanted,
+                                    const Box<D, Real>& box, double max_squared,
+                                    std::span<Neighbour> to) const;
+  /// The arguments of nearest_of_each() that are not queries.
+  struct NearestRows {
+    std::size_t count;
+    std::span<BoxId> found;
+    std::span<double> distances_squared;
+    const NearestOfEachOptions& options;
+  };
+
+  bool ask_for_own_ids(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const;
+  void search_by_leaves(BoxView<D, Real> boxes, const NearestRows& rows, core::Parallel& parallel) const;
+  void search_by_order(BoxView<D, Real> boxes, std::size_t count, const NearestRows& rows,
+                       core::Parallel& parallel) const;
   template <typename Gather>
-  void search_groups(std::size_t groups, bool may_group, bool are_points, std::size_t count,
-                     std::size_t wanted, core::Parallel& parallel, const Gather& gather,
-                     std::span<BoxId> found, std::span<double> distances_squared,
-                     const NearestOfEachOptions& options) const;
+  void search_groups(std::size_t groups, const NearestRows& rows, core::Parallel& parallel,
+                     const Gather& gather) const;
   const kernels::Block<D>& leaf_of(std::uint32_t slot) const {
     return tree_.view().nodes[slot / kernels::fan_out];
   }
