@@ -48,25 +48,26 @@ nb::tuple nearest_pairs_of(nb::handle boxes, std::size_t columns, bool are_doubl
   NearestOfEachOptions options{.max_distance = max_distance, .filters = filters};
   options.workers.threads = threads_of(max_threads, "");
   const bool are_points = columns < 4;
-  std::vector<BoxId> found(k * count);
-  std::vector<double> distances(k * count);
+  std::vector<BoxId> found = large_vector<BoxId>(k * count);
+  std::vector<double> distances = large_vector<double>(k * count);
   with_kind(bindings::kind_with(static_cast<int>(are_points ? columns : columns / 2), are_doubles),
             [&]<int D, typename Real>() {
               return without_gil([&](WithoutGil& released) {
                 options.workers.checkpoint = [&released] { released.check_signals(); };
                 std::vector<Box<D, Real>> memory;
-                std::span<const Box<D, Real>> all = memory;
+                std::vector<Point<D, Real>> scratch;
+                std::span<const Box<D, Real>> all;
                 if (are_points) {
-                  memory.reserve(count);
-                  std::vector<Point<D, Real>> scratch;
-                  for (const Point<D, Real>& point : rows.array(scratch)) memory.push_back({point, point});
+                  const std::span<const Point<D, Real>> points = rows.array(scratch);
+                  memory = large_vector<Box<D, Real>>(count);
+                  for (std::size_t i = 0; i < count; ++i) memory[i] = {points[i], points[i]};
                   all = memory;
                 } else {
                   all = rows.array(memory);
                 }
                 BoxIndex<D, Real> index;
                 index.update({.boxes = all, .filters = filters});
-                std::vector<BoxId> itself(count);
+                std::vector<BoxId> itself = large_vector<BoxId>(count);
                 for (std::size_t i = 0; i < count; ++i) itself[i] = BoxId(i);
                 options.except = itself;
                 index.nearest_of_each(all, k, found, distances, options);

@@ -101,7 +101,7 @@ void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
   } else {
     exact_.assign(boxes.begin(), boxes.end());
     rounding_.fit(exact_);
-    std::vector<Box<D>> rounded;
+    core::LargeArray<Box<D>> rounded;
     rounded.reserve(exact_.size());
     for (const Box<D, Real>& box : exact_)
       rounded.push_back(is_present(box) ? rounding_.box(box) : absent_box<D>());
@@ -422,7 +422,9 @@ void BvhIndex<D, Real>::search_groups(std::size_t groups, const NearestRows& row
       const bool in_group = in_groups && group.limit >= 0;
       for (std::size_t lane = 0; lane < asked.size; ++lane) {
         const Box<D, Real>& box = asked.box[lane];
-        const BoxId except = options.except.empty() ? no_box : options.except[asked.row[lane]];
+        const BoxId except = are_own                  ? BoxId{asked.row[lane]}
+                             : options.except.empty() ? no_box
+                                                      : options.except[asked.row[lane]];
         std::span<const Neighbour> row;
         if (in_group) row = listed(group, lane, wanted, box, max_squared, near);
         const double reached = row.size() < wanted ? max_squared : row.back().distance_squared;
@@ -468,28 +470,34 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
   parallel.start(options.workers, queries);
   const NearestRows rows{count, found, distances_squared, options};
   if (count + 2 <= kernels::NearGroup<D>::max_count && options.filters.empty() &&
-      ask_for_own_ids(boxes, options))
+      ask_for_own_boxes(boxes, options))
     search_by_leaves(boxes, rows, parallel);
   else
     search_by_order(boxes, queries, rows, parallel);
 }
 
-/// Whether each query leaves out the box of its own id, and is absent if that is: these are then probably the
-/// tree's own boxes.
+/// Whether the queries are the tree's own boxes, and each leaves out itself. Floats are compared when their
+/// leaf is searched: it is enough that queries are absent where boxes are.
 template <int D, typename Real>
-bool BvhIndex<D, Real>::ask_for_own_ids(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const {
+bool BvhIndex<D, Real>::ask_for_own_boxes(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const {
   if (boxes.size() != size_ || options.except.size() != size_) return false;
-  bool are = true;
-  for (std::size_t i = 0; i < size_; ++i)
-    are &=
-        options.except[i] == BoxId(i) && is_present(boxes[i]) == (tree_.slot(BoxId(i)) != kernels::no_slot);
-  return are;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (options.except[i] != BoxId(i)) return false;
+    if constexpr (is_float<Real>) {
+      if (is_present(boxes[i]) != (tree_.slot(BoxId(i)) != kernels::no_slot)) return false;
+    } else {
+      if (!(boxes[i] == exact_[i])) return false;
+    }
+  }
+  return true;
 }
 
 /// Asks for the boxes of each leaf at once.
 template <int D, typename Real>
 void BvhIndex<D, Real>::search_by_leaves(BoxView<D, Real> boxes, const NearestRows& rows,
                                          core::Parallel& parallel) const {
+  const Box<D, Real>* array = boxes.array();
+  if constexpr (!is_float<Real>) array = exact_.data();
   search_groups(tree_.node_numbers(), rows, parallel,
                 [&](std::size_t number, kernels::NearGroup<D>& group, QueryGroup<D, Real>& asked) {
                   const auto node = static_cast<std::uint32_t>(number);
@@ -498,9 +506,14 @@ void BvhIndex<D, Real>::search_by_leaves(BoxView<D, Real> boxes, const NearestRo
                   group.own_leaf = node;
                   for (std::size_t lane = 0; lane < asked.size; ++lane) {
                     const BoxId id{asked.row[lane]};
-                    asked.box[lane] = boxes[index(id)];
                     const auto slot = static_cast<std::uint32_t>(node * fan_out + lane);
-                    if (!(asked.box[lane] == exact(slot, id))) group.own_leaf = kernels::no_slot;
+                    asked.box[lane] = is_float<Real> ? boxes[index(id)] : exact(slot, id);
+                    if (is_float<Real> && !(asked.box[lane] == exact(slot, id)))
+                      group.own_leaf = kernels::no_slot;
+                  }
+                  if (array != nullptr && number + 1 < tree_.node_numbers() && tree_.is_leaf(node + 1)) {
+                    for (const std::uint32_t id : tree_.view().nodes[node + 1].id)
+                      kernels::prefetch(&array[id]);
                   }
                   return true;
                 });

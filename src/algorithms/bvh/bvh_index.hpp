@@ -16,6 +16,7 @@
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/dynamic_bvh.hpp"
 #include "core/grow.hpp"
+#include "core/large_array.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
@@ -119,7 +120,7 @@ class BvhIndex {
     const NearestOfEachOptions& options;
   };
 
-  bool ask_for_own_ids(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const;
+  bool ask_for_own_boxes(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const;
   void search_by_leaves(BoxView<D, Real> boxes, const NearestRows& rows, core::Parallel& parallel) const;
   void search_by_order(BoxView<D, Real> boxes, std::size_t count, const NearestRows& rows,
                        core::Parallel& parallel) const;
@@ -131,7 +132,7 @@ class BvhIndex {
   }
 
   DynamicBvh<D> tree_;
-  std::vector<Box<D, Real>> exact_;  // by id; only for doubles
+  core::LargeArray<Box<D, Real>> exact_;  // by id; only for doubles
   ConservativeRounding<D> rounding_;
 
   std::span<const Filter> filters_;  // of the last frame; empty if it had none

@@ -14,6 +14,7 @@
 #include "algorithms/bvh/box_order.hpp"
 #include "algorithms/bvh/bvh_packer.hpp"
 #include "core/grow.hpp"
+#include "core/large_array.hpp"
 #include "kernels/bvh.hpp"
 
 namespace broadside::algorithm {
@@ -132,14 +133,14 @@ class DynamicBvh {
   BvhPacker<D> packer_;
   core::Parallel parallel_;
   // For building: the boxes, their ids, and the children of the next level's nodes.
-  std::vector<Box<D>> packed_;
-  std::vector<std::uint32_t> ids_;
+  core::LargeArray<Box<D>> packed_;
+  core::LargeArray<std::uint32_t> ids_;
   std::vector<Child> children_;
 
-  std::vector<kernels::Block<D>> nodes_;
+  core::LargeArray<kernels::Block<D>> nodes_;
   std::vector<kernels::BvhNodeInfo> info_;
-  std::vector<std::uint32_t> free_;   // nodes
-  std::vector<std::uint32_t> slots_;  // by id
+  std::vector<std::uint32_t> free_;        // nodes
+  core::LargeArray<std::uint32_t> slots_;  // by id
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;
   std::size_t insertions_ = 0;  // since the last build
