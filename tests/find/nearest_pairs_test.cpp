@@ -132,6 +132,24 @@ TYPED_TEST(NearestPairsLaw, FindsTheSameWithThreadsAndAtEveryScale) {
   }
 }
 
+/// Clusters of points of doubles so far from each other that floats hardly tell those of one cluster apart.
+TEST(NearestPairs, AreExactWhereFloatsAreCoarse) {
+  Rng rng(10);
+  for (const double size : {1e-1, 1e-3, 1e-4, 1e-5}) {
+    std::vector<DoubleBox2> points(600);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (double& number : points[i].min) number = (i % 3 == 0 ? 1000 : 0) + size * double{rng.unit()};
+      points[i].max = points[i].min;
+    }
+    for (const std::size_t k : {1, 4}) {
+      const auto expected = expected_pairs<2, double>(points, nullptr, k, {});
+      EXPECT_EQ(nearest_pairs(points, k).boxes, expected.boxes) << size;
+      EXPECT_EQ(nearest_pairs(points, points, k + 1).boxes, expected_pairs(points, &points, k + 1, {}).boxes)
+          << size;
+    }
+  }
+}
+
 /// Sixteen queries are answered together, but these are far from each other: too many boxes come near one.
 TEST(NearestPairs, AreExactWhereQueriesAreFewAndFarApart) {
   Rng rng(9);

@@ -152,7 +152,9 @@ TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
     Rng rng(8);
     for (int round = 0; round < 120; ++round) {
       const bool are_points = rng.one_in(2);
-      std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
+      const std::size_t infinite_one_in = are_points ? 0 : 40;
+      std::vector<Box<D>> boxes =
+          random_boxes<D>(rng, 1 + rng.below(400), {.infinite_one_in = infinite_one_in});
       if (are_points) boxes = nearly_points<D>(boxes);
       algorithm::DynamicBvh<D> tree;
       tree.build(boxes);
@@ -166,7 +168,9 @@ TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
         queries = tree.child_count(group.own_leaf);
       } else {
         std::vector<Box<D>> drawn(queries);
-        for (Box<D>& query : drawn) query = random_box<D>(rng, {.places = rng.whole(1, 20), .max_extent = 2});
+        for (Box<D>& query : drawn)
+          query = random_box<D>(
+              rng, {.places = rng.whole(1, 20), .max_extent = 2, .infinite_one_in = infinite_one_in});
         if (are_points) drawn = nearly_points<D>(drawn);
         for (std::size_t lane = 0; lane < queries; ++lane) group.queries.set(lane, drawn[lane]);
       }
