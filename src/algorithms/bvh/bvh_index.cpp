@@ -266,6 +266,21 @@ float rounding_error(const Box<D>& bounds) {
   return greatest * 0x1p-20F + 0x1p-120F;
 }
 
+/// Whether no other box than the first `wanted` in a lane's list may be among the nearest, where those are
+/// within the squared distance `reached`, in the tree's unit.
+template <int D>
+bool is_complete(const kernels::NearGroup<D>& group, std::size_t lane, std::size_t wanted, double reached) {
+  if (!(limit_in_tree(reached) <= group.limit)) return false;
+  const std::int32_t last = group.keys[wanted][lane];
+  if (last == group.no_key) return true;
+  // By the kernel's distances, all other boxes are at least as far away as the last one.
+  if (group.error > 0) {
+    const double distance = std::sqrt(reached) + group.error;
+    reached = distance * distance;
+  }
+  return limit_in_tree(reached) < core::bit_cast<float>(last & ~group.number_mask);
+}
+
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
@@ -345,21 +360,6 @@ std::span<const Neighbour> BvhIndex<D, Real>::listed(const kernels::NearGroup<D>
   if (!is_sorted) std::sort(to.begin(), to.end(), NearestBoxes::is_before);
   while (!to.empty() && to.back().distance_squared > max_squared) to = to.first(to.size() - 1);
   return to;
-}
-
-/// Whether no other box than the first `wanted` in a lane's list may be among the nearest, where those are
-/// within the squared distance `reached`, in the tree's unit.
-template <int D>
-bool is_complete(const kernels::NearGroup<D>& group, std::size_t lane, std::size_t wanted, double reached) {
-  if (!(limit_in_tree(reached) <= group.limit)) return false;
-  const std::int32_t last = group.keys[wanted][lane];
-  if (last == group.no_key) return true;
-  // By the kernel's distances, all other boxes are at least as far away as the last one.
-  if (group.error > 0) {
-    const double distance = std::sqrt(reached) + group.error;
-    reached = distance * distance;
-  }
-  return limit_in_tree(reached) < core::bit_cast<float>(last & ~group.number_mask);
 }
 
 /// Writes the rows of `groups` groups of queries. gather(number, group, asked) reads group `number`, sets
