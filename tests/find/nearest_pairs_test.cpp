@@ -166,6 +166,29 @@ TEST(NearestPairs, AreExactWhereQueriesAreFewAndFarApart) {
   EXPECT_EQ(nearest_pairs(left, right, 29).boxes, expected_pairs(left, &right, 29, {}).boxes);
 }
 
+/// The boxes of an index are asked for leaf by leaf, if they are the queries.
+TYPED_TEST(NearestPairsLaw, SeesAQueryThatIsNoBoxOfTheIndex) {
+  constexpr int dimension = TypeParam::dimension;
+  using Real = typename TypeParam::Real;
+  std::vector<Box<dimension, Real>> boxes(4);
+  std::vector<BoxId> itself;
+  for (const int x : {0, 1, 3, 20}) {
+    auto& box = boxes[itself.size()];
+    box.min[0] = box.max[0] = Real(x);
+    itself.push_back(BoxId(itself.size()));
+  }
+  BoxIndex<dimension, Real> index;
+  index.update({.boxes = boxes});
+  std::vector<BoxId> found(4);
+  std::vector<double> distances(4);
+  index.nearest_of_each(boxes, 1, found, distances, {.except = itself});
+  EXPECT_THAT(found, ElementsAre(BoxId(1), BoxId(0), BoxId(1), BoxId(2)));
+  auto queries = boxes;
+  queries[0].min[0] = queries[0].max[0] = Real(2.25);
+  index.nearest_of_each(queries, 1, found, distances, {.except = itself});
+  EXPECT_THAT(found, ElementsAre(BoxId(2), BoxId(0), BoxId(1), BoxId(2)));
+}
+
 TEST(NearestPairs, NamesTheNearestOfEachBox) {
   const std::vector<Box2> shops = {{{0, 0}, {1, 1}}, {{4, 0}, {5, 1}}, {{6, 0}, {7, 1}}};
   const std::vector<Box2> stops = {{{2, 0}, {2, 0}}, {{9, 1}, {9, 1}}};
