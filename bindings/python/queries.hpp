@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "broadside/index.hpp"
+#include "broadside/sinks.hpp"
 
 #include "bindings/python/input.hpp"
 #include "bindings/python/running.hpp"
@@ -27,6 +28,23 @@ struct QueryChoice {
   nb::handle filters;
   nb::handle exclude;
 };
+
+/// `count` elements, in large pages where the system has them: queries reach them in no order.
+template <typename T>
+std::vector<T> large_vector(std::size_t count) {
+  std::vector<T> elements;
+  elements.reserve(count);
+  detail::prefer_large_pages(elements.data(), count * sizeof(T));
+  elements.resize(count);
+  return elements;
+}
+
+/// Refuses more answers than an array of them may have.
+inline void check_answers(std::size_t k, std::size_t queries) {
+  if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(queries, 1))
+    throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(queries) +
+                                " queries; expected at most 2^32 answers");
+}
 
 /// Queries a BoxIndex. `Asked` has `Number`, the type by which Python names a box. Its ask(body) calls
 /// body(index, number_of, place_of) with the GIL released and the index up to date.
@@ -96,23 +114,23 @@ class Queries {
   nb::object nearest(nb::handle queries, bool are_points, std::size_t k, double max_distance,
                      nb::handle max_threads, const QueryChoice& choice) const {
     const Rows rows = Rows::of(queries, "queries", are_points ? D : 2 * D, are_doubles);
-    std::vector<Box> boxes;
+    const std::size_t count = rows.size();
+    std::vector<Box> boxes = large_vector<Box>(count);
     if (are_points) {
       std::vector<Point> scratch;
-      for (const Point& point : rows.array(scratch)) boxes.push_back({point, point});
+      const std::span<const Point> points = rows.array(scratch);
+      for (std::size_t i = 0; i < count; ++i) boxes[i] = {points[i], points[i]};
     } else {
       std::vector<Box> scratch;
-      for (const Box& box : rows.array(scratch)) boxes.push_back(asked_.as_kept(box));
+      const std::span<const Box> given = rows.array(scratch);
+      for (std::size_t i = 0; i < count; ++i) boxes[i] = asked_.as_kept(given[i]);
     }
-    const std::size_t count = boxes.size();
-    if (k > std::numeric_limits<std::uint32_t>::max() / std::max<std::size_t>(count, 1))
-      throw std::invalid_argument("k is " + std::to_string(k) + " for " + std::to_string(count) +
-                                  " queries; expected at most 2^32 answers");
+    check_answers(k, count);
     const Excluded excluded(choice, count);
     NearestOfEachOptions options{.max_distance = max_distance, .filters = excluded.filters};
     options.workers.threads = threads_of(max_threads, "");
-    std::vector<BoxId> found(k * count);
-    std::vector<double> distances(k * count);
+    std::vector<BoxId> found = large_vector<BoxId>(k * count);
+    std::vector<double> distances = large_vector<double>(k * count);
     std::vector<Number> numbers;
     without_gil([&](WithoutGil& released) {
       options.workers.checkpoint = [&released] { released.check_signals(); };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include <hwy/foreach_target.h>
@@ -154,15 +155,17 @@ HWY_INLINE void push_sorted(const std::uint32_t* children, float* distances, std
 }
 
 /// A depth-first traversal of what is near, of a node's children the nearest one first. limit() is the
-/// greatest squared distance that counts; leaf(number) searches a leaf, and may lower it.
+/// greatest squared distance that counts; leaf(number) searches a leaf, and may lower it. Begins with the
+/// leaf `first`, unless it is no_slot; comes to it again later.
 template <int D, typename Limit, typename Leaf>
-HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& from, const Limit& limit,
-                              const Leaf& leaf) {
+HWY_INLINE void traverse_near(const BvhView<D>& tree, const DistanceFrom<D>& from, std::uint32_t first,
+                              const Limit& limit, const Leaf& leaf) {
   alignas(64) std::uint32_t waiting[(longest_path + 2) * fan_out];
   alignas(64) float distances[(longest_path + 2) * fan_out];
-  std::size_t count = 1;
   waiting[0] = tree.root;
-  distances[0] = 0;
+  waiting[1] = first | leaf_bit;
+  distances[0] = distances[1] = 0;
+  std::size_t count = first == no_slot ? 1 : 2;
   HWY_ALIGN std::uint32_t children[2 * fan_out];
   HWY_ALIGN float nearness[2 * fan_out] = {};
   while (count > 0) {
@@ -187,7 +190,7 @@ template <int D>
 void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& found) {
   const DistanceFrom<D> from(query);
   traverse_near(
-      tree, from, [&] { return found.t_max; },
+      tree, from, no_slot, [&] { return found.t_max; },
       [&](std::uint32_t number) HWY_ATTR {
         for (std::size_t at = 0; at < fan_out; at += lanes) {
           FloatVector sum;
@@ -208,73 +211,173 @@ void near(const BvhView<D>& tree, const DistanceQuery<D>& query, FoundBoxes& fou
 /// less than a branch that no processor could predict.
 constexpr std::size_t max_always_gone_through = 4;
 
-/// Inserts a box into the lists of the queries from `at` on, which have `count` boxes each: `sum` are its
-/// distances. Returns 1 if it is in any, else 0.
-template <int D>
-HWY_INLINE unsigned insert_near(NearGroup<D>& group, std::size_t count, std::size_t at, FloatVector sum,
-                                std::size_t number) {
-  const Keys tag;
-  const auto rounded = hn::And(hn::BitCast(tag, sum), hn::Set(tag, ~NearGroup<D>::number_mask));
-  auto key = hn::Or(rounded, hn::Set(tag, static_cast<std::int32_t>(number)));
-  const auto is_near = hn::Lt(key, hn::Load(tag, group.keys[count - 1].data() + at));
-  const unsigned inserts = all_false(tag, is_near) ? 0 : 1;
-  if ((inserts | (count <= max_always_gone_through ? 1U : 0U)) == 0) return 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::int32_t* const place = group.keys[i].data() + at;
-    const auto other = hn::Load(tag, place);
-    hn::Store(hn::Min(key, other), tag, place);
-    key = hn::Max(key, other);
-  }
-  return inserts;
-}
+/// Lists of this length are kept in registers.
+constexpr std::size_t kept_in_registers = 2;
 
-template <int D>
-void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
-  float limit = group.limit;
-  const std::size_t count = group.count;
-  std::size_t boxes = 0;
-  const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
-  traverse_near(
-      tree, from_all, [&] { return limit; },
-      [&](std::uint32_t number) HWY_ATTR {
-        if (group.tested > NearGroup<D>::max_tested) {
-          limit = -1;  // ends the traversal
-          return;
+constexpr std::size_t vectors = fan_out / lanes;
+
+/// The lists of a group: `size` in number if it is not 0, otherwise group.count.
+template <int D, std::size_t size>
+class NearLists {
+ public:
+  HWY_INLINE explicit NearLists(NearGroup<D>& group) : group_(group) {
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t v = 0; v < vectors; ++v) kept_[i][v] = load(i, v);
+    }
+  }
+
+  HWY_INLINE void store() {
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t v = 0; v < vectors; ++v) hn::Store(kept_[i][v], Keys(), place(i, v));
+    }
+  }
+
+  /// Inserts a box with these keys into the lists of vector `v`. Returns whether it may be in any.
+  HWY_INLINE unsigned insert(std::size_t v, hn::Vec<Keys> key) {
+    const Keys tag;
+    if constexpr (size != 0) {
+      const auto is_near = hn::Lt(key, kept_[size - 1][v]);
+      for (std::size_t i = 0; i < size; ++i) {
+        const auto other = kept_[i][v];
+        kept_[i][v] = hn::Min(key, other);
+        key = hn::Max(key, other);
+      }
+      return all_false(tag, is_near) ? 0 : 1;
+    } else {
+      const std::size_t count = group_.count;
+      const unsigned inserts = all_false(tag, hn::Lt(key, load(count - 1, v))) ? 0 : 1;
+      if ((inserts | (count <= max_always_gone_through ? 1U : 0U)) == 0) return 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto other = load(i, v);
+        hn::Store(hn::Min(key, other), tag, place(i, v));
+        key = hn::Max(key, other);
+      }
+      return inserts;
+    }
+  }
+
+  /// The greatest key but for the last of each list.
+  HWY_INLINE std::int32_t farthest() const {
+    const Keys tag;
+    auto farthest = hn::Zero(tag);
+    for (std::size_t v = 0; v < vectors; ++v) {
+      if constexpr (size != 0)
+        farthest = hn::Max(farthest, kept_[size - 2][v]);
+      else
+        farthest = hn::Max(farthest, load(group_.count - 2, v));
+    }
+    return hn::GetLane(hn::MaxOfLanes(tag, farthest));
+  }
+
+ private:
+  HWY_INLINE std::int32_t* place(std::size_t i, std::size_t v) const {
+    return group_.keys[i].data() + v * lanes;
+  }
+  HWY_INLINE hn::Vec<Keys> load(std::size_t i, std::size_t v) const { return hn::Load(Keys(), place(i, v)); }
+
+  NearGroup<D>& group_;
+  hn::Vec<Keys> kept_[size == 0 ? 1 : size][vectors];
+};
+
+/// The queries of a group, to measure distances from boxes, or from points that are lower bounds.
+template <int D, bool are_points>
+class NearQueries {
+ public:
+  HWY_INLINE explicit NearQueries(const NearGroup<D>& group) : group_(group) {
+    if constexpr (are_points) {
+      for (int axis = 0; axis < D; ++axis) {
+        for (std::size_t v = 0; v < vectors; ++v) {
+          const FloatVector at = load(group.queries.min[axis], v * lanes);
+          at_[axis][v] = hn::IfThenElseZero(hn::Eq(at, at), at);  // no NaN
         }
+      }
+    }
+  }
+
+  /// The squared distances, finite, from the box in a lane of a leaf to the queries of vector `v`.
+  HWY_INLINE FloatVector distances(const Block<D>& leaf, std::size_t lane, std::size_t v) const {
+    FloatVector sum;
+    if constexpr (are_points) {
+      sum = hn::Zero(Floats());
+      for (int axis = 0; axis < D; ++axis) {
+        const FloatVector gap = hn::Sub(all(leaf.min[axis][lane]), at_[axis][v]);
+        sum = axis == 0 ? hn::Mul(gap, gap) : hn::MulAdd(gap, gap, sum);
+      }
+    } else {
+      DistanceFrom<D>(leaf, lane, group_.weight).within(group_.queries, v * lanes, infinity, sum);
+      // Finite, so that a list with room takes it.
+      sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
+    }
+    return sum;
+  }
+
+ private:
+  const NearGroup<D>& group_;
+  FloatVector at_[D][vectors];
+};
+
+template <int D, bool are_points, std::size_t size>
+HWY_INLINE void search_group(const BvhView<D>& tree, NearGroup<D>& group) {
+  const Keys tag;
+  float limit = group.limit;
+  std::size_t tested = 0;
+  std::uint32_t leaves = 0;
+  const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
+  const NearQueries<D, are_points> queries(group);
+  NearLists<D, size> lists(group);
+  traverse_near(
+      tree, from_all, group.own_leaf, [&] { return limit; },
+      [&](std::uint32_t number) HWY_ATTR {
+        const bool is_own = number == group.own_leaf;
+        if (is_own && tested > 0) return;
         const Block<D>& leaf = tree.nodes[number];
         std::uint32_t near = 0;
         FloatVector sum;
         for (std::size_t at = 0; at < fan_out; at += lanes)
           near |= bits_of(from_all.within(leaf, at, limit, sum)) << at;
-        group.tested += static_cast<std::size_t>(std::popcount(near));
-        for (; near != 0; near &= near - 1) {
-          const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-          const DistanceFrom<D> from(leaf, lane, group.weight);
-          unsigned is_near = 0;
-          for (std::size_t at = 0; at < fan_out; at += lanes) {
-            from.within(group.queries, at, infinity, sum);
-            // Finite, so that a list with room takes it.
-            sum = hn::Min(sum, all(std::numeric_limits<float>::max()));
-            is_near |= insert_near(group, count, at, sum, boxes);
-          }
-          group.ids[boxes] = leaf.id[lane];
-          for (int axis = 0; axis < D; ++axis) {
-            group.found[boxes].min[axis] = leaf.min[axis][lane];
-            group.found[boxes].max[axis] = leaf.max[axis][lane];
-          }
-          boxes += is_near;
+        if (near == 0) return;
+        if (tested > NearGroup<D>::max_tested || leaves == NearGroup<D>::max_leaves) {
+          limit = -1;  // ends the traversal
+          return;
         }
-        const Keys tag;
-        auto farthest = hn::Zero(tag);
-        for (std::size_t at = 0; at < fan_out; at += lanes)
-          farthest = hn::Max(farthest, hn::Load(tag, group.keys[count - 2].data() + at));
-        farthest = hn::MaxOfLanes(tag, farthest);
-        if (hn::GetLane(farthest) == NearGroup<D>::no_key) return;
-        const auto rounded_up = hn::Or(farthest, hn::Set(tag, NearGroup<D>::number_mask));
-        limit = std::min(group.limit,
-                         hn::GetLane(hn::BitCast(Floats(), rounded_up)) * (1 + 0x1p-17F) + 0x1p-125F);
+        tested += static_cast<std::size_t>(std::popcount(near));
+        const std::uint32_t first = leaves * static_cast<std::uint32_t>(fan_out);
+        unsigned is_near = 0;
+        for (; near != 0; near &= near - 1) {
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+          for (std::size_t v = 0; v < vectors; ++v) {
+            const auto bits = hn::BitCast(tag, queries.distances(leaf, lane, v));
+            auto key = hn::Or(hn::And(bits, hn::Set(tag, ~NearGroup<D>::number_mask)),
+                              hn::Set(tag, static_cast<std::int32_t>(first + lane)));
+            if (is_own) {
+              const auto places = hn::Iota(tag, static_cast<std::int32_t>(v * lanes));
+              const auto is_itself = hn::Eq(places, hn::Set(tag, static_cast<std::int32_t>(lane)));
+              key = hn::IfThenElse(is_itself, hn::Set(tag, NearGroup<D>::no_key), key);
+            }
+            is_near |= lists.insert(v, key);
+          }
+        }
+        if (is_near == 0) return;
+        group.leaves[leaves++] = number;
+        const std::int32_t farthest = lists.farthest();
+        if (farthest == NearGroup<D>::no_key) return;
+        const auto rounded_up = hn::Set(tag, farthest | NearGroup<D>::number_mask);
+        const float reach = std::sqrt(hn::GetLane(hn::BitCast(Floats(), rounded_up))) + group.error;
+        limit = std::min(group.limit, reach * reach * (1 + 0x1p-17F) + 0x1p-125F);
       });
+  lists.store();
   group.limit = limit;
+  group.tested = tested;
+}
+
+template <int D>
+void near_group(const BvhView<D>& tree, NearGroup<D>& group) {
+  if (!group.are_points)
+    search_group<D, false, 0>(tree, group);
+  else if (group.count == kept_in_registers)
+    search_group<D, true, kept_in_registers>(tree, group);
+  else
+    search_group<D, true, 0>(tree, group);
 }
 
 }  // namespace

@@ -86,25 +86,40 @@ template <int D>
 struct NearGroup {
   static constexpr std::size_t max_count = 32;
   static constexpr std::int32_t number_mask = 0x7ff;  ///< the bits of a key that are a number
+  static constexpr std::size_t max_leaves = (number_mask + 1) / fan_out;
   static constexpr std::size_t max_tested = 1024;     ///< and up to a leaf's boxes more
   static constexpr std::int32_t no_key = 0x7f7fffff;  ///< after a list's last key; greater than any key
 
   /// Empties the lists, and gives each room for `size` boxes, from 2 to max_count.
   void start(std::size_t size);
 
+  /// The slot in the tree of the box with this key.
+  std::uint32_t slot(std::int32_t key) const {
+    const auto number = static_cast<std::uint32_t>(key & number_mask);
+    return static_cast<std::uint32_t>(leaves[number / fan_out] * fan_out + number % fan_out);
+  }
+
   Block<D> queries;  ///< lanes without a query hold nan_box()
   std::array<float, D> weight;
 
+  /// If the queries are the boxes of a leaf, lane by lane, its number: a box is then not listed for itself.
+  /// Otherwise no_slot.
+  std::uint32_t own_leaf = no_slot;
+
+  /// Whether all boxes of the tree and the queries may be taken for their lower bounds, which are finite and
+  /// at most 2^60, with weights of 1: they are points, or `error` of the lower bounds' length from points.
+  bool are_points = false;
+  float error = 0;
+
   /// Boxes that are farther away need not be found. A search lowers it to how far it has looked: at least a
   /// little beyond all boxes of a list but the last; below 0 if it gave up since it had tested max_tested
-  /// boxes.
+  /// boxes, or those of max_leaves leaves.
   float limit;
 
   std::size_t count;
   std::size_t tested;  ///< boxes that were compared with each query
   alignas(64) std::array<std::array<std::int32_t, fan_out>, max_count> keys;
-  std::array<std::uint32_t, max_tested + fan_out> ids;  ///< of the boxes, by number
-  std::array<Box<D>, max_tested + fan_out> found;       ///< the boxes, as the tree has them
+  std::array<std::uint32_t, max_leaves> leaves;  ///< a box's number is its leaf's place here and its lane
 };
 
 /// Fills the lists, by one traversal for all queries.

@@ -132,6 +132,24 @@ TYPED_TEST(NearestPairsLaw, FindsTheSameWithThreadsAndAtEveryScale) {
   }
 }
 
+/// Clusters of points of doubles so far from each other that floats hardly tell those of one cluster apart.
+TEST(NearestPairs, AreExactWhereFloatsAreCoarse) {
+  Rng rng(10);
+  for (const double size : {1e-1, 1e-3, 1e-4, 1e-5}) {
+    std::vector<DoubleBox2> points(600);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (double& number : points[i].min) number = (i % 3 == 0 ? 1000 : 0) + size * double{rng.unit()};
+      points[i].max = points[i].min;
+    }
+    for (const std::size_t k : {1, 4}) {
+      const auto expected = expected_pairs<2, double>(points, nullptr, k, {});
+      EXPECT_EQ(nearest_pairs(points, k).boxes, expected.boxes) << size;
+      EXPECT_EQ(nearest_pairs(points, points, k + 1).boxes, expected_pairs(points, &points, k + 1, {}).boxes)
+          << size;
+    }
+  }
+}
+
 /// Sixteen queries are answered together, but these are far from each other: too many boxes come near one.
 TEST(NearestPairs, AreExactWhereQueriesAreFewAndFarApart) {
   Rng rng(9);
@@ -146,6 +164,29 @@ TEST(NearestPairs, AreExactWhereQueriesAreFewAndFarApart) {
   const auto left = drawn(16);
   const auto right = drawn(20'000);
   EXPECT_EQ(nearest_pairs(left, right, 29).boxes, expected_pairs(left, &right, 29, {}).boxes);
+}
+
+/// The boxes of an index are asked for leaf by leaf, if they are the queries.
+TYPED_TEST(NearestPairsLaw, SeesAQueryThatIsNoBoxOfTheIndex) {
+  constexpr int dimension = TypeParam::dimension;
+  using Real = typename TypeParam::Real;
+  std::vector<Box<dimension, Real>> boxes(4);
+  std::vector<BoxId> itself;
+  for (const int x : {0, 1, 3, 20}) {
+    auto& box = boxes[itself.size()];
+    box.min[0] = box.max[0] = Real(x);
+    itself.push_back(BoxId(itself.size()));
+  }
+  BoxIndex<dimension, Real> index;
+  index.update({.boxes = boxes});
+  std::vector<BoxId> found(4);
+  std::vector<double> distances(4);
+  index.nearest_of_each(boxes, 1, found, distances, {.except = itself});
+  EXPECT_THAT(found, ElementsAre(BoxId(1), BoxId(0), BoxId(1), BoxId(2)));
+  auto queries = boxes;
+  queries[0].min[0] = queries[0].max[0] = Real(2.25);
+  index.nearest_of_each(queries, 1, found, distances, {.except = itself});
+  EXPECT_THAT(found, ElementsAre(BoxId(2), BoxId(0), BoxId(1), BoxId(2)));
 }
 
 TEST(NearestPairs, NamesTheNearestOfEachBox) {

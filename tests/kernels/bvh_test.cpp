@@ -132,23 +132,55 @@ float weighted_distance(Box<D> a, Box<D> b, const std::array<float, D>& weight) 
   return static_cast<float>(distance_squared(a, b));
 }
 
+/// Boxes of which only the lower bounds count: the upper ones are a little above them.
+template <int D>
+std::vector<Box<D>> nearly_points(std::vector<Box<D>> boxes) {
+  for (Box<D>& box : boxes) {
+    for (int axis = 0; axis < D; ++axis) box.max[axis] = box.min[axis] * (1 + 0x1p-23F);
+  }
+  return boxes;
+}
+
+template <int D>
+Box<D> lower_bound(const Box<D>& box) {
+  return {box.min, box.min};
+}
+
 TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
   using Bits = std::int32_t;
   on_each_instruction_set([]<int D>() {
     Rng rng(8);
-    for (int round = 0; round < 60; ++round) {
-      const std::vector<Box<D>> boxes = random_boxes<D>(rng, 1 + rng.below(400));
+    for (int round = 0; round < 120; ++round) {
+      const bool are_points = rng.one_in(2);
+      const std::size_t infinite_one_in = are_points ? 0 : 40;
+      std::vector<Box<D>> boxes =
+          random_boxes<D>(rng, 1 + rng.below(400), {.infinite_one_in = infinite_one_in});
+      if (are_points) boxes = nearly_points<D>(boxes);
       algorithm::DynamicBvh<D> tree;
       tree.build(boxes);
+      const bool are_own = rng.one_in(2);
       NearGroup<D> group;
       group.queries.clear();
-      const std::size_t queries = 1 + rng.below(fan_out);
-      for (std::size_t lane = 0; lane < queries; ++lane)
-        group.queries.set(lane, random_box<D>(rng, {.places = rng.whole(1, 20), .max_extent = 2}));
-      for (float& weight : group.weight) weight = rng.one_in(2) ? 1.0F : 0.25F;
+      std::size_t queries = 1 + rng.below(fan_out);
+      if (are_own) {
+        group.own_leaf = tree.slot(BoxId(rng.below(boxes.size()))) / fan_out;
+        group.queries = tree.view().nodes[group.own_leaf];
+        queries = tree.child_count(group.own_leaf);
+      } else {
+        std::vector<Box<D>> drawn(queries);
+        for (Box<D>& query : drawn)
+          query = random_box<D>(
+              rng, {.places = rng.whole(1, 20), .max_extent = 2, .infinite_one_in = infinite_one_in});
+        if (are_points) drawn = nearly_points<D>(drawn);
+        for (std::size_t lane = 0; lane < queries; ++lane) group.queries.set(lane, drawn[lane]);
+      }
+      for (float& weight : group.weight) weight = are_points || rng.one_in(2) ? 1.0F : 0.25F;
+      group.are_points = are_points;
+      group.error = are_points ? 0x1p-16F : 0.0F;
       const float asked = rng.one_in(2) ? infinity : static_cast<float>(rng.whole(0, 90));
       group.limit = asked;
-      group.start(2 + rng.below(NearGroup<D>::max_count - 1));
+      // Short lists are kept in other memory.
+      group.start(rng.one_in(3) ? 2 : 2 + rng.below(NearGroup<D>::max_count - 1));
       find_near(tree.view(), group);
 
       EXPECT_LE(group.limit, asked);
@@ -159,24 +191,31 @@ TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
       float farthest = 0;    // in these
       for (std::size_t lane = 0; lane < queries; ++lane) {
         const auto distance_of = [&](const Box<D>& box) {
-          return weighted_distance<D>(group.queries.box(lane), box, group.weight);
+          const Box<D> query = group.queries.box(lane);
+          return are_points ? static_cast<float>(distance_squared(lower_bound<D>(query), lower_bound<D>(box)))
+                            : weighted_distance<D>(query, box, group.weight);
         };
+        const std::uint32_t itself = are_own ? group.queries.id[lane] : no_slot;
         std::vector<float> nearest;
-        for (const Box<D>& box : boxes) nearest.push_back(distance_of(box));
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+          if (i != itself) nearest.push_back(distance_of(boxes[i]));
+        }
         std::ranges::sort(nearest);
         std::vector<std::uint32_t> listed;
         for (std::size_t i = 0; i < group.count; ++i) {
           const Bits key = group.keys[i][lane];
-          const bool is_reached = i < nearest.size() && nearest[i] <= group.limit;
+          // What is within the limit by the boxes' distance is listed.
+          const bool is_reached =
+              i < nearest.size() && std::sqrt(nearest[i]) <= std::sqrt(group.limit) - group.error;
           if (key == NearGroup<D>::no_key) {
             are_full &= i + 1 == group.count;
             ASSERT_FALSE(is_reached) << "lane " << lane << ", place " << i;
             continue;
           }
-          const auto number = static_cast<std::size_t>(key & NearGroup<D>::number_mask);
-          listed.push_back(group.ids[number]);
-          ASSERT_EQ(group.found[number], boxes[listed.back()]);
-          const float distance = distance_of(group.found[number]);
+          const std::uint32_t slot = group.slot(key);
+          listed.push_back(tree.view().nodes[slot / fan_out].id[slot % fan_out]);
+          ASSERT_NE(listed.back(), itself);
+          const float distance = distance_of(tree.box_at(slot));
           ASSERT_EQ(key & ~NearGroup<D>::number_mask, rounded(distance));
           if (is_reached) {
             ASSERT_EQ(rounded(distance), rounded(nearest[i])) << "lane " << lane << ", place " << i;
@@ -191,7 +230,7 @@ TEST(BvhNear, ListsTheNearestOfEachQueryInAGroup) {
         EXPECT_GT(group.limit, farthest);
       }
       if (are_full) {
-        EXPECT_LE(group.limit, farthest * 1.001F + 0x1p-120F);
+        EXPECT_LE(group.limit, farthest * 1.001F + (are_points ? 0.01F : 0x1p-120F));
       } else {
         EXPECT_EQ(group.limit, asked);
       }

@@ -39,6 +39,13 @@ def boxes(found: Any, name: str, columns: Columns | None = None, or_points: bool
     return array
 
 
+def boxes_or_points(found: Any, name: str, columns: Columns | None) -> Rows:
+    """Boxes, or points as they are if they are a plain array of them."""
+    if columns is None and type(found) is np.ndarray and found.dtype.kind in "fiu" and found.shape[1:] in ((2,), (3,)):
+        return np.ascontiguousarray(_columns.exact(found, name))
+    return boxes(found, name, columns, or_points=True)
+
+
 def valid_boxes(found: Any, name: str, columns: Columns | None, or_points: bool = False) -> Rows:
     """Likewise, or InvalidBoxError."""
     array = boxes(found, name, columns, or_points)

@@ -272,13 +272,23 @@ def nearest_pairs(
     finds. With `same`, each key costs some ten microseconds more. In periodic space, find neighbours by `pairs` with
     ``within`` and ``period``.
     """
-    groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
-    as_rows = _convert.boxes if groups is None else _convert.valid_boxes
-    left = as_rows(boxes, "boxes", columns, or_points=True)
     if other is None:
         for value, name in ((other_columns, "other_columns"), (other_filters, "other_filters")):
             if value is not None:
                 raise ValueError(f"{name} are given without other boxes; expected both or neither")
+        if same is None:
+            rows = _convert.boxes_or_points(boxes, "boxes", columns)
+            filters, _, _ = with_keys(filters, None, None, different, boxes, None)
+            kind = rows.shape[1], rows.dtype == np.float64
+            limit = _checked_distance(max_distance)
+            try:
+                return Neighbours(*_core.nearest_pairs(rows, *kind, _checked_k(k, len(rows)), limit, threads, filters))
+            except InvalidBoxError as error:
+                raise _convert.with_other_conventions(error, rows, "boxes", None) from None
+    groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
+    as_rows = _convert.boxes if groups is None else _convert.valid_boxes
+    left = as_rows(boxes, "boxes", columns, or_points=True)
+    if other is None:
         right, exclude = left, np.arange(len(left))
     else:
         _convert.common_crs(_convert.crs_of(boxes), "boxes", other, "other")

@@ -16,6 +16,7 @@
 #include "core/message.hpp"
 #include "core/parallel.hpp"
 #include "core/sample.hpp"
+#include "kernels/block_pool.hpp"
 #include "kernels/squared_distances.hpp"
 
 namespace broadside::algorithm {
@@ -31,6 +32,11 @@ float in_tree(Real t_max, int exponent) {
     return t_max;
   else
     return rounded_up(std::ldexp(t_max, exponent));
+}
+
+template <int D, typename Real>
+bool is_point(const Box<D, Real>& box) {
+  return box.min == box.max;
 }
 
 }  // namespace
@@ -52,6 +58,7 @@ void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
     for (const BoxId id : changed_) {
       const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);
       tree_.set(id, is_there ? in_tree(boxes[index(id)]) : absent_box<D>());
+      are_points_ &= !is_there || is_point(boxes[index(id)]);
       if constexpr (!is_float<Real>) {
         if (index(id) < boxes.size()) exact_[index(id)] = boxes[index(id)];
       }
@@ -87,12 +94,14 @@ void BvhIndex<D, Real>::list_changes(const Frame<D, Real>& frame) {
 
 template <int D, typename Real>
 void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
+  are_points_ = std::all_of(boxes.begin(), boxes.end(),
+                            [](const Box<D, Real>& box) { return is_point(box) || !is_present(box); });
   if constexpr (is_float<Real>) {
     tree_.build(boxes);
   } else {
     exact_.assign(boxes.begin(), boxes.end());
     rounding_.fit(exact_);
-    std::vector<Box<D>> rounded;
+    core::LargeArray<Box<D>> rounded;
     rounded.reserve(exact_.size());
     for (const Box<D, Real>& box : exact_)
       rounded.push_back(is_present(box) ? rounding_.box(box) : absent_box<D>());
@@ -220,6 +229,58 @@ bool BvhIndex<D, Real>::find_nearest(const Box<D, Real>& box, std::size_t count,
 
 namespace {
 
+/// Sixteen queries or fewer: their rows in the results, and their boxes.
+template <int D, typename Real>
+struct QueryGroup {
+  std::size_t size;
+  std::array<std::uint32_t, fan_out> row;
+  std::array<Box<D, Real>, fan_out> box;
+};
+
+/// Whether squares of the coordinates are finite floats.
+template <int D>
+bool is_moderate(const Box<D>& box) {
+  constexpr float limit = 0x1p60F;
+  bool is = true;
+  for (int axis = 0; axis < D; ++axis) is &= box.min[axis] >= -limit && box.max[axis] <= limit;
+  return is;
+}
+
+/// Writes no boxes to the places [from, to).
+void clear_from(std::size_t from, std::size_t to, std::span<BoxId> found,
+                std::span<double> distances_squared) {
+  for (; from < to; ++from) {
+    found[from] = no_box;
+    distances_squared[from] = std::numeric_limits<double>::infinity();
+  }
+}
+
+/// How far the distance of two points of doubles may be from that of the lower bounds of their boxes in the
+/// tree, if one of them is within `bounds` and the distance is small beside them. Conservative rounding moves
+/// a coordinate by at most one and a half units in the last place of a float, or to the least normal number.
+template <int D>
+float rounding_error(const Box<D>& bounds) {
+  float greatest = 0;
+  for (int axis = 0; axis < D; ++axis)
+    greatest = std::max({greatest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
+  return greatest * 0x1p-20F + 0x1p-120F;
+}
+
+/// Whether no other box than the first `wanted` in a lane's list may be among the nearest, where those are
+/// within the squared distance `reached`, in the tree's unit.
+template <int D>
+bool is_complete(const kernels::NearGroup<D>& group, std::size_t lane, std::size_t wanted, double reached) {
+  if (!(limit_in_tree(reached) <= group.limit)) return false;
+  const std::int32_t last = group.keys[wanted][lane];
+  if (last == group.no_key) return true;
+  // By the kernel's distances, all other boxes are at least as far away as the last one.
+  if (group.error > 0) {
+    const double distance = std::sqrt(reached) + group.error;
+    reached = distance * distance;
+  }
+  return limit_in_tree(reached) < core::bit_cast<float>(last & ~group.number_mask);
+}
+
 /// Queries compared with the boxes of the tree, to learn whether they are the same.
 constexpr std::size_t max_compared_queries = 64;
 
@@ -276,52 +337,81 @@ std::vector<std::uint32_t> spatial_order(std::span<const NumberedBox<D>> queries
 
 }  // namespace
 
+/// The first `wanted` boxes in a lane's list, and not beyond `max_squared`, sorted as nearest boxes are, in
+/// `to`.
 template <int D, typename Real>
-void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
-                                             std::span<BoxId> found, std::span<double> distances_squared,
-                                             const NearestOfEachOptions& options) const {
-  std::vector<NumberedBox<D>> queries;
-  queries.reserve(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box<D, Real> box = boxes[i];
-    if (!is_present(box) && !is_absent(box))
-      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
-    if (is_present(box)) queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
+std::span<const Neighbour> BvhIndex<D, Real>::listed(const kernels::NearGroup<D>& group, std::size_t lane,
+                                                     std::size_t wanted, const Box<D, Real>& box,
+                                                     double max_squared, std::span<Neighbour> to) const {
+  std::size_t size = 0;
+  bool is_sorted = true;
+  double farthest = -1;
+  for (; size < wanted && group.keys[size][lane] != group.no_key; ++size) {
+    const std::uint32_t slot = group.slot(group.keys[size][lane]);
+    const BoxId id = id_at(slot);
+    const Box<D, Real> other = exact(slot, id);
+    const double squared = group.are_points ? kernels::squared_distance(box.min, other.min)
+                                            : kernels::squared_distance(box, other);
+    to[size] = {id, squared};
+    is_sorted &= squared > farthest;
+    farthest = squared;
   }
-  std::fill(found.begin(), found.end(), no_box);
-  std::fill(distances_squared.begin(), distances_squared.end(), std::numeric_limits<double>::infinity());
-  if (is_empty() || queries.empty()) return;
+  to = to.first(size);
+  if (!is_sorted) std::sort(to.begin(), to.end(), NearestBoxes::is_before);
+  while (!to.empty() && to.back().distance_squared > max_squared) to = to.first(to.size() - 1);
+  return to;
+}
 
+/// Writes the rows of `groups` groups of queries. gather(number, group, asked) reads group `number`, sets
+/// `group.own_leaf` if it is a leaf, and returns whether it may be searched as one.
+template <int D, typename Real>
+template <typename Gather>
+void BvhIndex<D, Real>::search_groups(std::size_t groups, const NearestRows& rows, core::Parallel& parallel,
+                                      const Gather& gather) const {
+  using Group = kernels::NearGroup<D>;
+  const NearestOfEachOptions& options = rows.options;
   const double max_squared = options.max_distance * options.max_distance;
-  core::Parallel parallel;
-  parallel.start(options.workers, queries.size());
-  const bool is_dense =
-      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
-  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
   std::array<float, D> weight;
   const double unit = distance_unit(weight);
-  // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
-  // other box is as near as those.
-  const std::size_t wanted = count + (options.except.empty() ? 0 : 1);
-  using Group = kernels::NearGroup<D>;
-  const bool may_group = is_dense && options.filters.empty() && wanted + 1 <= Group::max_count;
-  const std::size_t groups = (order.size() + fan_out - 1) / fan_out;
+  const bool may_be_points = are_points_ && is_moderate(kernels::bounds_of(tree_.root())) &&
+                             std::all_of(weight.begin(), weight.end(), [](float one) { return one == 1; });
   parallel.for_ranges(groups, [&](core::Range range, std::size_t worker) {
     Checkpoint* const checkpoint = parallel.checkpoint(worker);
+    QueryGroup<D, Real> asked;
     Group group;
+    group.weight = weight;
+    std::array<Neighbour, Group::max_count> near;
     std::size_t paused = 0;  // groups to go until the next is searched as one
     std::size_t pause = min_pause;
     for (std::size_t number = range.begin; number < range.end; ++number) {
+      const bool may_group = gather(number, group, asked);
+      if (asked.size == 0) continue;
+      for (std::size_t lane = 0; lane < asked.size; ++lane) {
+        kernels::prefetch(&rows.found[asked.row[lane] * rows.count]);
+        kernels::prefetch(&rows.distances_squared[asked.row[lane] * rows.count]);
+      }
+      // One box more than asked for if one may be left out. The last box of the kernel's lists shows that no
+      // other box is as near as those.
+      const bool are_own = group.own_leaf != kernels::no_slot;
+      const std::size_t wanted = rows.count + (options.except.empty() || are_own ? 0 : 1);
       const bool in_groups = may_group && paused == 0;
       paused -= paused > 0 ? 1 : 0;
       std::size_t tests = 0;
-      const std::span<const std::uint32_t> some =
-          std::span(order).subspan(number * fan_out, std::min(fan_out, order.size() - number * fan_out));
       if (in_groups) {
-        group.queries.clear();
-        for (std::size_t lane = 0; lane < some.size(); ++lane)
-          group.queries.set(lane, in_tree(boxes[some[lane]]));
-        group.weight = weight;
+        group.are_points = may_be_points;
+        if (are_own) {
+          group.queries = tree_.view().nodes[group.own_leaf];
+        } else {
+          group.queries.clear();
+          for (std::size_t lane = 0; lane < asked.size; ++lane) {
+            group.queries.set(lane, in_tree(asked.box[lane]));
+            group.are_points &= is_point(asked.box[lane]);
+          }
+          group.are_points &= is_moderate(kernels::bounds_of(group.queries));
+        }
+        group.error = 0;
+        if (group.are_points && !is_float<Real>)
+          group.error = rounding_error(kernels::bounds_of(group.queries));
         group.limit = limit_in_tree(max_squared * unit);
         group.start(wanted + 1);
         kernels::find_near(tree_.view(), group);
@@ -329,45 +419,131 @@ void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t
         if (group.limit < 0) paused = pause;
         pause = group.limit < 0 ? std::min(2 * pause, max_pause) : min_pause;
       }
-      for (std::size_t lane = 0; lane < some.size(); ++lane) {
-        const std::size_t query = some[lane];
-        const Box<D, Real> box = boxes[query];
-        const BoxId except = options.except.empty() ? no_box : options.except[query];
-        const bool in_group = in_groups && group.limit >= 0;
-        NearestBoxes nearest(in_group ? wanted : count, max_squared);
-        bool is_sure = false;
-        if (in_group) {
-          for (std::size_t i = 0; i < group.count && group.keys[i][lane] != Group::no_key; ++i) {
-            const auto at = static_cast<std::size_t>(group.keys[i][lane] & Group::number_mask);
-            const BoxId id{group.ids[at]};
-            if constexpr (is_float<Real>)
-              nearest.offer({id, kernels::squared_distance(box, group.found[at])});
-            else
-              nearest.offer({id, kernels::squared_distance(box, exact_[id])});
-          }
-          const float reached = limit_in_tree(nearest.limit() * unit);
-          const std::int32_t last = group.keys[wanted][lane];
-          is_sure = reached <= group.limit &&
-                    (last == Group::no_key || reached < core::bit_cast<float>(last & ~Group::number_mask));
-        }
-        if (!is_sure) {
+      const bool in_group = in_groups && group.limit >= 0;
+      for (std::size_t lane = 0; lane < asked.size; ++lane) {
+        const Box<D, Real>& box = asked.box[lane];
+        const BoxId except = are_own                  ? BoxId{asked.row[lane]}
+                             : options.except.empty() ? no_box
+                                                      : options.except[asked.row[lane]];
+        std::span<const Neighbour> row;
+        if (in_group) row = listed(group, lane, wanted, box, max_squared, near);
+        const double reached = row.size() < wanted ? max_squared : row.back().distance_squared;
+        NearestBoxes nearest(rows.count, reached);
+        if (!in_group || !is_complete(group, lane, wanted, reached * unit)) {
           QueryOptions eligible;
-          if (!options.filters.empty()) eligible.filter = &options.filters[query];
+          if (!options.filters.empty()) eligible.filter = &options.filters[asked.row[lane]];
           if (except != no_box) eligible.except = except;
-          nearest.start_over();
-          tests += fan_out * (fan_out + count);
+          tests += fan_out * (fan_out + rows.count);
           search_nearest(box, eligible, nearest);
+          row = nearest.sorted();
         }
-        std::size_t to = query * count;
-        for (const Neighbour& one : nearest.sorted()) {
-          if (one.box == except || to == (query + 1) * count) continue;
-          found[to] = one.box;
-          distances_squared[to++] = one.distance_squared;
+        std::size_t to = asked.row[lane] * rows.count;
+        const std::size_t end = to + rows.count;
+        for (const Neighbour& one : row) {
+          if (one.box == except || to == end) continue;
+          rows.found[to] = one.box;
+          rows.distances_squared[to++] = one.distance_squared;
         }
+        clear_from(to, end, rows.found, rows.distances_squared);
       }
       if (checkpoint != nullptr) checkpoint->count(tests);
     }
   });
+}
+
+template <int D, typename Real>
+void BvhIndex<D, Real>::find_nearest_of_each(BoxView<D, Real> boxes, std::size_t count,
+                                             std::span<BoxId> found, std::span<double> distances_squared,
+                                             const NearestOfEachOptions& options) const {
+  std::size_t queries = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D, Real> box = boxes[i];
+    if (!is_present(box) && !is_absent(box))
+      throw InvalidQuery(core::fault_of(box, core::message({"query ", i}), true));
+    queries += is_present(box) ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (is_empty() || !is_present(boxes[i])) clear_from(i * count, (i + 1) * count, found, distances_squared);
+  }
+  if (is_empty() || queries == 0) return;
+  core::Parallel parallel;
+  parallel.start(options.workers, queries);
+  const NearestRows rows{count, found, distances_squared, options};
+  if (count + 2 <= kernels::NearGroup<D>::max_count && options.filters.empty() &&
+      ask_for_own_boxes(boxes, options))
+    search_by_leaves(boxes, rows, parallel);
+  else
+    search_by_order(boxes, queries, rows, parallel);
+}
+
+/// Whether the queries are the tree's own boxes, and each leaves out itself. Floats are compared when their
+/// leaf is searched: it is enough that queries are absent where boxes are.
+template <int D, typename Real>
+bool BvhIndex<D, Real>::ask_for_own_boxes(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const {
+  if (boxes.size() != size_ || options.except.size() != size_) return false;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (options.except[i] != BoxId(i)) return false;
+    if constexpr (is_float<Real>) {
+      if (is_present(boxes[i]) != (tree_.slot(BoxId(i)) != kernels::no_slot)) return false;
+    } else {
+      if (!(boxes[i] == exact_[i])) return false;
+    }
+  }
+  return true;
+}
+
+/// Asks for the boxes of each leaf at once.
+template <int D, typename Real>
+void BvhIndex<D, Real>::search_by_leaves(BoxView<D, Real> boxes, const NearestRows& rows,
+                                         core::Parallel& parallel) const {
+  const Box<D, Real>* array = boxes.array();
+  if constexpr (!is_float<Real>) array = exact_.data();
+  search_groups(tree_.node_numbers(), rows, parallel,
+                [&](std::size_t number, kernels::NearGroup<D>& group, QueryGroup<D, Real>& asked) {
+                  const auto node = static_cast<std::uint32_t>(number);
+                  asked.size = tree_.is_leaf(node) ? tree_.child_count(node) : 0;
+                  asked.row = tree_.view().nodes[node].id;
+                  group.own_leaf = node;
+                  for (std::size_t lane = 0; lane < asked.size; ++lane) {
+                    const BoxId id{asked.row[lane]};
+                    const auto slot = static_cast<std::uint32_t>(node * fan_out + lane);
+                    asked.box[lane] = is_float<Real> ? boxes[index(id)] : exact(slot, id);
+                    if (is_float<Real> && !(asked.box[lane] == exact(slot, id)))
+                      group.own_leaf = kernels::no_slot;
+                  }
+                  if (array != nullptr && number + 1 < tree_.node_numbers() && tree_.is_leaf(node + 1)) {
+                    for (const std::uint32_t id : tree_.view().nodes[node + 1].id)
+                      kernels::prefetch(&array[id]);
+                  }
+                  return true;
+                });
+}
+
+/// Asks for the queries in their own order, or in a spatial one if they are dense.
+template <int D, typename Real>
+void BvhIndex<D, Real>::search_by_order(BoxView<D, Real> boxes, std::size_t count, const NearestRows& rows,
+                                        core::Parallel& parallel) const {
+  std::vector<NumberedBox<D>> queries;
+  queries.reserve(count);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box<D, Real> box = boxes[i];
+    if (is_present(box)) queries.push_back({in_tree(box), static_cast<std::uint32_t>(i)});
+  }
+  const bool is_dense =
+      queries.size() >= min_dense_queries && tree_.size() / max_boxes_per_dense_query <= queries.size();
+  const std::vector<std::uint32_t> order = spatial_order<D>(queries, tree_, is_dense, parallel);
+  const std::size_t wanted = rows.count + (rows.options.except.empty() ? 0 : 1);
+  const bool may_group =
+      is_dense && rows.options.filters.empty() && wanted + 1 <= kernels::NearGroup<D>::max_count;
+  search_groups((order.size() + fan_out - 1) / fan_out, rows, parallel,
+                [&](std::size_t number, kernels::NearGroup<D>&, QueryGroup<D, Real>& asked) {
+                  asked.size = std::min(fan_out, order.size() - number * fan_out);
+                  for (std::size_t lane = 0; lane < asked.size; ++lane) {
+                    asked.row[lane] = order[number * fan_out + lane];
+                    asked.box[lane] = boxes[asked.row[lane]];
+                  }
+                  return may_group;
+                });
 }
 
 template class BvhIndex<2, float>;

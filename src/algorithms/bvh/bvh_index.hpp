@@ -16,6 +16,7 @@
 #include "algorithms/bvh/conservative_rounding.hpp"
 #include "algorithms/bvh/dynamic_bvh.hpp"
 #include "core/grow.hpp"
+#include "core/large_array.hpp"
 #include "kernels/bvh_query.hpp"
 
 namespace broadside::algorithm {
@@ -108,18 +109,37 @@ class BvhIndex {
   kernels::CastQuery<D> in_tree(const BoxCast<D, Real>& cast, int& exponent) const;
   double distance_unit(std::array<float, D>& weight) const;
   void search_nearest(const Box<D, Real>& box, const QueryOptions& options, NearestBoxes& found) const;
+  std::span<const Neighbour> listed(const kernels::NearGroup<D>& group, std::size_t lane, std::size_t wanted,
+                                    const Box<D, Real>& box, double max_squared,
+                                    std::span<Neighbour> to) const;
+  /// The arguments of nearest_of_each() that are not queries.
+  struct NearestRows {
+    std::size_t count;
+    std::span<BoxId> found;
+    std::span<double> distances_squared;
+    const NearestOfEachOptions& options;
+  };
+
+  bool ask_for_own_boxes(BoxView<D, Real> boxes, const NearestOfEachOptions& options) const;
+  void search_by_leaves(BoxView<D, Real> boxes, const NearestRows& rows, core::Parallel& parallel) const;
+  void search_by_order(BoxView<D, Real> boxes, std::size_t count, const NearestRows& rows,
+                       core::Parallel& parallel) const;
+  template <typename Gather>
+  void search_groups(std::size_t groups, const NearestRows& rows, core::Parallel& parallel,
+                     const Gather& gather) const;
   const kernels::Block<D>& leaf_of(std::uint32_t slot) const {
     return tree_.view().nodes[slot / kernels::fan_out];
   }
 
   DynamicBvh<D> tree_;
-  std::vector<Box<D, Real>> exact_;  // by id; only for doubles
+  core::LargeArray<Box<D, Real>> exact_;  // by id; only for doubles
   ConservativeRounding<D> rounding_;
 
   std::span<const Filter> filters_;  // of the last frame; empty if it had none
   std::vector<Filter> own_filters_;  // the array behind filters_ after update()
   std::vector<BoxId> changed_;       // the frame's list, and places added or cut off at the end
   std::size_t size_ = 0;             // of the last frame
+  bool are_points_ = false;          // all boxes, since the last build
   bool dirty_ = true;                // the last update failed, or there was none
 };
 

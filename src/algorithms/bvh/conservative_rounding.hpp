@@ -19,12 +19,12 @@ namespace broadside::algorithm {
 /// computations with it do not overflow.
 inline float rounded_down(double value) noexcept {
   constexpr double max_value = 0x1p100;
-  if (value >= max_value) return static_cast<float>(max_value);
-  if (value < -max_value) return -std::numeric_limits<float>::infinity();
-  const auto nearest = static_cast<float>(value);
+  const auto nearest = static_cast<float>(std::clamp(value, -max_value, max_value));
+  // As integers, positive floats sort as they do and negative ones the other way round.
+  const auto bits = core::bit_cast<std::int32_t>(nearest);
+  const auto below = core::bit_cast<float>(bits - (bits >> 31 | 1));
   if (nearest == 0) return -std::numeric_limits<float>::min();
-  const auto bits = core::bit_cast<std::uint32_t>(nearest);
-  return core::bit_cast<float>(nearest > 0 ? bits - 1 : bits + 1);
+  return value < -max_value ? -std::numeric_limits<float>::infinity() : below;
 }
 
 /// The same for a float above `value`.

@@ -14,6 +14,7 @@
 #include "algorithms/bvh/box_order.hpp"
 #include "algorithms/bvh/bvh_packer.hpp"
 #include "core/grow.hpp"
+#include "core/large_array.hpp"
 #include "kernels/bvh.hpp"
 
 namespace broadside::algorithm {
@@ -68,6 +69,11 @@ class DynamicBvh {
   Box<D> box_at(std::uint32_t slot) const noexcept {
     return nodes_[slot / kernels::fan_out].box(slot % kernels::fan_out);
   }
+
+  /// Nodes have numbers below this one; a free node is a leaf or not, without children.
+  std::size_t node_numbers() const noexcept { return nodes_.size(); }
+  bool is_leaf(std::uint32_t node) const noexcept { return info_[node].is_leaf; }
+  const kernels::Block<D>& root() const noexcept { return nodes_[root_ & ~kernels::leaf_bit]; }
 
   /// The tree for searches. There must be a box.
   kernels::BvhView<D> view() const noexcept { return {nodes_.data(), root_}; }
@@ -127,14 +133,14 @@ class DynamicBvh {
   BvhPacker<D> packer_;
   core::Parallel parallel_;
   // For building: the boxes, their ids, and the children of the next level's nodes.
-  std::vector<Box<D>> packed_;
-  std::vector<std::uint32_t> ids_;
+  core::LargeArray<Box<D>> packed_;
+  core::LargeArray<std::uint32_t> ids_;
   std::vector<Child> children_;
 
-  std::vector<kernels::Block<D>> nodes_;
+  core::LargeArray<kernels::Block<D>> nodes_;
   std::vector<kernels::BvhNodeInfo> info_;
-  std::vector<std::uint32_t> free_;   // nodes
-  std::vector<std::uint32_t> slots_;  // by id
+  std::vector<std::uint32_t> free_;        // nodes
+  core::LargeArray<std::uint32_t> slots_;  // by id
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;
   std::size_t insertions_ = 0;  // since the last build

@@ -86,18 +86,16 @@ class NearestBoxes {
   NearestBoxes(std::size_t count, double max_distance_squared)
       : count_(count), max_distance_squared_(max_distance_squared) {}
 
+  static bool is_before(const Neighbour& a, const Neighbour& b) noexcept {
+    return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
+  }
+
   /// A box with a greater squared distance is not among the nearest.
   double limit() const noexcept {
     return size_ < count_ ? max_distance_squared_ : heap_[keeps_sorted() ? size_ - 1 : 0].distance_squared;
   }
 
   std::size_t count() const noexcept { return count_; }
-
-  /// Forgets the boxes, but not how far away the farthest one was, to search all again.
-  void start_over() noexcept {
-    max_distance_squared_ = limit();
-    size_ = 0;
-  }
 
   void offer(const Neighbour& one) {
     if (!(one.distance_squared <= max_distance_squared_)) return;
@@ -126,10 +124,6 @@ class NearestBoxes {
   }
 
  private:
-  static bool is_before(const Neighbour& a, const Neighbour& b) noexcept {
-    return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.box < b.box;
-  }
-
   bool keeps_sorted() const noexcept { return count_ <= few_.size(); }
 
   void grow() {

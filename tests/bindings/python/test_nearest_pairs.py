@@ -45,6 +45,21 @@ def test_takes_points_and_widens_floats():
     assert [one.tolist() for one in near.pairs()] == [[2], [0]]
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.float16, np.int16, ">f8"])
+def test_points_are_boxes_without_extent(dtype):
+    points = np.random.default_rng(4).integers(0, 40, (300, 3))
+    expected = broadside.nearest_pairs(np.hstack([points, points]).astype(np.float64), k=3)
+    wide = np.hstack([points, points]).astype(dtype)
+    for given in (points.astype(dtype), np.asfortranarray(points, dtype), wide[:, :3]):
+        near = broadside.nearest_pairs(given, k=3)
+        np.testing.assert_array_equal(near.box, expected.box)
+        np.testing.assert_array_equal(near.distance_squared, expected.distance_squared)
+    filters = broadside.filters(300, is_static=points[:, 0] < 20)
+    boxes = np.hstack([points, points]).astype(np.float64)
+    near = broadside.nearest_pairs(points.astype(dtype), k=3, filters=filters, max_distance=5)
+    np.testing.assert_array_equal(near.box, broadside.nearest_pairs(boxes, k=3, filters=filters, max_distance=5).box)
+
+
 @pytest.mark.parametrize("k", [1, 4, 200])
 @pytest.mark.parametrize("rules", [["same"], ["different"], ["same", "different"]])
 def test_neighbours_have_equal_or_unequal_keys(k, rules):

@@ -3,9 +3,10 @@
     build/python/peers/bin/pip install pykdtree
     build/python/peers/bin/python tools/bench/python/nearest.py [--points 10000,1000000] [--k 1,10] [--threads 1,2]
 
-Random points, one set (a point is not its own neighbour) and two sets. Each call makes its tree anew and finds the k
-nearest of every point. In one set, the others search for k + 1 and drop the nearest, which is the point itself.
-Rounds alternate. Distances must agree to a relative 1e-6: pykdtree computes in float.
+Random points, of float64 or of --dtype float32, one set (a point is not its own neighbour) and two sets. Each call
+makes its tree anew and finds the k nearest of every point. In one set, the others search for k + 1 and drop the
+nearest, which is the point itself. Rounds alternate. Distances must agree to a relative 1e-6: pykdtree computes in
+float if it is given float32.
 """
 
 from __future__ import annotations
@@ -99,6 +100,7 @@ def main() -> None:
     parser.add_argument("--dimensions", type=numbers, default=[2, 3])
     parser.add_argument("--k", type=numbers, default=[1, 10])
     parser.add_argument("--threads", type=numbers, default=[1, 2])
+    parser.add_argument("--dtype", choices=["float32", "float64"], default="float64")
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     found = {package: version(package) for _, package, _, _ in PEERS.values()}
@@ -109,7 +111,7 @@ def main() -> None:
     print("\n| points | | sets | k | threads | library | ms | broadside x |\n|---:|---|---|---:|---:|---|---:|---:|")
     for n in options.points:
         for dimension in options.dimensions:
-            left, other = (np.random.default_rng(seed).random((n, dimension), np.float32) for seed in (1, 2))
+            left, other = (np.random.default_rng(seed).random((n, dimension), options.dtype) for seed in (1, 2))
             for k in options.k:
                 for threads in options.threads:
                     for right in (left, other):
