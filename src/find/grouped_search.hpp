@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,35 +11,26 @@
 #include <vector>
 
 #include "broadside/box.hpp"
-#include "broadside/executor.hpp"
 #include "broadside/pair.hpp"
 #include "broadside/searcher.hpp"
 
 #include "core/large_array.hpp"
-#include "core/parallel.hpp"
-#include "core/radix_sort.hpp"
 #include "find/filter_groups.hpp"
 #include "find/filter_plan.hpp"
+#include "find/group_search.hpp"
 
 namespace broadside::find {
 
-/// If boxes accept only others of their own positive group, as filters_of_keys(KeyRule::same, ...) lets them,
-/// each group is searched by itself, without any test of filters. Threads share the groups.
-///
-/// Otherwise, if filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells
-/// how many overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and
-/// FilterPlan decides which groups are searched together. Searches too small for any structure use brute
-/// force, whichever algorithm was asked for.
+/// If boxes accept only others of their own positive group, as equal keys make them, GroupSearch takes over.
+/// Otherwise, if filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells how many
+/// overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and FilterPlan
+/// decides which groups are searched together. Searches too small for any structure use brute force,
+/// whichever algorithm was asked for.
 ///
 /// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
 template <int D>
 class GroupedSearch {
  public:
-  using MakeAnother = std::function<std::unique_ptr<Searcher<D>>()>;
-
-  GroupedSearch();
-  ~GroupedSearch();
-
   /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
   /// sets, pairs within a set may be written too. Returns the sum of what the searches did, or nothing if one
   /// of them did not count. A search that gives up calls the successor of `input`. The successor must end the
@@ -48,7 +38,7 @@ class GroupedSearch {
   /// makes searchers like this one for other threads; if it is empty, threads do not share groups.
   std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
                                    const BoxFilters& filters, PairSink& pairs,
-                                   const MakeAnother& make_another = {});
+                                   const typename GroupSearch<D>::MakeAnother& make_another = {});
 
   /// The number of searches that the last search() made.
   std::size_t searches() const noexcept { return searches_; }
@@ -57,29 +47,6 @@ class GroupedSearch {
   std::string explanation(const Searcher<D>& searcher) const;
 
  private:
-  /// The boxes of one search.
-  struct Gathered {
-    void clear() noexcept;
-    void add(const SearchInput<D>& input, BoxId place);
-
-    /// Writes the pairs that pass the test, as places in `input`. `filters` is null if there is no test.
-    std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
-                                     std::size_t left_count, const Workers& workers, PairSink& pairs,
-                                     FilterTest test = FilterTest::none, const BoxFilters* filters = nullptr);
-
-    core::LargeArray<Box<D>> boxes;
-    core::LargeArray<Box<D, double>> doubles;
-    core::LargeArray<BoxId> ids;
-  };
-
-  struct Worker;
-
-  bool sort_by_group(const SearchInput<D>& input, const BoxFilters& filters, bool has_others);
-  std::optional<Statistics> search_each_group(Searcher<D>& searcher, const SearchInput<D>& input,
-                                              PairSink& pairs, const MakeAnother& make_another);
-  std::optional<Statistics> search_group(core::Range group, Searcher<D>& searcher,
-                                         const SearchInput<D>& input, const Workers& workers, Worker& worker,
-                                         PairSink& pairs);
   bool is_grouped(const SearchInput<D>& input, const BoxFilters& filters);
   bool sample(const SearchInput<D>& input, const BoxFilters& filters);
   std::optional<Statistics> search_all(Searcher<D>& searcher, const SearchInput<D>& input,
@@ -95,6 +62,8 @@ class GroupedSearch {
     Filter filter;
   };
 
+  GroupSearch<D> by_group_;
+  bool is_by_group_ = false;  // whether by_group_ made the last search
   FilterGroups groups_;
   FilterPlan plan_;
   std::unique_ptr<Searcher<D>> brute_force_;  // null until it is needed, and in a build without it
@@ -103,16 +72,10 @@ class GroupedSearch {
   std::vector<SampledBox> sample_;
   std::vector<std::pair<std::size_t, std::size_t>> rejected_;  // places of sampled boxes
   std::vector<FilterPlan::GroupPair> rejected_groups_;
-  double weight_ = 0;  // the number of pairs of boxes that a pair of the sample stands for
-  Gathered gathered_;
-
-  core::Parallel parallel_;
-  core::RadixSort order_;
-  std::span<const core::KeyedPlace> sorted_;  // boxes by group
-  std::vector<core::Range> sorted_groups_;    // ranges of sorted_ that have pairs
-  bool has_sorted_ = false;                   // whether the last search was one of sorted_groups_
-  std::vector<std::unique_ptr<Worker>> workers_;
-  std::string explanation_;  // of the last of sorted_groups_
+  double weight_ = 0;               // the number of pairs of boxes that a pair of the sample stands for
+  core::LargeArray<Box<D>> boxes_;  // of one search
+  core::LargeArray<Box<D, double>> doubles_;
+  core::LargeArray<BoxId> ids_;
 };
 
 }  // namespace broadside::find

@@ -18,18 +18,6 @@
 namespace broadside::find {
 namespace {
 
-/// Renames pairs and, between two sets, drops pairs within a set. Within a set, ids ascend with places, so
-/// the first id of a pair stays the lower one.
-struct Rename {
-  bool operator()(Pair pair, Pair& to) const {
-    to = {ids[index(pair.first)], ids[index(pair.second)]};
-    return left_count == 0 || (index(pair.first) < left_count && index(pair.second) >= left_count);
-  }
-
-  std::span<const BoxId> ids;
-  std::size_t left_count;
-};
-
 /// Passes on pairs between the first `left_count` boxes and the others, as places in these two sets.
 struct PassBetween {
   bool operator()(Pair pair, Pair& to) const {
@@ -160,7 +148,7 @@ std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Re
   ids_.clear();
   take_present(boxes);
   const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
-  return core::search_through(core::PassingSink(Rename{ids_, 0}, pairs), [&](PairSink& renamed) {
+  return core::search_through(core::PassingSink(core::Rename{ids_, 0}, pairs), [&](PairSink& renamed) {
     const std::optional<Statistics> statistics =
         search_present(present_, 0, options, BoxFilters(filters, ids_), renamed);
     if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
@@ -185,7 +173,7 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   take_present(right);
   if (left_count == 0 || left_count == present_.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
-  return core::search_through(core::PassingSink(Rename{ids_, left_count}, pairs), [&](PairSink& renamed) {
+  return core::search_through(core::PassingSink(core::Rename{ids_, left_count}, pairs), [&](PairSink& renamed) {
     return search_present(present_, left_count, options, filters, renamed);
   });
 }
