@@ -153,7 +153,7 @@ std::optional<Statistics> GroupSearch<D>::search(Searcher<D>& searcher, const Se
     return statistics;
   }
   searches_of_.assign(buckets_, 0);
-  explanation_.clear();
+  explanation_.reset();
   const std::size_t workers = parallel_.workers();
   while (workers_.size() < workers) workers_.push_back(std::make_unique<Worker>());
   const auto is_large = [&](std::size_t number) {
@@ -204,14 +204,13 @@ std::optional<Statistics> GroupSearch<D>::search_bucket(std::size_t number, cons
     const SearchInput<D> of_group{
         .boxes = std::span(copies.boxes).subspan(group.begin, group.size()),
         // Ids ascend, so boxes of the left set come first.
-        .left_count = static_cast<std::size_t>(
-            std::lower_bound(ids.begin(), ids.end(), input.left_count) - ids.begin()),
+        .left_count = static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), input.left_count) -
+                                               ids.begin()),
         .doubles = input.doubles == nullptr ? nullptr : &copies.doubles[group.begin],
         .successor = input.successor,
         .workers = workers};
-    const bool has_pairs = input.left_count == 0
-                               ? ids.size() > 1
-                               : of_group.left_count > 0 && of_group.left_count < ids.size();
+    const bool has_pairs =
+        input.left_count == 0 ? ids.size() > 1 : of_group.left_count > 0 && of_group.left_count < ids.size();
     if (!has_pairs) return;
     ++searches_of_[number];
     if (are_few(ids.size(), of_group.left_count)) {
@@ -267,9 +266,8 @@ Statistics GroupSearch<D>::compare(const SearchInput<D>& group, std::span<const 
   };
   const kernels::Run<D> run = run_of(group.left_count, ids.size(), worker.run);
   const std::uint64_t tests =
-      group.left_count == 0
-          ? kernels::compare_all(run, pairs)
-          : kernels::compare_all(run_of(0, group.left_count, worker.left_run), run, pairs);
+      group.left_count == 0 ? kernels::compare_all(run, pairs)
+                            : kernels::compare_all(run_of(0, group.left_count, worker.left_run), run, pairs);
   return {.tests = tests, .references = ids.size()};
 }
 

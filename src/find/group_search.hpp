@@ -56,8 +56,8 @@ class GroupSearch {
   /// The number of searches that the last search() made.
   std::size_t searches() const noexcept { return searches_; }
 
-  /// As Searcher::explanation(), for the last of the searches; empty if few boxes were compared.
-  const std::string& explanation() const noexcept { return explanation_; }
+  /// As Searcher::explanation(), for the last of the searches; nothing if it compared few boxes.
+  const std::optional<std::string>& explanation() const noexcept { return explanation_; }
 
  private:
   /// Boxes, and their places in the input.
@@ -91,7 +91,7 @@ class GroupSearch {
   core::LargeArray<std::uint32_t> sorted_groups_;  // of sorted_, if buckets have several groups
   std::vector<std::uint32_t> searches_of_;         // by bucket
   std::size_t searches_ = 0;
-  std::string explanation_;
+  std::optional<std::string> explanation_;
   std::vector<std::unique_ptr<Worker>> workers_;
 };
 

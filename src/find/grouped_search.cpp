@@ -72,12 +72,12 @@ std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const 
                                                    const typename GroupSearch<D>::MakeAnother& make_another) {
   searches_ = 1;
   has_compared_all_ = false;
-  is_by_group_ = input.boxes.size() > max_ungrouped_boxes &&
-                 by_group_.sort(input, filters, make_another != nullptr);
+  is_by_group_ =
+      input.boxes.size() > max_ungrouped_boxes && by_group_.sort(input, filters, make_another != nullptr);
   if (is_by_group_) {
     const std::optional<Statistics> statistics = by_group_.search(searcher, input, pairs, make_another);
     searches_ = by_group_.searches();
-    has_compared_all_ = by_group_.explanation().empty();
+    has_compared_all_ = !by_group_.explanation();
     return statistics;
   }
   if (!is_grouped(input, filters)) return search_all(searcher, input, filters, pairs);
@@ -201,7 +201,7 @@ template <int D>
 std::string GroupedSearch<D>::explanation(const Searcher<D>& searcher) const {
   std::string text = has_compared_all_
                          ? "brute_force, since comparing so few pairs of boxes costs less than any structure"
-                     : is_by_group_ ? by_group_.explanation()
+                     : is_by_group_ ? *by_group_.explanation()
                                     : searcher.explanation();
   if (!text.empty() && searches_ > 1)
     text += "; the last of " + std::to_string(searches_) +

@@ -22,10 +22,10 @@
 namespace broadside::find {
 
 /// If boxes accept only others of their own positive group, as equal keys make them, GroupSearch takes over.
-/// Otherwise, if filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells how many
-/// overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and FilterPlan
-/// decides which groups are searched together. Searches too small for any structure use brute force,
-/// whichever algorithm was asked for.
+/// Otherwise, if filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells
+/// how many overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and
+/// FilterPlan decides which groups are searched together. Searches too small for any structure use brute
+/// force, whichever algorithm was asked for.
 ///
 /// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
 template <int D>

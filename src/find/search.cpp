@@ -173,9 +173,9 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   take_present(right);
   if (left_count == 0 || left_count == present_.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
-  return core::search_through(core::PassingSink(core::Rename{ids_, left_count}, pairs), [&](PairSink& renamed) {
-    return search_present(present_, left_count, options, filters, renamed);
-  });
+  return core::search_through(
+      core::PassingSink(core::Rename{ids_, left_count}, pairs),
+      [&](PairSink& renamed) { return search_present(present_, left_count, options, filters, renamed); });
 }
 
 template <int D, typename Real>
