@@ -30,6 +30,16 @@ struct GroupExtent {
   bool has_lonely = false;  // whether a box is in no positive group
 };
 
+/// Whether these are few numbers, all different.
+bool are_few_and_differ(std::span<const std::uint32_t> numbers) {
+  constexpr std::size_t few = 8;
+  if (numbers.size() > few) return false;
+  for (auto at = numbers.begin(); at != numbers.end(); ++at) {
+    if (std::find(numbers.begin(), at, *at) != at) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool are_few(std::size_t boxes, std::size_t left_count) noexcept {
@@ -46,7 +56,7 @@ struct GroupSearch<D>::Worker {
   kernels::RunBuffer<D> run;                  // of few boxes: all, or the right set
   kernels::RunBuffer<D> left_run;             // the left set
   core::RadixSort order;                      // of a bucket of several groups
-  Copies copies;                              // likewise, in that order
+  Copies copies;                              // one of these groups
 };
 
 template <int D>
@@ -235,20 +245,26 @@ std::optional<Statistics> GroupSearch<D>::search_bucket(std::size_t number, cons
     search_one(sorted_, range, is_last);
     return all;
   }
+  // If there are about as many groups as boxes, few buckets have two boxes of one group.
+  if (are_few_and_differ(std::span(sorted_groups_).subspan(range.begin, range.size()))) return all;
   const std::span<core::KeyedPlace> places = worker.order.places(range.size());
   for (std::size_t i = 0; i < range.size(); ++i)
     places[i] = {sorted_groups_[range.begin + i], static_cast<std::uint32_t>(range.begin + i)};
   const std::span<const core::KeyedPlace> order = worker.order.sort();
-  worker.copies.renew(order.size(), input.doubles != nullptr);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    worker.copies.boxes[i] = sorted_.boxes[order[i].place];
-    worker.copies.ids[i] = sorted_.ids[order[i].place];
-    if (input.doubles != nullptr) worker.copies.doubles[i] = sorted_.doubles[order[i].place];
-  }
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin + 1;
     while (end < order.size() && order[end].key == order[begin].key) ++end;
-    search_one(worker.copies, {begin, end}, is_last && end == order.size());
+    const std::size_t count = end - begin;
+    if (count > 1) {
+      worker.copies.renew(count, input.doubles != nullptr);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t from = order[begin + i].place;
+        worker.copies.boxes[i] = sorted_.boxes[from];
+        worker.copies.ids[i] = sorted_.ids[from];
+        if (input.doubles != nullptr) worker.copies.doubles[i] = sorted_.doubles[from];
+      }
+      search_one(worker.copies, {0, count}, is_last && end == order.size());
+    }
     begin = end;
   }
   return all;
