@@ -54,6 +54,8 @@ const std::vector<Rule>& rules() {
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
+      // It compares few boxes a thousand times in a search; calling a Searcher would cost more.
+      {"src/find/group_search", find + R"(|"kernels/sweep\.hpp")"},
       {"src/find/", find},
       {"src/track/", track},
       {"src/world/", track + R"(|"world/[a-z_/]+\.hpp"|"kernels/enlarged_boxes\.hpp")"},

@@ -12,7 +12,9 @@ KEYS = {
     "integers": RNG.integers(-3, 3, 400),
     "far apart": RNG.choice(np.array([-(2**63), 0, 2**63 - 1]), 400),
     "unsigned": RNG.choice(np.array([2**64 - 1, 2**64 - 2], np.uint64), 400),
+    "32 bits, far apart": RNG.choice(np.array([-(2**31), 5, 2**31 - 1], np.int32), 400),
     "strings": RNG.choice(["a", "b", "c"], 400),
+    "bytes": RNG.choice(np.array([b"a", b"bc"]), 400),
     "objects": np.array(RNG.choice(["a", "b", "c"], 400).tolist(), object),
     "a list": RNG.integers(0, 9, 400).tolist(),
     "all": np.arange(400),
@@ -51,6 +53,11 @@ def test_a_key_means_the_same_in_two_sets():
         equal = {(a, b) for a, b in brute_force(left, right) if both[0][a] == both[1][b]}
         assert as_set(broadside.pairs(left, right, same=both)) == equal
         assert broadside.count(left, right, different=both) == len(brute_force(left, right)) - len(equal)
+    texts = (np.array(["a", "bcd"]), np.array(["bcd"]), np.array(["bcd"], object))  # of other types
+    for other in texts[1:]:
+        assert broadside.pairs(BOXES[[0, 0]], BOXES[[0]], same=(texts[0], other)).tolist() == [[1, 0]]
+    far = (np.array([0, 2**62]), np.array([2**62], np.uint64))
+    assert broadside.pairs(BOXES[[0, 0]], BOXES[[0]], same=far).tolist() == [[1, 0]]
 
 
 def test_columns_of_tables_are_keys():
