@@ -381,33 +381,39 @@ struct CandidateWords {
   std::array<Word, max_few_boxes * max_words> bits;
   std::array<std::uint32_t, max_few_boxes * max_words> box_and_word;
   std::size_t count = 0;
-  std::size_t candidates = 0;
+
+  std::size_t candidates() const {
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += static_cast<std::size_t>(std::popcount(bits[i]));
+    return sum;
+  }
 };
 
 template <int D>
 HWY_INLINE void find_candidates(const ByteBoxes<D>& boxes, std::size_t count, std::size_t left_count,
                                 CandidateWords& words) {
-  const std::size_t rows = left_count > 0 ? left_count : count;
+  const std::size_t rows = left_count > 0 ? left_count : count - 1;
   const std::size_t last = (count - 1) / word_bits;
   const Word in_last = ~Word{0} >> (word_bits - 1 - (count - 1) % word_bits);
   std::size_t found = 0;
-  std::size_t candidates = 0;
   for (std::size_t i = 0; i < rows; ++i) {
     const ByteQuery<D> query(boxes, i);
     const std::size_t first = std::max(i + 1, left_count);
     Word wanted = ~Word{0} << first % word_bits;
-    for (std::size_t word = first / word_bits; word <= last; ++word) {
-      Word bits = query.overlaps(boxes, word * word_bits) & wanted;
-      wanted = ~Word{0};
-      if (word == last) bits &= in_last;
+    // Always written, and kept only if there are candidates: a branch would be unpredictable.
+    const auto add = [&](Word bits, std::size_t word) HWY_ATTR {
       words.bits[found] = bits;
       words.box_and_word[found] = static_cast<std::uint32_t>(i << 8 | word);
       found += bits != 0 ? 1 : 0;
-      candidates += static_cast<std::size_t>(std::popcount(bits));
+    };
+    std::size_t word = first / word_bits;
+    for (; word < last; ++word) {
+      add(query.overlaps(boxes, word * word_bits) & wanted, word);
+      wanted = ~Word{0};
     }
+    add(query.overlaps(boxes, last * word_bits) & wanted & in_last, last);
   }
   words.count = found;
-  words.candidates = candidates;
 }
 
 /// Whether most of some candidates overlap, or at least a quarter of them.
@@ -463,13 +469,13 @@ HWY_INLINE void write_overlapping(const CandidateWords& words, const Box<D, Real
 template <int D>
 bool compare(std::span<const Box<D>> boxes, std::size_t left_count, const Box<D, double>* doubles,
              PairSink& pairs) {
-  if (boxes.size() < 2) return true;
+  if (boxes.size() < 2 || left_count == boxes.size()) return true;
   ByteBoxes<D> bytes;
   round<D>(boxes, choose_axes<D>(boxes), bytes);
   CandidateWords words;
   find_candidates(bytes, boxes.size(), left_count, words);
   const auto write = [&](const auto* exact) HWY_ATTR {
-    if (words.candidates > max_unseen_per_box * boxes.size() && !seem_to_overlap(words, exact)) return false;
+    if (words.candidates() > max_unseen_per_box * boxes.size() && !seem_to_overlap(words, exact)) return false;
     write_overlapping(words, exact, pairs);
     return true;
   };
