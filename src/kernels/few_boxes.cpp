@@ -357,6 +357,22 @@ HWY_INLINE bool test(const Box<2>& a, const Box<2>& b) {
                                   hn::ConcatUpperUpper(four, a_bounds, b_bounds)));
 }
 
+#if HWY_HAVE_FLOAT64
+
+template <int D>
+HWY_INLINE bool test(const Box<D, double>& a, const Box<D, double>& b) {
+  const hn::FixedTag<double, 2> two;
+  const auto overlap_from = [&](std::size_t axis) HWY_ATTR {
+    return hn::And(hn::Le(load_coordinates(two, &a, axis), load_coordinates(two, &b, D + axis)),
+                   hn::Le(load_coordinates(two, &b, axis), load_coordinates(two, &a, D + axis)));
+  };
+  auto overlap = overlap_from(0);
+  if constexpr (D == 3) overlap = hn::And(overlap, overlap_from(1));  // the second axis again
+  return hn::AllTrue(two, overlap);
+}
+
+#endif
+
 /// Ignores the fourth lane: its numbers are not of one axis.
 HWY_INLINE bool test(const Box<3>& a, const Box<3>& b) {
   const Four four;
@@ -475,7 +491,8 @@ bool compare(std::span<const Box<D>> boxes, std::size_t left_count, const Box<D,
   CandidateWords words;
   find_candidates(bytes, boxes.size(), left_count, words);
   const auto write = [&](const auto* exact) HWY_ATTR {
-    if (words.candidates() > max_unseen_per_box * boxes.size() && !seem_to_overlap(words, exact)) return false;
+    if (words.candidates() > max_unseen_per_box * boxes.size() && !seem_to_overlap(words, exact))
+      return false;
     write_overlapping(words, exact, pairs);
     return true;
   };
