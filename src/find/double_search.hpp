@@ -86,7 +86,7 @@ class DoubleSearch {
  private:
   /// Up to this number of boxes, pairs are few, false ones included: the last test costs less than to look
   /// for what rounding has lost.
-  static constexpr std::size_t few_boxes = 256;
+  static constexpr std::size_t few_boxes = 320;
 
   /// Passes on the pairs that overlap in double, in the same order. For searches that do not test doubles.
   class ExactSink final : public core::FilterSink {
