@@ -135,12 +135,8 @@ HWY_INLINE std::array<ByteAxis, D> choose_axes(std::span<const Box<D>> boxes) {
   for (int axis = 0; axis < D; ++axis) {
     const auto finite = [&](std::size_t i)
                             HWY_ATTR { return std::clamp(coordinate(minima[i], axis), -largest, largest); };
-    float low = finite(1);
-    float high = finite(6);
-    if (!(low < high)) {
-      low = finite(0);
-      high = finite(7);
-    }
+    const float low = finite(1);
+    const float high = finite(6);
     const float range = std::max(high - low, std::numeric_limits<float>::min());
     // Not infinite, as the quotient of the least range would be.
     axes[axis] = {low + range / 2, std::min(256.0F / 3 / range, largest)};
