@@ -33,8 +33,11 @@ constexpr std::size_t min_compared = 64;
 std::uint32_t shift_by(std::uint64_t hash) { return static_cast<std::uint32_t>(hash_key(hash) >> 32); }
 
 /// The median; of five numbers without a branch on their order, which no predictor could know.
-double fitted_median(std::vector<double>& values) {
-  if (values.size() != min_fitted) return median(values);
+double fitted_median(std::span<double> values) {
+  if (values.size() != min_fitted) {
+    std::vector<double> copy(values.begin(), values.end());
+    return median(copy);
+  }
   const auto [a, b, c, d, e] = std::array{values[0], values[1], values[2], values[3], values[4]};
   const double low = std::max(std::min(a, b), std::min(c, d));
   const double high = std::min(std::max(a, b), std::max(c, d));
@@ -42,7 +45,7 @@ double fitted_median(std::vector<double>& values) {
 }
 
 /// Fits one axis to the finite minima of some boxes.
-LinearRounding fit_axis(std::vector<double>& minima) {
+LinearRounding fit_axis(std::span<double> minima) {
   const double origin = fitted_median(minima);
   for (double& min : minima) min = std::min(std::abs(min - origin), largest_double);
   double distance = fitted_median(minima);
@@ -147,15 +150,15 @@ float QuantileRounding::operator()(double value) const {
 template <int D>
 std::array<LinearRounding, D> fit_linear(std::span<const Box<D, double>> boxes) {
   const std::size_t fitted = std::clamp(boxes.size() / boxes_per_fitted, min_fitted, max_fitted);
-  std::array<std::vector<double>, D> minima;
-  for (std::vector<double>& of_axis : minima) of_axis.reserve(fitted);
-  for_present_sample(boxes, fitted, [&minima](const Box<D, double>& box) {
+  std::array<std::array<double, max_fitted>, D> minima;
+  std::array<std::size_t, D> counts{};
+  for_present_sample(boxes, fitted, [&](const Box<D, double>& box) {
     for (int axis = 0; axis < D; ++axis) {
-      if (std::isfinite(box.min[axis])) minima[axis].push_back(box.min[axis]);
+      if (std::isfinite(box.min[axis])) minima[axis][counts[axis]++] = box.min[axis];
     }
   });
   std::array<LinearRounding, D> fit;
-  for (int axis = 0; axis < D; ++axis) fit[axis] = fit_axis(minima[axis]);
+  for (int axis = 0; axis < D; ++axis) fit[axis] = fit_axis(std::span(minima[axis]).first(counts[axis]));
   return fit;
 }
 

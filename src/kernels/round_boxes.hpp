@@ -26,4 +26,10 @@ template <int D>
 RoundedBoxes round_boxes(std::span<const Box<D, double>> boxes, std::size_t first_place,
                          const std::array<core::LinearRounding, D>& fit, Box<D>* floats);
 
+/// The same without looking for what was lost, and without a hash, which take most of the time. Returns
+/// whether all boxes are present.
+template <int D>
+bool round_few_boxes(std::span<const Box<D, double>> boxes, const std::array<core::LinearRounding, D>& fit,
+                     Box<D>* floats);
+
 }  // namespace broadside::kernels

@@ -49,6 +49,8 @@ static_assert(algorithm::AutoThresholds<3>::boxes_of_an_even_tile == algorithm::
 
 TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
   EXPECT_EQ(chosen_for("uniform", 20, 1), "brute_force");
+  EXPECT_EQ(chosen_for("uniform", 200, 1), "brute_force");
+  EXPECT_EQ(chosen_for<3>("uniform", 300, 1), "brute_force");
   EXPECT_EQ(chosen_for<3>("one_point", 500, 1), "grid") << "all overlap, which one row shows";
   EXPECT_EQ(chosen_for("uniform", 5'000, 1), "grid");
   EXPECT_EQ(chosen_for("clustered", 10'000, 1), "grid") << "these clusters are even enough for a tile";
@@ -56,6 +58,33 @@ TEST(Auto, TakesWhatSuitsWhereThatIsBeyondDoubt) {
   // One overlap by chance among the sampled boxes would stand for a dozen tests a box.
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6})
     EXPECT_EQ(chosen_for("one_line", 100'000, seed), "sweep_and_prune") << seed;
+}
+
+/// Half of them far away from the others.
+template <int D>
+std::vector<Box<D>> boxes_in_two_places() {
+  Rng rng(1);
+  std::vector<Box<D>> boxes(200);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      boxes[i].min[axis] = rng.between(0, 1000) + (i % 2 == 0 ? 0.0F : 1e9F);
+      boxes[i].max[axis] = boxes[i].min[axis] + 1;
+    }
+  }
+  return boxes;
+}
+
+TEST(Auto, SortsFewBoxesThatBytesCannotTellApart) {
+  const auto boxes = boxes_in_two_places<2>();
+  Finder<2> finder("auto");
+  Finder<2> reference("brute_force");
+  PairHasher pairs;
+  PairHasher expected;
+  EXPECT_TRUE(finder.find(boxes, pairs));
+  const auto statistics = reference.find(boxes, expected);
+  EXPECT_THAT(finder.explanation(), testing::StartsWith("grid, since 200 boxes"));
+  EXPECT_EQ(pairs.hash(), expected.hash());
+  EXPECT_EQ(statistics->tests, 200 * 199 / 2) << "brute force compares them as floats";
 }
 
 TEST(Auto, TakesATreeForTwoSetsIfOneIsSmall) {

@@ -32,10 +32,13 @@ RoundedBoxes expect_rounded(const std::vector<Box<D, double>>& boxes, std::size_
   for (int axis = 0; axis < D; ++axis) fit[axis] = core::LinearRounding(axis, axis == 1 ? 1e12 : 1);
   std::vector<Box<D>> floats(boxes.size());
   const RoundedBoxes rounded = round_boxes<D>(boxes, first_place, fit, floats.data());
+  std::vector<Box<D>> few(boxes.size());
+  EXPECT_EQ(round_few_boxes<D>(boxes, fit, few.data()), rounded.all_present);
   if (!rounded.all_present) return rounded;
   std::vector<Box<D>> expected;
   for (const Box<D, double>& box : boxes) expected.push_back(core::rounded(box, fit));
   EXPECT_EQ(floats, expected);
+  EXPECT_EQ(few, expected);
   EXPECT_EQ(rounded.is_lossless, core::is_lossless<D>(fit, boxes, expected));
   EXPECT_EQ(rounded.hash, core::hash_of<D>(boxes, first_place));
   return rounded;

@@ -102,10 +102,10 @@ class SegmentSuccessor final : public Successor<D> {
   std::optional<Statistics> work_;
 };
 
-/// Notes that the search of a tile has given up, which it does before it writes a pair. What takes over
-/// begins when that search has returned.
+/// Notes that a search has refused its boxes, which it does before it writes a pair. What takes over begins
+/// when that search has returned.
 template <int D>
-class RefusedTile final : public Successor<D> {
+class Refusal final : public Successor<D> {
  public:
   void finish(const typename Successor<D>::IsMissing&) override { is_refused_ = true; }
   bool is_refused() const noexcept { return is_refused_; }
@@ -123,10 +123,16 @@ class AutoSearcher final : public Searcher<D> {
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     choose(input);
     has_handed_over_ = false;
+    if (choice_ == AutoReason::few) {
+      Refusal<D> refusal;
+      const std::optional<Statistics> statistics = search_with_choice(input, refusal, true, pairs);
+      if (!refusal.is_refused()) return statistics;
+      choice_ = AutoReason::tile;
+    }
     if (choice_ == AutoReason::tile) {
-      RefusedTile<D> refused;
-      const std::optional<Statistics> statistics = search_with_choice(input, refused, true, pairs);
-      if (!refused.is_refused()) return statistics;
+      Refusal<D> refusal;
+      const std::optional<Statistics> statistics = search_with_choice(input, refusal, true, pairs);
+      if (!refusal.is_refused()) return statistics;
       if (input.boxes.size() <= Limits::boxes_of_a_tile)
         take_sample(input.boxes);  // else it is taken already
       choice_ = tests_on_best_axis(input.boxes) <= Limits::tests_of_an_uneven_tiles_axis

@@ -8,6 +8,8 @@
 #include "algorithms/registry.hpp"
 #include "core/parallel.hpp"
 #include "core/tunables.hpp"
+#include "kernels/few_boxes.hpp"
+#include "kernels/observed_tests.hpp"
 #include "kernels/sweep.hpp"
 
 namespace broadside::algorithm {
@@ -25,6 +27,13 @@ class BruteForceSearcher final : public Searcher<D> {
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
     const std::span<const Box<D>> boxes = input.boxes;
     const std::size_t left = input.left_count;
+    if (boxes.size() <= kernels::max_few_boxes) {
+      if (compare_few(input, pairs)) return few_statistics(boxes.size(), left);
+      if (input.may_refuse) {
+        input.successor->finish([](const Box<D>&, BoxId, const Box<D>&, BoxId) { return true; });
+        return Statistics{};
+      }
+    }
     gather(boxes, left, boxes.size(), run_);
     gather(boxes, 0, left, left_run_);
     const kernels::Run<D> run = run_.view(input.doubles);
@@ -46,6 +55,30 @@ class BruteForceSearcher final : public Searcher<D> {
   }
 
  private:
+  /// False, and nothing is written, if bytes do not suit the boxes.
+  bool compare_few(const SearchInput<D>& input, PairSink& pairs) {
+    parallel_.start(input.workers, 0);  // fewer than a thread is worth
+    bool is_done = false;
+    parallel_.search(1, pairs, [&](core::Range, std::size_t worker, PairSink& sink) {
+      is_done = kernels::compare_few(input.boxes, input.left_count, input.doubles, sink);
+      if (is_done && parallel_.checkpoint(worker) != nullptr)
+        parallel_.checkpoint(worker)->count(few_statistics(input.boxes.size(), input.left_count).tests);
+      return Statistics{};
+    });
+    if constexpr (kernels::is_observing) {
+      const std::size_t rows = input.left_count == 0 ? input.boxes.size() : input.left_count;
+      for (std::size_t i = 0; i < rows && is_done; ++i) {
+        for (std::size_t j = std::max(i + 1, input.left_count); j < input.boxes.size(); ++j)
+          kernels::observe_test(BoxId(i), BoxId(j));
+      }
+    }
+    return is_done;
+  }
+
+  static Statistics few_statistics(std::size_t boxes, std::size_t left) {
+    return {.tests = left == 0 ? boxes * (boxes - 1) / 2 : left * (boxes - left), .references = boxes};
+  }
+
   static void gather(std::span<const Box<D>> boxes, std::size_t begin, std::size_t end,
                      kernels::RunBuffer<D>& run) {
     run.clear();
