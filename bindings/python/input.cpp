@@ -52,9 +52,10 @@ std::vector<Filter> filters_of(const nb::object& array, std::size_t count) {
     // Groups alone: equal positive ones collide and, with the default bits, unequal negative ones.
     const auto* groups = reinterpret_cast<const std::int64_t*>(buffer.text().data());
     for (std::size_t i = 0; i < count; ++i) {
-      const auto group = static_cast<std::int32_t>(groups[i]);
-      filters.push_back(group > 0 ? Filter{.category = 0, .mask = 0, .group = group}
-                                  : Filter{.group = group});
+      Filter& filter =
+          filters.emplace_back();  // set in place: a copy would wait for what has just been written
+      filter.group = static_cast<std::int32_t>(groups[i]);
+      if (filter.group > 0) filter.category = filter.mask = 0;
     }
     return filters;
   }

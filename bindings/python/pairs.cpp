@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include <nanobind/stl/string.h>
 
 #include "broadside/batch.hpp"
 #include "broadside/components.hpp"
+#include "broadside/keys.hpp"
 #include "broadside/sinks.hpp"
 
 #include "bindings/python/arrow.hpp"
@@ -160,6 +162,19 @@ nb::tuple neighbours_of(nb::handle pairs, std::size_t boxes, bool full) {
                         array_of<std::uint32_t>(std::move(found.ids), {count}));
 }
 
+/// A number from 1 on for each element of a contiguous array, the same for equal bytes.
+nb::object numbers_of_keys(nb::handle array) {
+  const auto size = nb::cast<std::size_t>(array.attr("itemsize"));
+  const PythonBuffer buffer(array, PyBUF_C_CONTIGUOUS);
+  return array_of(without_gil([&](WithoutGil&) {
+    detail::KeyNumbers<std::string_view> numbers;
+    std::vector<std::int64_t> of_elements(buffer.text().size() / size);
+    for (std::size_t i = 0; i < of_elements.size(); ++i)
+      of_elements[i] = numbers.number(buffer.text().substr(i * size, size));
+    return of_elements;
+  }));
+}
+
 /// The places of invalid boxes.
 nb::object invalid_rows(nb::handle boxes) {
   const Rows rows = Rows::of_boxes_or_empty(boxes, "boxes");
@@ -195,6 +210,7 @@ void add_pairs(nb::module_& module) {
   module.def("find_batch", &find_batch, nb::arg("boxes").none(), nb::arg("offsets"),
              nb::arg("algorithm").none(), nb::arg("threads").none(), nb::arg("filters").none(),
              nb::arg("ignored").none(), nb::arg("quarantine").none(), nb::arg("touching").none());
+  module.def("numbers_of_keys", &numbers_of_keys, nb::arg("array"));
   module.def("invalid_rows", &invalid_rows, nb::arg("boxes").none());
 }
 

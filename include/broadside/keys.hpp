@@ -5,13 +5,13 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,6 +39,56 @@ concept KeyRange = std::ranges::input_range<const Keys> && BoxKey<std::ranges::r
 
 namespace detail {
 
+/// Numbers keys from 1 on, in the order in which they first occur, with a hash table with linear probing
+/// (Knuth, TAOCP 3, 6.4).
+template <typename Key>
+class KeyNumbers {
+ public:
+  std::int32_t number(const Key& key) {
+    NumberedKey* slot = &slot_of(key);
+    if (slot->number != 0) return slot->number;
+    if (count_ == std::numeric_limits<std::int32_t>::max())
+      throw InvalidFrame("2147483648 different keys; expected at most 2147483647");
+    if (2 * (static_cast<std::size_t>(count_) + 1) > table_.size()) {
+      grow();
+      slot = &slot_of(key);
+    }
+    *slot = {key, ++count_};
+    return count_;
+  }
+
+ private:
+  struct NumberedKey {
+    Key key{};
+    std::int32_t number = 0;  // 0 if the slot is free
+  };
+
+  static std::size_t hash(const Key& key) noexcept {
+    if constexpr (std::is_integral_v<Key> || std::is_enum_v<Key>)
+      return static_cast<std::size_t>(mixed(static_cast<std::uint64_t>(key)));
+    else
+      return std::hash<Key>()(key);
+  }
+
+  /// The slot of the key, or the free one for it.
+  NumberedKey& slot_of(const Key& key) {
+    std::size_t at = hash(key) & (table_.size() - 1);
+    while (table_[at].number != 0 && table_[at].key != key) at = (at + 1) & (table_.size() - 1);
+    return table_[at];
+  }
+
+  void grow() {
+    std::vector<NumberedKey> larger(4 * table_.size());
+    table_.swap(larger);
+    for (NumberedKey& old : larger) {
+      if (old.number != 0) slot_of(old.key) = std::move(old);
+    }
+  }
+
+  std::vector<NumberedKey> table_ = std::vector<NumberedKey>(64);  // its size is a power of two
+  std::int32_t count_ = 0;
+};
+
 /// Makes filters with a group for each key, numbered in the order in which keys first occur.
 template <typename Key>
 class KeyFilters {
@@ -51,8 +101,11 @@ class KeyFilters {
     if constexpr (std::ranges::sized_range<const Keys>) made.reserve(std::ranges::size(keys));
     std::size_t count = 0;
     for (const auto& key : keys) {
-      if (given.empty() || count < given.size())
-        made.push_back(filter(group(key), given.empty() ? Filter{} : given[count]));
+      // Set in the vector: a copy would wait for what has just been written.
+      if (given.empty())
+        set_group(group(key), made.emplace_back());
+      else if (count < given.size())
+        set_group(group(key), made.emplace_back(given[count]));
       ++count;
     }
     if (!given.empty() && given.size() != count) {
@@ -75,28 +128,23 @@ class KeyFilters {
       if (last_ != 0 && key == last_key_) return last_;
       last_key_ = key;
     }
-    const std::size_t next = numbers_.size() + 1;
-    if (next > std::size_t{std::numeric_limits<std::int32_t>::max()} && !numbers_.contains(last_key_))
-      throw InvalidFrame("2147483648 different keys; expected at most 2147483647");
-    last_ = numbers_.try_emplace(last_key_, static_cast<std::int32_t>(next)).first->second;
-    return last_;
+    return last_ = numbers_.number(last_key_);
   }
 
-  Filter filter(std::int32_t group, Filter given) const {
-    if (given.group != 0)
-      throw InvalidFrame("a filter of group " + std::to_string(given.group) +
+  void set_group(std::int32_t group, Filter& filter) const {
+    if (filter.group != 0)
+      throw InvalidFrame("a filter of group " + std::to_string(filter.group) +
                          " with keys, which take the place of groups; expected group 0");
-    if (rule_ == KeyRule::different) {
-      given.group = -group;
-      return given;
-    }
-    if (given != Filter{.is_static = given.is_static})
+    filter.group = rule_ == KeyRule::same ? group : -group;
+    if (rule_ != KeyRule::same) return;
+    if (filter.category != Filter{}.category || filter.mask != Filter{}.mask)
       throw InvalidFrame("a filter with a category or a mask, and KeyRule::same; expected one or the other");
-    return {.category = 0, .mask = 0, .group = group, .is_static = given.is_static};
+    filter.category = 0;
+    filter.mask = 0;
   }
 
   KeyRule rule_;
-  std::unordered_map<Stored, std::int32_t> numbers_;
+  KeyNumbers<Stored> numbers_;
   Stored last_key_{};
   std::int32_t last_ = 0;  // the group of last_key_; 0 before the first key
 };

@@ -1,5 +1,5 @@
 // FilterSink: a sink that changes or drops pairs and passes the rest to another sink. PassingSink: a filter
-// made from a function.
+// made from a function, such as Rename.
 #pragma once
 
 #include <algorithm>
@@ -61,6 +61,18 @@ class PassingSink final : public FilterSink {
   void consume(std::span<const Pair> pairs) override { pass_on(pairs, pass_); }
 
   Pass pass_;
+};
+
+/// Renames pairs and, between two sets, drops pairs within a set. Within a set, ids ascend with places, so
+/// the first id of a pair stays the lower one.
+struct Rename {
+  bool operator()(Pair pair, Pair& to) const {
+    to = {ids[index(pair.first)], ids[index(pair.second)]};
+    return left_count == 0 || (index(pair.first) < left_count && index(pair.second) >= left_count);
+  }
+
+  std::span<const BoxId> ids;
+  std::size_t left_count;
 };
 
 /// Calls search(sink) with a filter onto the caller's sink, and flushes the filter. Returns what the search

@@ -96,11 +96,6 @@ class FilterChain {
   PairSink* front_;
 };
 
-void add(Statistics& all, const Statistics& more) {
-  all.tests += more.tests;
-  all.references += more.references;
-}
-
 /// The range of parts in piece `number` when `parts` parts are cut into `pieces` pieces.
 Range piece_of(std::size_t parts, std::size_t pieces, std::size_t number) noexcept {
   const auto begin = [&](std::size_t i) { return parts / pieces * i + std::min(i, parts % pieces); };

@@ -22,6 +22,14 @@ struct Range {
   std::size_t size() const noexcept { return end - begin; }
 };
 
+/// Adds what one search did to the sum of several.
+inline void add(Statistics& sum, const Statistics& more) noexcept {
+  sum.tests += more.tests;
+  sum.references += more.references;
+  sum.cells += more.cells;
+  sum.hits += more.hits;
+}
+
 /// Shares work among workers. A worker is one task of the executor, which takes piece after piece. It runs in
 /// one thread, so scratch memory by worker needs no lock. With one worker everything runs in the calling
 /// thread, as if this class were not there.
@@ -45,6 +53,11 @@ class Parallel {
   /// none.
   Checkpoint* checkpoint(std::size_t worker) noexcept {
     return checkpoints_.empty() ? nullptr : &checkpoints_[worker].value;
+  }
+
+  /// One thread, for a whole search within a part of this one: with the checkpoint of a worker.
+  Workers within_part() const {
+    return {.checkpoint = checkpoint_ ? workers_checkpoint_ : std::function<void()>()};
   }
 
   /// Calls body(range, worker) for ranges that together are [0, count), several at the same time. Rethrows

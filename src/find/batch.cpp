@@ -87,8 +87,7 @@ void BatchSearch<D, Real>::find(std::span<const Box<D, Real>> boxes, std::span<c
     if (size(world) < 2) return;
     std::unique_ptr<Search<D, Real>>& its_search = searches_[worker];
     if (its_search == nullptr) {
-      its_search = std::make_unique<Search<D, Real>>(searcher_of<D>(*algorithm_, settings_),
-                                                     algorithm_->tests_doubles);
+      its_search = std::make_unique<Search<D, Real>>(searchers_of<D>(*algorithm_, settings_));
     }
     PairFilters its_filters = filters;
     if (!filters.filters.empty()) its_filters.filters = filters.filters.subspan(offsets[world], size(world));

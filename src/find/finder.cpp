@@ -20,8 +20,8 @@ namespace broadside {
 template <int D, typename Real>
 class BROADSIDE_HIDDEN Finder<D, Real>::State {
  public:
-  State(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles, std::size_t threads)
-      : workers{.threads = threads}, search_(std::move(searcher), tests_doubles) {}
+  State(find::Searchers<D> searchers, std::size_t threads)
+      : workers{.threads = threads}, search_(std::move(searchers)) {}
 
   std::optional<Statistics> find(BoxView<D, Real> view, PairSink& pairs, const PairFilters& filters) {
     const core::DefaultEnvironment environment;
@@ -106,9 +106,9 @@ class BROADSIDE_HIDDEN Finder<D, Real>::State {
 
 template <int D, typename Real>
 Finder<D, Real>::Finder(const Algorithm& algorithm, const Spec& spec) {
-  const Settings settings = algorithm::settings_of(algorithm, spec);
-  state_ = std::make_unique<State>(find::searcher_of<D>(algorithm, settings), algorithm.tests_doubles,
-                                   algorithm::threads_of(algorithm, settings));
+  Settings settings = algorithm::settings_of(algorithm, spec);
+  const std::size_t threads = algorithm::threads_of(algorithm, settings);
+  state_ = std::make_unique<State>(find::searchers_of<D>(algorithm, std::move(settings)), threads);
 }
 
 template <int D, typename Real>
@@ -118,7 +118,7 @@ template <int D, typename Real>
 Finder<D, Real>::Finder(std::unique_ptr<Searcher<D>> searcher) {
   if (searcher == nullptr)
     throw std::invalid_argument("Finder was given a null searcher; expected a searcher");
-  state_ = std::make_unique<State>(find::checked(std::move(searcher)), false, 1);
+  state_ = std::make_unique<State>(find::Searchers<D>{find::checked(std::move(searcher))}, 1);
 }
 
 template <int D, typename Real>

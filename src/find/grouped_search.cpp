@@ -31,12 +31,7 @@ constexpr std::size_t boxes_per_lonely_box = 8;
 /// with many overlaps costs more in each search.
 constexpr double min_gain = 2;
 
-/// Up to this number of pairs of boxes per box, comparing them all costs less than any structure.
-constexpr std::size_t compared_per_box = 128;
-
-bool is_lonely(const Filter& filter) {
-  return filter.group <= 0 && (filter.mask == 0 || filter.category == 0);
-}
+bool is_lonely(const Filter& filter) { return filter.group <= 0 && has_no_bits(filter); }
 
 /// Passes on the pairs that filters accept. `Filters` is indexed by the place of a box.
 template <typename Filters>
@@ -73,9 +68,18 @@ struct PassOfGroups {
 
 template <int D>
 std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const SearchInput<D>& input,
-                                                   const BoxFilters& filters, PairSink& pairs) {
+                                                   const BoxFilters& filters, PairSink& pairs,
+                                                   const typename GroupSearch<D>::MakeAnother& make_another) {
   searches_ = 1;
   has_compared_all_ = false;
+  is_by_group_ =
+      input.boxes.size() > max_ungrouped_boxes && by_group_.sort(input, filters, make_another != nullptr);
+  if (is_by_group_) {
+    const std::optional<Statistics> statistics = by_group_.search(searcher, input, pairs, make_another);
+    searches_ = by_group_.searches();
+    has_compared_all_ = !by_group_.explanation();
+    return statistics;
+  }
   if (!is_grouped(input, filters)) return search_all(searcher, input, filters, pairs);
   searches_ = plan_.searches().size();
   std::optional<Statistics> sum = Statistics{};
@@ -88,10 +92,7 @@ std::optional<Statistics> GroupedSearch<D>::search(Searcher<D>& searcher, const 
       sum.reset();
       continue;
     }
-    sum->tests += some->tests;
-    sum->references += some->references;
-    sum->cells += some->cells;
-    sum->hits += some->hits;
+    core::add(*sum, *some);
   }
   return sum;
 }
@@ -187,10 +188,7 @@ void GroupedSearch<D>::gather(const SearchInput<D>& input, std::span<const std::
 /// Whether to search the gathered boxes by brute force. If so, brute_force_ is set.
 template <int D>
 bool GroupedSearch<D>::compares_all(std::size_t left_count) {
-  const std::uint64_t boxes = boxes_.size();
-  const std::uint64_t compared =
-      left_count == 0 ? boxes * (boxes - 1) / 2 : left_count * (boxes - left_count);
-  if (compared > compared_per_box * boxes) return false;
+  if (!are_few(boxes_.size(), left_count)) return false;
   if (!brute_force_) {
     if (const Algorithm* const algorithm = find_algorithm("brute_force"))
       brute_force_ =
@@ -203,7 +201,8 @@ template <int D>
 std::string GroupedSearch<D>::explanation(const Searcher<D>& searcher) const {
   std::string text = has_compared_all_
                          ? "brute_force, since comparing so few pairs of boxes costs less than any structure"
-                         : searcher.explanation();
+                     : is_by_group_ ? *by_group_.explanation()
+                                    : searcher.explanation();
   if (!text.empty() && searches_ > 1)
     text += "; the last of " + std::to_string(searches_) +
             " searches, each of boxes whose filters accept each other";

@@ -17,13 +17,15 @@
 #include "core/large_array.hpp"
 #include "find/filter_groups.hpp"
 #include "find/filter_plan.hpp"
+#include "find/group_search.hpp"
 
 namespace broadside::find {
 
-/// If filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells how many
-/// overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and FilterPlan
-/// decides which groups are searched together. Searches too small for any structure use brute force,
-/// whichever algorithm was asked for.
+/// If boxes accept only others of their own positive group, as equal keys make them, GroupSearch takes over.
+/// Otherwise, if filters reject few pairs, all pairs are found and then tested. A sample of the boxes tells
+/// how many overlapping pairs the filters reject. If these are many, boxes are grouped by filter, and
+/// FilterPlan decides which groups are searched together. Searches too small for any structure use brute
+/// force, whichever algorithm was asked for.
 ///
 /// All decisions depend on the boxes and the filters alone. Keeps its memory. One thread at a time.
 template <int D>
@@ -32,9 +34,11 @@ class GroupedSearch {
   /// Writes each pair of overlapping boxes that accept each other once, as places in `input.boxes`; of two
   /// sets, pairs within a set may be written too. Returns the sum of what the searches did, or nothing if one
   /// of them did not count. A search that gives up calls the successor of `input`. The successor must end the
-  /// whole search, since ids then refer to the boxes of one group. Exceptions pass through.
+  /// whole search, since ids then refer to the boxes of one group. Exceptions pass through. `make_another`
+  /// makes searchers like this one for other threads; if it is empty, threads do not share groups.
   std::optional<Statistics> search(Searcher<D>& searcher, const SearchInput<D>& input,
-                                   const BoxFilters& filters, PairSink& pairs);
+                                   const BoxFilters& filters, PairSink& pairs,
+                                   const typename GroupSearch<D>::MakeAnother& make_another = {});
 
   /// The number of searches that the last search() made.
   std::size_t searches() const noexcept { return searches_; }
@@ -58,6 +62,8 @@ class GroupedSearch {
     Filter filter;
   };
 
+  GroupSearch<D> by_group_;
+  bool is_by_group_ = false;  // whether by_group_ made the last search
   FilterGroups groups_;
   FilterPlan plan_;
   std::unique_ptr<Searcher<D>> brute_force_;  // null until it is needed, and in a build without it

@@ -18,18 +18,6 @@
 namespace broadside::find {
 namespace {
 
-/// Renames pairs and, between two sets, drops pairs within a set. Within a set, ids ascend with places, so
-/// the first id of a pair stays the lower one.
-struct Rename {
-  bool operator()(Pair pair, Pair& to) const {
-    to = {ids[index(pair.first)], ids[index(pair.second)]};
-    return left_count == 0 || (index(pair.first) < left_count && index(pair.second) >= left_count);
-  }
-
-  std::span<const BoxId> ids;
-  std::size_t left_count;
-};
-
 /// Passes on pairs between the first `left_count` boxes and the others, as places in these two sets.
 struct PassBetween {
   bool operator()(Pair pair, Pair& to) const {
@@ -97,10 +85,15 @@ std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher) {
 }
 
 template <int D>
-std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings) {
-  std::unique_ptr<Searcher<D>> searcher = algorithm::searcher<D>(algorithm, settings);
-  if (algorithm.kind != AlgorithmKind::own || algorithm::is_linked(algorithm.name)) return searcher;
-  return checked(std::move(searcher));
+Searchers<D> searchers_of(const Algorithm& algorithm, Settings settings) {
+  const bool is_checked = algorithm.kind == AlgorithmKind::own && !algorithm::is_linked(algorithm.name);
+  std::unique_ptr<Searcher<D>> first = algorithm::searcher<D>(algorithm, settings);
+  if (is_checked) first = checked(std::move(first));
+  auto make_another = [make = algorithm.in<D>().searcher, is_checked, settings = std::move(settings)] {
+    std::unique_ptr<Searcher<D>> searcher = make(settings);
+    return is_checked ? checked(std::move(searcher)) : std::move(searcher);
+  };
+  return {std::move(first), std::move(make_another), algorithm.tests_doubles};
 }
 
 template <int D, typename Real>
@@ -119,12 +112,12 @@ std::size_t Search<D, Real>::check_and_count_absent(std::span<const Box<D, Real>
 }
 
 template <int D, typename Real>
-Search<D, Real>::Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles)
-    : searcher_(std::move(searcher)), doubles_(tests_doubles) {}
+Search<D, Real>::Search(Searchers<D> searchers)
+    : searchers_(std::move(searchers)), doubles_(searchers_.tests_doubles) {}
 
 template <int D, typename Real>
 std::string Search<D, Real>::explanation() const {
-  return is_filtered_ ? groups_->explanation(*searcher_) : searcher_->explanation();
+  return is_filtered_ ? groups_->explanation(*searchers_.first) : searchers_.first->explanation();
 }
 
 template <int D, typename Real>
@@ -155,7 +148,7 @@ std::optional<Statistics> Search<D, Real>::find_within(std::span<const Box<D, Re
   ids_.clear();
   take_present(boxes);
   const std::size_t observed = kernels::is_observing ? kernels::observed_tests().size() : 0;
-  return core::search_through(core::PassingSink(Rename{ids_, 0}, pairs), [&](PairSink& renamed) {
+  return core::search_through(core::PassingSink(core::Rename{ids_, 0}, pairs), [&](PairSink& renamed) {
     const std::optional<Statistics> statistics =
         search_present(present_, 0, options, BoxFilters(filters, ids_), renamed);
     if constexpr (kernels::is_observing) kernels::rename_observed_tests(observed, ids_);
@@ -180,9 +173,9 @@ std::optional<Statistics> Search<D, Real>::find_between(std::span<const Box<D, R
   take_present(right);
   if (left_count == 0 || left_count == present_.size()) return nothing_found();
   const BoxFilters filters(options.filters.filters, options.filters.right_filters, left_count, ids_);
-  return core::search_through(core::PassingSink(Rename{ids_, left_count}, pairs), [&](PairSink& renamed) {
-    return search_present(present_, left_count, options, filters, renamed);
-  });
+  return core::search_through(
+      core::PassingSink(core::Rename{ids_, left_count}, pairs),
+      [&](PairSink& renamed) { return search_present(present_, left_count, options, filters, renamed); });
 }
 
 template <int D, typename Real>
@@ -223,7 +216,9 @@ std::optional<Statistics> Search<D, Real>::search_in_groups(const SearchInput<D>
   const bool is_filtered = !filters.empty();
   if (is_filtered && !groups_) groups_ = std::make_unique<GroupedSearch<D>>();
   is_filtered_ = is_filtered;  // only now: explanation() relies on groups_
-  return is_filtered ? groups_->search(*searcher_, input, filters, pairs) : searcher_->search(input, pairs);
+  Searcher<D>& searcher = *searchers_.first;
+  if (!is_filtered) return searcher.search(input, pairs);
+  return groups_->search(searcher, input, filters, pairs, searchers_.make_another);
 }
 
 /// Appends the present boxes to present_ and their places to ids_.
@@ -241,8 +236,8 @@ void Search<D, Real>::take_present(std::span<const Box<D, Real>> boxes) {
 
 template std::unique_ptr<Searcher<2>> checked(std::unique_ptr<Searcher<2>>);
 template std::unique_ptr<Searcher<3>> checked(std::unique_ptr<Searcher<3>>);
-template std::unique_ptr<Searcher<2>> searcher_of<2>(const Algorithm&, const Settings&);
-template std::unique_ptr<Searcher<3>> searcher_of<3>(const Algorithm&, const Settings&);
+template Searchers<2> searchers_of<2>(const Algorithm&, Settings);
+template Searchers<3> searchers_of<3>(const Algorithm&, Settings);
 template class Search<2, float>;
 template class Search<2, double>;
 template class Search<3, float>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,10 +28,18 @@ namespace broadside::find {
 template <int D>
 std::unique_ptr<Searcher<D>> checked(std::unique_ptr<Searcher<D>> searcher);
 
+/// A searcher, and how to make further ones for other threads.
+template <int D>
+struct Searchers {
+  std::unique_ptr<Searcher<D>> first;
+  std::function<std::unique_ptr<Searcher<D>>()> make_another{};  ///< empty if there can be only one
+  bool tests_doubles = false;                                    ///< as in Algorithm
+};
+
 /// Makes the searcher of an algorithm, checked if a user registered the algorithm. The library's algorithms
 /// and the peers of the comparison are tested, so they need no check that would slow them down.
 template <int D>
-std::unique_ptr<Searcher<D>> searcher_of(const Algorithm& algorithm, const Settings& settings);
+Searchers<D> searchers_of(const Algorithm& algorithm, Settings settings);
 
 /// Options of one search.
 template <int D>
@@ -53,8 +62,7 @@ struct SearchOptions {
 template <int D, typename Real>
 class Search {
  public:
-  /// `tests_doubles`: as in Algorithm.
-  Search(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles);
+  explicit Search(Searchers<D> searchers);
 
   /// Checks boxes as core::check_boxes() does, and returns how many are absent or quarantined. With several
   /// workers, each checks a range, and the exception of the first range with an invalid box is thrown.
@@ -95,7 +103,7 @@ class Search {
                                              PairSink& pairs);
   void take_present(std::span<const Box<D, Real>> boxes);
 
-  std::unique_ptr<Searcher<D>> searcher_;
+  Searchers<D> searchers_;
   DoubleSearch<D> doubles_;
   std::unique_ptr<GroupedSearch<D>> groups_;  // null until boxes have filters
   bool is_filtered_ = false;                  // whether boxes had filters in the last search

@@ -382,8 +382,7 @@ void detail::find_pairs_within(BoxView<D, Real> view, const BoxView<D, Real>* ri
   if (is_periodic) periods = checked_periods<D>(reach.periods(), reach.period_count());
 
   const Algorithm& algorithm = algorithm::require_algorithm(spec.name);
-  find::Search<D, Real> search(find::searcher_of<D>(algorithm, algorithm::settings_of(algorithm, spec)),
-                               algorithm.tests_doubles);
+  find::Search<D, Real> search(find::searchers_of<D>(algorithm, algorithm::settings_of(algorithm, spec)));
   std::vector<Box<D, Real>> gathered;
   std::vector<Box<D, Real>> right_gathered;
   Set<D, Real> left(view, gathered, reach.radii());

@@ -32,8 +32,7 @@ inline constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 template <int D, typename Real>
 class FindAnew {
  public:
-  FindAnew(std::unique_ptr<Searcher<D>> searcher, bool tests_doubles)
-      : search_(std::move(searcher), tests_doubles) {}
+  explicit FindAnew(find::Searchers<D> searchers) : search_(std::move(searchers)) {}
 
   /// Writes the events of a change. Throws LimitPassed if `max_pairs` is not no_limit and there are more
   /// pairs, or a search makes far more tests than the numbers of boxes and pairs justify.

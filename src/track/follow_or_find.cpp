@@ -36,7 +36,7 @@ FollowOrFind<D, Real>::FollowOrFind(TrackerPlan<D> plan)
       explains_(plan.explains),
       policy_(plan.update, plan.find_costs, costs_of(structures_), !std::is_same_v<Real, float>) {
   if (plan.follower) follower_ = followed(std::move(plan.follower));
-  if (plan.searcher) find_anew_.emplace(std::move(plan.searcher), plan.tests_doubles);
+  if (plan.searchers.first) find_anew_.emplace(std::move(plan.searchers));
 }
 
 template <int D, typename Real>

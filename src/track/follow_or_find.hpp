@@ -26,8 +26,7 @@ struct TrackerPlan {
   std::vector<FollowerChoice<D>> structures{};  ///< may be empty
   std::optional<Settings> settings{};           ///< for making structures
   std::unique_ptr<Follower<D>> follower{};      ///< of the first structure, if already made
-  std::unique_ptr<Searcher<D>> searcher{};      ///< may be null if `update` is `follow`
-  bool tests_doubles = false;                   ///< whether the searcher does
+  find::Searchers<D> searchers{};               ///< may be empty if `update` is `follow`
   FindCosts find_costs{};
   bool explains = true;  ///< whether there is more than one way
 };

@@ -40,7 +40,6 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
   const bool is_float = std::is_same_v<Real, float>;
   const bool chooses = chooses_update(algorithm);
   track::TrackerPlan<D> plan;
-  plan.tests_doubles = algorithm.tests_doubles;
   plan.find_costs = algorithm.in<D>().find_costs;
   if (is_float || algorithm.gives_candidates) {
     const auto& followers = algorithm.in<D>().followers;
@@ -53,8 +52,8 @@ track::TrackerPlan<D> plan_of(const Algorithm& algorithm, const Settings& settin
     plan.update = chooses ? core::update_of(settings) : Update::follow;
   plan.explains = chooses && !plan.structures.empty();
   // Made even if it is not used: this throws if the algorithm does not support the dimension.
-  std::unique_ptr<Searcher<D>> searcher = find::searcher_of<D>(algorithm, settings);
-  if (plan.update != Update::follow) plan.searcher = std::move(searcher);
+  find::Searchers<D> searchers = find::searchers_of<D>(algorithm, settings);
+  if (plan.update != Update::follow) plan.searchers = std::move(searchers);
   return plan;
 }
 
@@ -143,7 +142,7 @@ Tracker<D, Real>::Tracker(std::unique_ptr<Searcher<D>> searcher) {
   if (!searcher) throw std::invalid_argument("Tracker was given a null searcher; expected a searcher");
   track::TrackerPlan<D> plan;
   plan.update = Update::rebuild;
-  plan.searcher = find::checked(std::move(searcher));
+  plan.searchers.first = find::checked(std::move(searcher));
   plan.explains = false;
   state_ = std::make_unique<State>(std::move(plan), 1);
 }

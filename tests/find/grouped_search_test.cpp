@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -64,8 +66,19 @@ Box<D> any_box(Rng& rng) {
   return box;
 }
 
+/// Filters by which boxes accept only others of their own group; some are in none.
+std::vector<Filter> group_filters(Rng& rng, std::size_t count) {
+  const int groups = rng.whole(1, rng.one_in(2) ? 3 : 60);
+  const int apart = rng.one_in(2) ? 1 : 30'000'001;  // far apart, they share buckets
+  std::vector<Filter> filters(count);
+  for (Filter& filter : filters)
+    filter = {.category = 0, .group = apart * rng.whole(rng.one_in(40) ? -1 : 1, groups)};
+  return filters;
+}
+
 /// Filters of which many accept few others.
 std::vector<Filter> any_filters(Rng& rng, std::size_t count) {
+  if (rng.one_in(3)) return group_filters(rng, count);
   const std::size_t categories = 1 + rng.below(rng.one_in(3) ? 40 : 4);
   const int groups = rng.one_in(3) ? 40 : rng.whole(0, 3);
   const std::size_t filter_count = 1 + rng.below(rng.one_in(4) ? count : 12);
@@ -91,7 +104,8 @@ struct Found {
 template <int D>
 void find(Found<D>& found, GroupedSearch<D>& search, const SearchInput<D>& input, const BoxFilters& filters) {
   PairCollector collector(found.pairs);
-  found.statistics = search.search(found.searcher, input, filters, collector);
+  found.statistics = search.search(found.searcher, input, filters, collector,
+                                   [] { return std::make_unique<AllPairs<D>>(); });
   collector.flush();
   std::erase_if(found.pairs, [&](Pair pair) {
     return input.left_count != 0 && (pair.first < input.left_count) == (pair.second < input.left_count);
@@ -141,8 +155,11 @@ void finds_pairs_by_definition(std::size_t cases) {
     if (left_count != 0 && rng.one_in(4)) (rng.one_in(2) ? filters : right).clear();
     const BoxFilters of_boxes =
         left_count == 0 ? BoxFilters(filters) : BoxFilters(filters, right, left_count);
-    const SearchInput<D> input{
-        .boxes = boxes, .left_count = left_count, .doubles = rng.one_in(2) ? doubles.data() : nullptr};
+    const Workers workers{.threads = rng.one_in(2) ? 1U : 3U, .boxes_per_thread = 50};
+    const SearchInput<D> input{.boxes = boxes,
+                               .left_count = left_count,
+                               .doubles = rng.one_in(2) ? doubles.data() : nullptr,
+                               .workers = workers};
     Found<D> found;
     find(found, search, input, of_boxes);
     ASSERT_EQ(found.pairs, pairs_by_definition(input, of_boxes)) << "seed " << seed;
@@ -190,6 +207,33 @@ TEST(GroupedSearch, SearchesEachPositiveGroupByItself) {
   std::vector<Filter> filters;
   for (int i = 0; i < 3000; ++i) filters.push_back({.mask = 0, .group = 1 + i % 100});
   expect_no_rejected_pair(filters, 100);
+}
+
+TEST(GroupedSearch, SearchesEachGroupInTheSameOrderForAnyNumberOfThreads) {
+  Rng rng(5);
+  std::vector<Box2> boxes;
+  std::vector<Filter> filters;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto place = float(rng.below(100'000));
+    boxes.push_back({{place, 0}, {place + 60, 1}});
+    const bool is_large = rng.one_in(3);
+    filters.push_back({.mask = 0, .group = is_large ? 5 : rng.whole(1, rng.one_in(2) ? 10 : 3000)});
+  }
+  std::array<Pairs, 2> found;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Finder<2> finder("auto");
+    finder.set_workers({.threads = 1 + 2 * i, .boxes_per_thread = 100});
+    PairCollector collector(found[i]);
+    const std::optional<Statistics> statistics = finder.find(boxes, collector, {.filters = filters});
+    EXPECT_GT(statistics->tests, found[i].size());
+    EXPECT_NE(finder.explanation().find("; the last of "), std::string::npos) << finder.explanation();
+  }
+  EXPECT_FALSE(found[0].empty());
+  EXPECT_EQ(found[0], found[1]);
+}
+
+TEST(GroupedSearch, TestsNoFilterIfAllBoxesAreInOneGroup) {
+  expect_no_rejected_pair(std::vector<Filter>(200, {.mask = 0, .group = 7}), 1);
 }
 
 TEST(GroupedSearch, SearchesBoxesThatRejectEachOtherOnlyAgainstThoseThatAcceptThem) {
@@ -319,6 +363,17 @@ TEST(GroupedSearch, PassesTheCheckpointBetweenSearches) {
   EXPECT_THROW(search.search(searcher, {.boxes = boxes, .workers = workers}, BoxFilters(filters), counter),
                std::runtime_error);
   EXPECT_LT(searcher.searches, 20);
+}
+
+TEST(GroupedSearch, EndsTheSearchesOfAllThreadsByACheckpoint) {
+  std::vector<Filter> filters;
+  for (int i = 0; i < 20'000; ++i) filters.push_back({.mask = 0, .group = 1 + i % 20});
+  const std::vector<Box2> boxes = boxes_at_one_place<2>(filters.size());
+  Finder<2> finder("auto");
+  finder.set_workers(
+      {.threads = 2, .boxes_per_thread = 1, .checkpoint = [] { throw std::runtime_error("enough"); }});
+  PairCounter counter;
+  EXPECT_THROW(finder.find(boxes, counter, {.filters = filters}), std::runtime_error);
 }
 
 }  // namespace

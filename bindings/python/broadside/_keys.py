@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from broadside import _arguments
+from broadside import _arguments, _core
 
 _EXPECTED = "expected integers, strings or categories"
 _MOST = 2**31 - 2
@@ -23,6 +23,14 @@ class Keyed:
 
     def __getitem__(self, rows: NDArray[np.uint32]) -> Keyed:
         return Keyed(self.name, self.packed[rows])
+
+
+@dataclass(frozen=True)
+class _Keys:
+    """Keys of one set: integers or strings, or the places of each box's in these."""
+
+    values: NDArray[Any]
+    codes: NDArray[Any] | None = None
 
 
 def with_keys(
@@ -56,7 +64,7 @@ def groups_of(given: Any, name: str, sets: list[Any]) -> list[NDArray[np.int64]]
             if len(group) != len(part):
                 raise ValueError(f"{name} has {len(group)} and {len(part)} keys; expected one of each for each box")
         # Both are below 2**31.
-        groups = _groups([group << 31 | part for group, part in zip(groups, more, strict=True)], name)
+        groups = _numbers([group << 31 | part for group, part in zip(groups, more, strict=True)], name)
     return groups
 
 
@@ -100,10 +108,21 @@ def _labels(table: Any) -> list[Any]:
     return list(table.column_names if hasattr(table, "column_names") else table.columns)
 
 
-def _plain(keys: Any, name: str) -> NDArray[Any]:
+def _plain(keys: Any, name: str) -> _Keys:
     """Keys as integers or strings."""
+    categorical = getattr(keys, "cat", keys)  # of a pandas Series, or a Categorical
+    codes, categories = getattr(categorical, "codes", None), getattr(categorical, "categories", None)
+    if codes is not None and categories is not None:
+        codes = np.asarray(codes)
+        if (codes < 0).any():
+            raise ValueError(f"{name} has no key in row {int((codes < 0).argmax())}; {_EXPECTED}")
+        return _Keys(_values(categories, name), codes)
     is_arrow = hasattr(keys, "to_numpy") and hasattr(keys, "null_count") and hasattr(keys, "type")
-    array = np.asarray(keys.to_numpy(zero_copy_only=False) if is_arrow else _of_categories(keys, name))
+    return _Keys(_values(keys.to_numpy(zero_copy_only=False) if is_arrow else keys, name))
+
+
+def _values(keys: Any, name: str) -> NDArray[Any]:
+    array = np.asarray(keys)
     if array.ndim != 1:
         raise ValueError(f"{name} has shape {array.shape}; expected (n,), a key for each box")
     if array.size == 0:
@@ -117,19 +136,9 @@ def _plain(keys: Any, name: str) -> NDArray[Any]:
     return array.astype(np.uint8) if array.dtype.kind == "b" else array
 
 
-def _of_categories(keys: Any, name: str) -> Any:
-    """The keys of a pandas Series or Categorical, by its codes; anything else as it is."""
-    categorical = getattr(keys, "cat", keys)
-    codes, categories = getattr(categorical, "codes", None), getattr(categorical, "categories", None)
-    if codes is None or categories is None:
-        return keys
-    codes = np.asarray(codes)
-    if (codes < 0).any():
-        raise ValueError(f"{name} has no key in row {int((codes < 0).argmax())}; {_EXPECTED}")
-    return np.asarray(categories)[codes]
-
-
 def _of_objects(objects: NDArray[Any], name: str) -> NDArray[Any]:
+    if set(map(type, objects)) == {str}:
+        return objects
     for row, key in enumerate(objects):
         if key is None or type(key).__name__ in ("NAType", "NaTType") or isinstance(key, float) and key != key:
             raise ValueError(f"{name} has no key in row {row}; {_EXPECTED}")
@@ -142,8 +151,16 @@ def _of_objects(objects: NDArray[Any], name: str) -> NDArray[Any]:
     return objects
 
 
-def _groups(arrays: list[NDArray[Any]], name: str) -> list[NDArray[np.int64]]:
-    """A positive number for each key, the same for equal ones of either array."""
+def _groups(keys: list[_Keys], name: str) -> list[NDArray[np.int64]]:
+    """A positive number for each key, the same for equal ones of either set."""
+    numbers = _numbers([of_set.values for of_set in keys], name)
+    return [
+        array if of_set.codes is None else array[of_set.codes]
+        for of_set, array in zip(keys, numbers, strict=True)
+    ]
+
+
+def _numbers(arrays: list[NDArray[Any]], name: str) -> list[NDArray[np.int64]]:
     filled = [array for array in arrays if array.size]
     are_texts = [array.dtype.kind in "US" or array.dtype.kind == "O" and isinstance(array[0], str) for array in filled]
     if len(set(are_texts)) > 1:
@@ -152,19 +169,24 @@ def _groups(arrays: list[NDArray[Any]], name: str) -> list[NDArray[np.int64]]:
         least = min(int(array.min()) for array in filled)
         if max(int(array.max()) for array in filled) - least <= _MOST and all(array.dtype.kind != "O" for array in filled):
             return [_counted_from(array, least) for array in arrays]
-    if len(filled) == 1:
-        numbers = np.unique(filled[0], return_inverse=True)[1]
+    # NumPy would join signed and unsigned integers as floats.
+    kinds = {array.dtype.kind for array in filled}
+    alike = [array if len(kinds) == 1 else array.astype(object) for array in filled] or arrays
+    all_keys = alike[0] if len(alike) == 1 else np.concatenate(alike)
+    if all_keys.dtype.kind == "O" or all_keys.dtype.itemsize == 0:
+        keys = all_keys.tolist()
+        table = {key: number for number, key in enumerate(dict.fromkeys(keys), 1)}
+        numbers = np.fromiter(map(table.__getitem__, keys), np.int64, len(keys))
     else:
-        numbers = np.unique(np.concatenate([array.astype(object) for array in arrays]), return_inverse=True)[1]
-    numbers = numbers.reshape(-1).astype(np.int64) + 1
+        numbers = _core.numbers_of_keys(np.ascontiguousarray(all_keys))
     ends = np.cumsum([array.size for array in arrays])
     return [numbers[end - array.size : end] for array, end in zip(arrays, ends, strict=True)]
 
 
 def _counted_from(array: NDArray[Any], least: int) -> NDArray[np.int64]:
     """Integers as numbers from 1 on. The difference of two integers of 64 bits may not fit, but wraps to the right one."""
-    wide = array.astype(np.uint64 if array.dtype.kind == "u" else np.int64).view(np.uint64)
-    return (wide - np.uint64(least % 2**64)).view(np.int64) + 1
+    wide = array.astype(np.uint64 if array.dtype.kind == "u" else np.int64, copy=False).view(np.uint64)
+    return (wide - np.uint64((least - 1) % 2**64)).view(np.int64)
 
 
 def _keyed(groups: NDArray[np.int64], filters: Any, filters_name: str, name: str) -> Keyed:
