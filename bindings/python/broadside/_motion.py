@@ -42,6 +42,7 @@ class Events(NamedTuple):
     """The pairs that held before and do not now."""
 
 
+@_arguments.all_suggest
 class World:
     """Boxes under handles that are added, moved and removed, and the pairs that begin and end.
 
@@ -110,7 +111,10 @@ class World:
         `max_boxes`.
         """
         crs = _convert.common_crs(self._crs, "the world", boxes, "boxes")
-        handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
+        try:
+            handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
+        except InvalidBoxError as error:
+            raise _convert.explained(error, boxes, "boxes", columns) from None
         self._crs = crs
         return handles
 
@@ -331,6 +335,7 @@ class _ArrayTracker:
     _instead: ClassVar[str]
 
 
+@_arguments.all_suggest
 class Tracker(_ArrayTracker):
     """Follows an array of boxes from frame to frame, and tells which pairs of rows begin and end.
 
@@ -342,7 +347,8 @@ class Tracker(_ArrayTracker):
         quarantine: Treat invalid boxes as absent instead of raising.
         touching: Whether boxes that only touch overlap, as in `pairs`.
 
-    Calls from several threads take turns. A tracker cannot be pickled or copied.
+    Calls from several threads take turns. A tracker cannot be pickled or copied. It knows no periodic space: there,
+    compare the `pairs` of two frames.
     """
 
     __slots__ = ()
@@ -390,7 +396,10 @@ class Tracker(_ArrayTracker):
         Raises InvalidBoxError and ValueError. The tracker has not changed then, nor after Ctrl-C: the next update
         returns all events since the last complete one.
         """
-        return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
+        try:
+            return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
+        except InvalidBoxError as error:
+            raise _convert.explained(error, boxes, "boxes", columns) from None
 
 
 class BatchEvents(NamedTuple):
@@ -402,6 +411,7 @@ class BatchEvents(NamedTuple):
     """The pairs that held before and do not now."""
 
 
+@_arguments.all_suggest
 class BatchTracker(_ArrayTracker):
     """Follows the boxes of many small worlds, such as the simulations in which a policy is trained.
 
@@ -465,5 +475,5 @@ class BatchTracker(_ArrayTracker):
         try:
             begun, ended = self._tracker.update(boxes, offsets, filters)
         except InvalidBoxError as error:
-            raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
+            raise _convert.explained(error, boxes, "boxes", columns) from None
         return BatchEvents(BatchPairs(*begun), BatchPairs(*ended))

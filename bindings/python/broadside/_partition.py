@@ -20,6 +20,7 @@ class Assignment(NamedTuple):
     """The rows of the boxes, of each part ascending."""
 
 
+@_arguments.all_suggest
 class Partition:
     """Space, cut into parts that can be joined independently, on one machine or on many.
 
