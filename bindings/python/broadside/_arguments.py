@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 _Called = TypeVar("_Called", bound=Callable[..., Any])
-_Kind = TypeVar("_Kind", bound=type)
 
 # Names that other libraries have for an argument.
 _OTHER_NAMES = {
@@ -47,14 +46,6 @@ def suggests(function: _Called) -> _Called:
             raise TypeError(unknown_name(function.__qualname__.removesuffix(".__init__"), unknown[0], known)) from None
 
     return call  # type: ignore[return-value]
-
-
-def all_suggest(kind: _Kind) -> _Kind:
-    """Likewise for a class: its constructor and its public functions."""
-    for name, member in list(vars(kind).items()):
-        if inspect.isfunction(member) and (name == "__init__" or not name.startswith("_")):
-            setattr(kind, name, suggests(member))
-    return kind
 
 
 def unknown_name(function: str, name: str, known: Collection[str]) -> str:

@@ -42,7 +42,6 @@ class Events(NamedTuple):
     """The pairs that held before and do not now."""
 
 
-@_arguments.all_suggest
 class World:
     """Boxes under handles that are added, moved and removed, and the pairs that begin and end.
 
@@ -68,6 +67,7 @@ class World:
     __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
     __signature__: ClassVar[inspect.Signature]
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,
@@ -335,7 +335,6 @@ class _ArrayTracker:
     _instead: ClassVar[str]
 
 
-@_arguments.all_suggest
 class Tracker(_ArrayTracker):
     """Follows an array of boxes from frame to frame, and tells which pairs of rows begin and end.
 
@@ -355,6 +354,7 @@ class Tracker(_ArrayTracker):
     _name = "Tracker"
     _instead = "expected a World, which can, or a new Tracker"
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,
@@ -411,7 +411,6 @@ class BatchEvents(NamedTuple):
     """The pairs that held before and do not now."""
 
 
-@_arguments.all_suggest
 class BatchTracker(_ArrayTracker):
     """Follows the boxes of many small worlds, such as the simulations in which a policy is trained.
 
@@ -431,6 +430,7 @@ class BatchTracker(_ArrayTracker):
     _name = "BatchTracker"
     _instead = "expected a new BatchTracker"
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,

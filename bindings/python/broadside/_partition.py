@@ -20,7 +20,6 @@ class Assignment(NamedTuple):
     """The rows of the boxes, of each part ascending."""
 
 
-@_arguments.all_suggest
 class Partition:
     """Space, cut into parts that can be joined independently, on one machine or on many.
 
@@ -48,6 +47,7 @@ class Partition:
 
     __slots__ = ("__weakref__", "_partition")
 
+    @_arguments.suggests
     def __init__(self, sample: Any, parts: int, *, boxes: int = 0, columns: Columns | None = None) -> None:
         parts = _arguments.integer(parts, "parts", 1, 2**31 - 2)
         sample = _convert.given(sample, "sample", columns)

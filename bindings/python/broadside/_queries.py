@@ -65,7 +65,6 @@ class Neighbours(NamedTuple):
         return Found(rows.astype(np.uint32), self.box[rows, places])
 
 
-@_arguments.all_suggest
 class Index:
     """An index for queries: which boxes overlap a box, contain a point, meet a ray, or are nearest to a point or a box.
 
@@ -92,6 +91,7 @@ class Index:
 
     __slots__ = ("__weakref__", "_boxes", "_crs", "_filters", "_index")
 
+    @_arguments.suggests
     def __init__(
         self,
         boxes: Any,

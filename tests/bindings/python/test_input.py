@@ -288,7 +288,6 @@ def test_names_the_argument_that_is_meant():
         (broadside.components, "distance", "within"),
         (broadside.nearest_pairs, "radius", "max_distance"),
         (broadside.Index, "colums", "columns"),
-        (broadside.Index(boxes).nearest, "max_dist", "max_distance"),
         (lambda _, **more: broadside.Tracker(2, **more), "touch", "touching"),
         (lambda _, **more: broadside.World(2, **more), "margins", "margin"),
     ]:
