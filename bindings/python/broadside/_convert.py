@@ -76,7 +76,7 @@ def _meant(rows: Rows, row: int, are_many: bool, found: Any, shape: _Boxes) -> s
         if ways:
             return f"; all rows would be valid {as_array} {' or '.join(ways)} (check that it is meant)"
     minima, maxima = np.split(rows[row], 2)
-    if not np.isfinite(rows[row]).all() or (minima <= maxima).all():
+    if not np.isfinite(rows[row]).all():
         return ""
     axes = " and ".join("xyz"[axis] for axis in np.flatnonzero(minima > maxima))
     return f" (are its minimum and maximum on {axes} swapped?)"

@@ -130,7 +130,7 @@ def _coded_by_arrow(keys: Any) -> tuple[NDArray[Any], Any] | None:
         return None
     encoded = keys.dictionary_encode()
     if hasattr(encoded, "chunks"):
-        encoded = encoded.unify_dictionaries().combine_chunks()
+        encoded = encoded.combine_chunks()
     codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
     return codes, encoded.dictionary.to_numpy(zero_copy_only=False)
 
@@ -145,8 +145,7 @@ def _coded_by_pandas(keys: Any) -> tuple[NDArray[Any], Any] | None:
     if pandas is None or not isinstance(keys, (pandas.Series, pandas.Index)) or not pandas.api.types.is_string_dtype(keys):
         return None
     codes, categories = keys.factorize()
-    # Other objects keep their rows, for messages.
-    return (codes, categories) if all(isinstance(category, str) for category in categories) else None
+    return codes, categories
 
 
 def _values(keys: Any, name: str) -> NDArray[Any]:
