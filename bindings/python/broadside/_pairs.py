@@ -158,8 +158,8 @@ def pairs(
             `neighbour_lists` take the pairs.
         period: The length after which space repeats: a number for all axes, or one for each, with None (or infinity)
             for an axis that does not repeat. For ``(360, None)``, longitude and latitude, a box from 170 to 190
-            overlaps one from -180 to -175. Boxes may lie in any cell. A box at least as long as the period covers the whole axis. With `within`, the distance is that of the
-            nearest images.
+            overlaps one from -180 to -175. Boxes may lie in any cell. A box at least as long as the period covers the
+            whole axis. With `within`, the distance is that of the nearest images.
         to: The boxes at the end of a step, in the same number; `boxes` are then at its beginning. Each bound moves at a
             constant speed. Two boxes pair if they overlap at some time of the step, but not if they only pass through a
             place one after the other. For two sets, give the ends of both as a tuple. `overlap_times` tells when pairs
