@@ -2,10 +2,61 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
+import inspect
 import operator
-from typing import Any
+from collections.abc import Callable, Collection
+from typing import Any, TypeVar
 
 import numpy as np
+
+_Called = TypeVar("_Called", bound=Callable[..., Any])
+
+# Names that other libraries have for an argument.
+_OTHER_NAMES = {
+    "same": ["by", "on", "group", "groups", "groupby", "key", "keys"],
+    "within": ["distance", "radius", "radii", "r", "eps", "cutoff", "max_distance"],
+    "max_distance": ["distance", "distance_upper_bound", "radius", "r", "within"],
+    "period": ["boxsize"],
+    "threads": ["workers", "n_jobs"],
+}
+_NO_PERIOD = (
+    "has no argument 'period'. Only pairs(), count(), components() and distances() know periodic space: for neighbours "
+    "call pairs(..., within=, period=), and for motion call it in each frame and compare the pairs with those of the "
+    "frame before, as docs/python.md shows"
+)
+
+
+def suggests(function: _Called) -> _Called:
+    """Makes the error about an argument that does not exist name the one that is meant."""
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except TypeError as error:
+            # If the call failed, and not something in the function, there is no further frame.
+            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+                raise
+            known = inspect.signature(function).parameters
+            unknown = [name for name in named if name not in known]
+            if not unknown:
+                raise
+            raise TypeError(unknown_name(function.__qualname__.removesuffix(".__init__"), unknown[0], known)) from None
+
+    return call  # type: ignore[return-value]
+
+
+def unknown_name(function: str, name: str, known: Collection[str]) -> str:
+    """What is wrong with an argument of a function that knows others."""
+    if name == "period":
+        return f"{function}() {_NO_PERIOD}"
+    known = [one for one in known if one != "self"]
+    others = [own for own, names in _OTHER_NAMES.items() if own in known and name in names]
+    near = others or difflib.get_close_matches(name, known, 1)
+    meant = f"did you mean {near[0]!r}?" if near else f"expected one of: {', '.join(known)}"
+    return f"{function}() has no argument {name!r}; {meant}"
 
 
 def kind_of(found: Any) -> str:

@@ -41,7 +41,10 @@ OTHER_MEANINGS: list[str | list[str]] = [
 # The default names of an array's columns in pandas and polars. They have no meaning, so a table must have only these.
 _NAMES_OF_PLACES = [[f"{prefix}{i}" for i in range(count)] for prefix in ("", "column_") for count in (2, 3, 4, 6)]
 
-NO_BOXES = "for points say within=, or use nearest_pairs(); for intervals use intervals()"
+NO_BOXES = (
+    "for points say within=, or use nearest_pairs(); for intervals use intervals(); as boxes, points are "
+    "np.hstack([points, points])"
+)
 
 _EXPECTED = "xmin, ymin, xmax, ymax, in 3D zmin and zmax as well, or columns= to say which they are, such as columns='xywh'"
 
@@ -107,7 +110,7 @@ def choose(labels: Sequence[str], name: str, columns: str | list[str] | None, or
     if choice is not None and (columns is None or not choice.axes or _forms(choice) == _forms_of(columns)):
         return choice
     expected = _EXPECTED + _hint(len(labels)) if columns is None else f"columns of {columns!r}, as columns says"
-    raise ValueError(f"{name} has the columns {', '.join(labels) or 'none'}{problem and f' ({problem})'}; expected {expected}")
+    raise ValueError(f"{name} {_has(labels)}{f' ({problem})' if problem and labels else ''}; expected {expected}")
 
 
 def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
@@ -115,7 +118,7 @@ def choose_points(labels: Sequence[str], name: str, dimension: int) -> Choice:
     _, _, axes, _ = _core.resolve_columns(list(labels), False)
     places = [place for form, place, _ in axes if form == "point"] if axes else _order_of_point(labels)
     if len(places) != dimension:
-        raise ValueError(f"{name} has the columns {', '.join(labels) or 'none'}; expected {', '.join('xyz'[:dimension])}")
+        raise ValueError(f"{name} {_has(labels)}; expected {', '.join('xyz'[:dimension])}")
     return Choice(places, [])
 
 
@@ -142,8 +145,8 @@ def _points_among(labels: Sequence[str], name: str, columns: str | list[str] | N
         return [places[place] for place in order]
     if columns is not None:
         return []
-    _, _, axes, _ = _core.resolve_columns(list(labels), False)
-    if axes:
+    _, _, axes, geometry = _core.resolve_columns(list(labels), False)
+    if axes or geometry >= 0:
         return [place for _, place, _ in axes] if all(form == "point" for form, _, _ in axes) else []
     order = _order_of_point(labels)
     # Of three names without a meaning, one may be that of an id.
@@ -166,6 +169,10 @@ def _as_boxes(places: list[int]) -> Choice:
     return Choice(places, [("point", place, -1) for place in range(len(places))])
 
 
+def _has(labels: Sequence[str]) -> str:
+    return f"has the columns {', '.join(labels)}" if labels else "has no columns"
+
+
 def _hint(count: int) -> str:
     return f"; {NO_BOXES}" if count in (2, 3) else ""
 
@@ -183,7 +190,7 @@ def _places_of(columns: list[str], labels: Sequence[str], name: str) -> list[int
     for column in columns:
         there = [place for place, label in enumerate(labels) if label == column]
         if len(there) != 1:
-            found = f"has {len(there)} columns {column}" if there else f"has the columns {', '.join(labels) or 'none'}"
+            found = f"has {len(there)} columns {column}" if there else _has(labels)
             raise ValueError(f"{name} {found}; expected one column {column}")
         places += there
     return places

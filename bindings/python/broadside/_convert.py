@@ -55,24 +55,45 @@ def valid_boxes(found: Any, name: str, columns: Columns | None, or_points: bool 
         error = InvalidBoxError(
             f"box {row} is {array[row].tolist()}; expected min <= max on every axis, and no NaN", row, name
         )
-        raise with_other_conventions(error, found, name, columns)
+        raise explained(error, found, name, columns)
     return array
 
 
-def with_other_conventions(error: InvalidBoxError, found: Any, name: str, columns: Columns | None) -> InvalidBoxError:
-    """The error about an invalid box, with the meanings of columns by which all rows without names would be valid."""
-    if columns is not None or error.argument != name:
+def explained(error: InvalidBoxError, found: Any, name: str, columns: Columns | None) -> InvalidBoxError:
+    """The error about an invalid box, with how many there are and what may be meant."""
+    if error.argument != name or error.row is None:
         return error
-    ways = [f"columns={way!r}" for way in _columns.OTHER_MEANINGS if _are_valid(found, name, way)]
-    text = f"{error}; all rows would be valid with {' or '.join(ways)} (check that it is meant)" if ways else str(error)
-    return InvalidBoxError(text, error.row, error.argument)
+    shape = _Boxes(name, _columns.checked(columns, name), or_points=True)
+    rows = _with_float_rows(found, name, shape)
+    invalid = len(_core.invalid_rows(rows))
+    counted = f"{invalid} of {len(rows)} rows {'is' if invalid == 1 else 'are'} invalid: " if len(rows) > 1 else ""
+    hint = _meant(rows, error.row, 3 * invalid > len(rows), found, shape) if columns is None and invalid else ""
+    # With two sets, the text begins with the name of one.
+    of, text = f"{name}: ", str(error)
+    text = of + counted + text.removeprefix(of) if text.startswith(of) else counted + text
+    return InvalidBoxError(text + hint, error.row, name)
 
 
-def _are_valid(found: Any, name: str, columns: Columns) -> bool:
+def _meant(rows: Rows, row: int, are_many: bool, found: Any, shape: _Boxes) -> str:
+    """If many rows are invalid, the meanings of columns by which all would be valid; otherwise what is wrong in one."""
+    if are_many:
+        plain = rows if shape.are_bounds else found
+        ways = [f"columns={way!r}" for way in _columns.OTHER_MEANINGS if _are_valid(plain, rows.shape, shape.name, way)]
+        as_array = "as an array without names and with" if shape.are_bounds else "with"
+        if ways:
+            return f"; all rows would be valid {as_array} {' or '.join(ways)} (check that it is meant)"
+    minima, maxima = np.split(rows[row], 2)
+    if not np.isfinite(rows[row]).all():
+        return ""
+    axes = " and ".join("xyz"[axis] for axis in np.flatnonzero(minima > maxima))
+    return f" (are its minimum and maximum on {axes} swapped?)"
+
+
+def _are_valid(found: Any, shape: tuple[int, ...], name: str, columns: Columns) -> bool:
     try:
         rows = boxes(found, name, columns)
         # Names may be fewer than columns; those of boxes in 2D are no meaning of rows in 3D.
-        return rows.shape == boxes(found, name).shape and not _core.invalid_rows(rows).size
+        return rows.shape == shape and not _core.invalid_rows(rows).size
     except (TypeError, ValueError):  # another number of columns, or names with another meaning
         return False
 
@@ -118,7 +139,8 @@ def rows_of(found: Any, name: str, columns: int, are_doubles: bool) -> Rows:
         return np.empty((0, columns), np.float64 if are_doubles else np.float32)
     array = _with_float_rows(found, name, _Boxes(name, None) if columns in (4, 6) else _Points(name, columns))
     if array.ndim != 2 or array.shape[1] != columns:
-        raise ValueError(f"{name} has shape {array.shape}; expected (n, {columns})")
+        hint = "; for points np.hstack([points, points])" if array.shape[1:] == (columns // 2,) else ""
+        raise ValueError(f"{name} has shape {array.shape}; expected (n, {columns}){hint}")
     if are_doubles or array.dtype == np.float32:
         return array.astype(np.float64 if are_doubles else np.float32, copy=False)
     with np.errstate(over="ignore"):
@@ -145,9 +167,13 @@ class _Boxes:
         self.name = name
         self.columns = columns
         self.or_points = or_points
+        self.are_bounds = False
+        """Whether these are columns that are called minima and maxima."""
 
     def choose(self, labels: list[str]) -> Choice:
-        return _columns.choose(labels, self.name, self.columns, self.or_points)
+        choice = _columns.choose(labels, self.name, self.columns, self.or_points)
+        self.are_bounds = bool(choice.axes) and all(form == "min_max" for form, _, _ in choice.axes)
+        return choice
 
     def of_columns(self, choice: Choice, columns: list[Column]) -> Rows:
         if choice.axes:
@@ -167,7 +193,7 @@ class _Boxes:
         """Rows from one column that has all numbers of a box, such as lists; a missing box is absent."""
         if column.values.ndim == 1:
             missing = np.zeros(len(column.values), np.bool_) if column.missing is None else column.missing
-            there = _of_sequence(list(column.values[~missing]), f"column {column.label} of {self.name}")
+            there = _of_sequence(list(column.values[~missing]), f"column {column.label} of {self.name}", column.values)
             if there.ndim != 2:
                 raise TypeError(
                     f"column {column.label} of {self.name} has elements of {there.dtype}; expected four or six numbers each"
@@ -244,20 +270,29 @@ def _as_array(found: Any, name: str, shape: _Shape) -> Rows:
     return shape.of_grid(Column("", array), shape.columns) if array.ndim == 2 else array
 
 
-def _of_sequence(found: Any, name: str) -> Rows:
-    """Nested lists and tuples, and whatever else NumPy makes an array of."""
+def _of_sequence(found: Any, name: str, rows: Any = None) -> Rows:
+    """Nested lists and tuples, and whatever else NumPy makes an array of. An error names a row of `rows`."""
     if isinstance(found, (str, bytes, dict, set, frozenset)) or found is None:
         raise TypeError(f"{name} is {_arguments.kind_of(found)}; expected an array of shape (n, 4) or (n, 6)")
     try:
         array = np.asarray(found)
     except ValueError as error:
-        raise ValueError(f"{name} is no array: {error}; expected rows of the same length") from error
+        what = _ragged(found if rows is None else rows) or f"is no array: {error}"
+        raise ValueError(f"{name} {what}; expected rows of the same length") from error
     if array.ndim == 0:
         raise TypeError(f"{name} is {_arguments.kind_of(found)}; expected an array of shape (n, 4) or (n, 6)")
     if array.dtype.kind == "f" and (np.isfinite(array) & (np.abs(array) >= 2.0**53)).any():
         # NumPy has rounded integers that are mixed with floats.
         return np.asarray(found, dtype=object)
     return array
+
+
+def _ragged(rows: Any) -> str:
+    """Which row has another length than the first one; empty if none has."""
+    sizes = [(row, len(numbers)) for row, numbers in enumerate(rows) if isinstance(numbers, (list, tuple, np.ndarray))]
+    first, size = sizes[0] if sizes else (0, 0)
+    wrong = [(row, other) for row, other in sizes if other != size]
+    return f"has {size} elements in row {first} and {wrong[0][1]} in row {wrong[0][0]}" if wrong else ""
 
 
 def _of_arrow(name: str, shape: _Shape, chunks_by: Any) -> Rows:

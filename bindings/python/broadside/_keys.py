@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -52,7 +53,10 @@ def groups_of(given: Any, name: str, sets: list[Any]) -> list[NDArray[np.int64]]
     """The numbers of the keys of each set; of several keys, those of each combination."""
     is_of_each = isinstance(given, (tuple, list)) and len(given) == 2 and not (isinstance(given, list) and _is_name(given[0]))
     if len(sets) == 2 and not is_of_each and not _are_names(given):
-        raise TypeError(f"{name} is {_arguments.kind_of(given)}; expected two arrays of keys, ({name}_of_boxes, {name}_of_other)")
+        raise TypeError(
+            f"{name} has keys for one set of boxes ({_arguments.kind_of(given)}), and two sets are given; expected those of "
+            f"both, {name}=(keys_of_boxes, keys_of_other)"
+        )
     of_sets = given if len(sets) == 2 and is_of_each else [given] * len(sets)
     parts = [_parts(keys, table, name) for keys, table in zip(of_sets, sets, strict=True)]
     if len({len(part) for part in parts}) > 1:
@@ -110,15 +114,38 @@ def _labels(table: Any) -> list[Any]:
 
 def _plain(keys: Any, name: str) -> _Keys:
     """Keys as integers or strings."""
-    categorical = getattr(keys, "cat", keys)  # of a pandas Series, or a Categorical
-    codes, categories = getattr(categorical, "codes", None), getattr(categorical, "categories", None)
-    if codes is not None and categories is not None:
-        codes = np.asarray(codes)
+    is_arrow = hasattr(keys, "to_numpy") and hasattr(keys, "null_count") and hasattr(keys, "type")
+    coded = _coded_by_arrow(keys) if is_arrow else _coded_by_pandas(keys)
+    if coded is not None:
+        codes, categories = coded
         if (codes < 0).any():
             raise ValueError(f"{name} has no key in row {int((codes < 0).argmax())}; {_EXPECTED}")
         return _Keys(_values(categories, name), codes)
-    is_arrow = hasattr(keys, "to_numpy") and hasattr(keys, "null_count") and hasattr(keys, "type")
     return _Keys(_values(keys.to_numpy(zero_copy_only=False) if is_arrow else keys, name))
+
+
+def _coded_by_arrow(keys: Any) -> tuple[NDArray[Any], Any] | None:
+    """Strings and dictionaries of pyarrow as codes, -1 for null, and the categories; None for other keys."""
+    if not str(keys.type).startswith(("string", "large_string", "dictionary")) or len(keys) == 0:
+        return None
+    encoded = keys.dictionary_encode()
+    if hasattr(encoded, "chunks"):
+        encoded = encoded.combine_chunks()
+    codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+    return codes, encoded.dictionary.to_numpy(zero_copy_only=False)
+
+
+def _coded_by_pandas(keys: Any) -> tuple[NDArray[Any], Any] | None:
+    """Categories and strings of pandas as codes, -1 if missing, and the categories; None for other keys."""
+    categorical = getattr(keys, "cat", keys)  # of a Series, or a Categorical
+    codes, categories = getattr(categorical, "codes", None), getattr(categorical, "categories", None)
+    if codes is not None and categories is not None:
+        return np.asarray(codes), categories
+    pandas = sys.modules.get("pandas")
+    if pandas is None or not isinstance(keys, (pandas.Series, pandas.Index)) or not pandas.api.types.is_string_dtype(keys):
+        return None
+    codes, categories = keys.factorize()
+    return codes, categories
 
 
 def _values(keys: Any, name: str) -> NDArray[Any]:
@@ -129,11 +156,26 @@ def _values(keys: Any, name: str) -> NDArray[Any]:
         return np.empty(0, np.int64)
     if array.dtype.kind in "OT":
         return _of_objects(array.astype(object), name)
-    if array.dtype.kind == "f" and np.isnan(array).any():
-        raise ValueError(f"{name} has no key in row {int(np.isnan(array).argmax())}; {_EXPECTED}")
+    if array.dtype.kind == "f":
+        return _of_floats(array, name)
     if array.dtype.kind not in "iubUS":
         raise TypeError(f"{name} has dtype {array.dtype}; {_EXPECTED}")
     return array.astype(np.uint8) if array.dtype.kind == "b" else array
+
+
+def _of_floats(floats: NDArray[Any], name: str) -> NDArray[Any]:
+    """Whole numbers as integers: a join of tables makes floats of a column of integers."""
+    if np.isnan(floats).any():
+        raise ValueError(f"{name} has no key in row {int(np.isnan(floats).argmax())}; {_EXPECTED}")
+    # Beyond 2**53, floats stand for several integers.
+    wrong = (floats != np.trunc(floats)) | (np.abs(floats) > 2.0**53)
+    if wrong.any():
+        row = int(wrong.argmax())
+        raise TypeError(
+            f"{name} has dtype {floats.dtype} and is {floats[row]} in row {row}; {_EXPECTED}, such as those of "
+            '.astype("Int64") before tables are joined'
+        )
+    return floats.astype(np.int64)
 
 
 def _of_objects(objects: NDArray[Any], name: str) -> NDArray[Any]:

@@ -74,6 +74,7 @@ class Advice:
         return self.text
 
 
+@_arguments.suggests
 def advise(
     boxes: Any,
     *,
@@ -104,6 +105,7 @@ def advise(
     return Advice(*_core.advise(rows, _arguments.text(algorithms, "algorithms"), tried, budget))
 
 
+@_arguments.suggests
 def read(
     path: str | bytes | os.PathLike[str] | os.PathLike[bytes] | Readable,
     *,
@@ -271,6 +273,7 @@ class Drawing:
         return f"broadside.Drawing({len(self.svg)} characters of SVG)"
 
 
+@_arguments.suggests
 def draw(
     boxes: Any, algorithms: str = "", *, most: int = 300, title: str = "boxes", columns: Columns | None = None
 ) -> Drawing:

@@ -67,6 +67,7 @@ class World:
     __slots__ = ("__weakref__", "_crs", "_has_doubles", "_options", "_world")
     __signature__: ClassVar[inspect.Signature]
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,
@@ -110,7 +111,10 @@ class World:
         `max_boxes`.
         """
         crs = _convert.common_crs(self._crs, "the world", boxes, "boxes")
-        handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
+        try:
+            handles = self._world.add(_convert.given(boxes, "boxes", columns), filters)
+        except InvalidBoxError as error:
+            raise _convert.explained(error, boxes, "boxes", columns) from None
         self._crs = crs
         return handles
 
@@ -342,13 +346,15 @@ class Tracker(_ArrayTracker):
         quarantine: Treat invalid boxes as absent instead of raising.
         touching: Whether boxes that only touch overlap, as in `pairs`.
 
-    Calls from several threads take turns. A tracker cannot be pickled or copied.
+    Calls from several threads take turns. A tracker cannot be pickled or copied. It knows no periodic space: there,
+    compare the `pairs` of two frames.
     """
 
     __slots__ = ()
     _name = "Tracker"
     _instead = "expected a World, which can, or a new Tracker"
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,
@@ -390,7 +396,10 @@ class Tracker(_ArrayTracker):
         Raises InvalidBoxError and ValueError. The tracker has not changed then, nor after Ctrl-C: the next update
         returns all events since the last complete one.
         """
-        return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
+        try:
+            return Events(*self._tracker.update(_convert.given(boxes, "boxes", columns), changed, filters))
+        except InvalidBoxError as error:
+            raise _convert.explained(error, boxes, "boxes", columns) from None
 
 
 class BatchEvents(NamedTuple):
@@ -421,6 +430,7 @@ class BatchTracker(_ArrayTracker):
     _name = "BatchTracker"
     _instead = "expected a new BatchTracker"
 
+    @_arguments.suggests
     def __init__(
         self,
         dimension: int,
@@ -465,5 +475,5 @@ class BatchTracker(_ArrayTracker):
         try:
             begun, ended = self._tracker.update(boxes, offsets, filters)
         except InvalidBoxError as error:
-            raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
+            raise _convert.explained(error, boxes, "boxes", columns) from None
         return BatchEvents(BatchPairs(*begun), BatchPairs(*ended))

@@ -84,6 +84,7 @@ def pairs(
     period: Any = None,
     to: Any = None,
 ) -> Any: ...
+@_arguments.suggests
 def pairs(
     boxes: Any,
     other: Any = None,
@@ -119,7 +120,8 @@ def pairs(
         other: A second set, of the same dimension. Then only pairs of a box of `boxes` and a box of `other` are
             found. If one set is float32 and the other float64, the former is widened, which is exact.
         algorithm: A spec such as ``"grid:cell=2.5"``: see `algorithms`. ``"auto"`` chooses by the boxes.
-        sort: Sort the pairs. Otherwise their order is fixed by the algorithm and the boxes, whatever the threads.
+        sort: Sort the pairs, which takes longer than the search. Otherwise their order is fixed by the algorithm and
+            the boxes, whatever the threads.
         output: ``"numpy"``; ``"arrow"`` for a `PairTable`; ``"sparse"`` for a ``scipy.sparse.csr_array`` of booleans
             with n rows and as many columns as the second set has boxes. Its true elements are the pairs; for one set,
             those above the diagonal.
@@ -142,10 +144,11 @@ def pairs(
         touching: Whether boxes that only touch overlap. If False, boxes are half-open (min <= p < max), except on an
             axis where minimum and maximum are equal. Exact.
         same: A key for each box, such as its image, class or layer: only boxes with equal keys pair. Keys are integers,
-            strings or categories, in an array or a column of pandas, polars or Arrow. They are taken row by row, and
-            the index of pandas is ignored. If the boxes are a table, the name of its column is enough. Several keys (a
-            tuple of arrays, a list of names or a table) are equal if all are. For two sets, give both sets' keys as a
-            tuple, or names of columns that both have. With `same`, filters may set only `is_static`.
+            strings or categories, in an array or a column of pandas, polars or Arrow; floats that are whole numbers
+            count as integers. They are taken row by row, and the index of pandas is ignored. If the boxes are a table,
+            the name of its column is enough. Several keys (a tuple of arrays, a list of names or a table) are equal if
+            all are. For two sets, give both sets' keys as a tuple, or names of columns that both have. With `same`,
+            filters may set only `is_static`.
         different: Likewise: only boxes with different keys pair. Filters of group 0 may leave out more pairs. With
             `same` as well, both must hold, such as the same image and different classes.
         within: A distance, such as a cutoff: find the boxes whose Euclidean distance is at most this, instead of those
@@ -153,10 +156,10 @@ def pairs(
             their radii. For two sets, give both sets' radii as a tuple. The boxes may then be points: arrays of shape
             (n, 2) or (n, 3), or tables with columns x and y, or others that `columns` names. `distances` and
             `neighbour_lists` take the pairs.
-        period: The length after which space repeats on each axis; None for an axis on which it does not. For ``(360,
-            None)``, longitude and latitude, a box from 170 to 190 overlaps one from -180 to -175. Boxes may lie in any
-            cell. A box at least as long as the period covers the whole axis. With `within`, the distance is that of the
-            nearest images.
+        period: The length after which space repeats: a number for all axes, or one for each, with None (or infinity)
+            for an axis that does not repeat. For ``(360, None)``, longitude and latitude, a box from 170 to 190
+            overlaps one from -180 to -175. Boxes may lie in any cell. A box at least as long as the period covers the
+            whole axis. With `within`, the distance is that of the nearest images.
         to: The boxes at the end of a step, in the same number; `boxes` are then at its beginning. Each bound moves at a
             constant speed. Two boxes pair if they overlap at some time of the step, but not if they only pass through a
             place one after the other. For two sets, give the ends of both as a tuple. `overlap_times` tells when pairs
@@ -180,9 +183,10 @@ def pairs(
     """
     filters, other_filters, keys = with_keys(filters, other_filters, same, different, boxes, other)
     left, right = boxes, other
-    reach = _within.checked(within, period, other is not None)
-    if other is not None or columns is not None or other_columns is not None or reach is not None:
-        left, right = _sets(boxes, other, columns, other_columns, reach is not None)
+    has_reach = within is not None or period is not None
+    if other is not None or columns is not None or other_columns is not None or has_reach:
+        left, right = _sets(boxes, other, columns, other_columns, has_reach)
+    reach = _within.checked(within, period, left, right)
     moving = ends(to, other is not None, columns, other_columns)
     which = (threads, filters, other_filters, ignored, quarantine, touching, reach, moving, keys)
     try:
@@ -193,9 +197,14 @@ def pairs(
         if output == "sparse":
             return _sparse(left, right, algorithm, *which)
     except InvalidBoxError as error:
-        error = _convert.with_other_conventions(error, boxes, "boxes", columns)
-        raise _convert.with_other_conventions(error, other, "other", other_columns) from None
+        raise _explained(error, boxes, other, columns, other_columns) from None
     raise ValueError(f"output is {output!r}; expected 'numpy', 'arrow' or 'sparse'")
+
+
+def _explained(
+    error: InvalidBoxError, boxes: Any, other: Any, columns: Columns | None, other_columns: Columns | None
+) -> InvalidBoxError:
+    return _convert.explained(_convert.explained(error, boxes, "boxes", columns), other, "other", other_columns)
 
 
 def _sparse(boxes: Any, other: Any, *arguments: Any) -> Any:
@@ -234,6 +243,7 @@ def ends(to: Any, is_between: bool, columns: Columns | None, other_columns: Colu
     return _convert.given(to[0], "to", columns), _convert.given(to[1], "to", other_columns)
 
 
+@_arguments.suggests
 def overlap_times(boxes: Any, to: Any, pairs: ArrayLike, other: Any = None) -> NDArray[np.float64]:
     """The times between which the boxes of each pair overlap in a step from 0 to 1.
 
@@ -257,6 +267,7 @@ def _kept(boxes: Any, name: str) -> Any:
     return boxes if _convert.is_empty_sequence(boxes) else _convert.boxes(boxes, name)
 
 
+@_arguments.suggests
 def count(
     boxes: Any,
     other: Any = None,
@@ -278,11 +289,14 @@ def count(
 ) -> int:
     """The number of pairs that `pairs` returns for the same arguments. It stores no pairs."""
     filters, other_filters, keys = with_keys(filters, other_filters, same, different, boxes, other)
-    reach = _within.checked(within, period, other is not None)
-    boxes, other = _sets(boxes, other, columns, other_columns, reach is not None)
+    left, right = _sets(boxes, other, columns, other_columns, within is not None or period is not None)
+    reach = _within.checked(within, period, left, right)
     moving = ends(to, other is not None, columns, other_columns)
     which = (threads, filters, other_filters, ignored, quarantine, touching, reach, moving, keys)
-    found: int = _find(_core.COUNT, boxes, other, algorithm, False, *which)
+    try:
+        found: int = _find(_core.COUNT, left, right, algorithm, False, *which)
+    except InvalidBoxError as error:
+        raise _explained(error, boxes, other, columns, other_columns) from None
     return found
 
 
@@ -295,6 +309,7 @@ class BatchPairs(NamedTuple):
     """Where each world's pairs begin, and the number of all pairs."""
 
 
+@_arguments.suggests
 def find_pairs_batch(
     boxes: Any,
     offsets: ArrayLike | None = None,
@@ -332,9 +347,10 @@ def find_pairs_batch(
     try:
         return BatchPairs(*_core.find_batch(boxes, offsets, *which))
     except InvalidBoxError as error:
-        raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
+        raise _convert.explained(error, boxes, "boxes", columns) from None
 
 
+@_arguments.suggests
 def components(
     boxes: Any,
     *,
@@ -360,14 +376,18 @@ def components(
         has its own row.
     """
     filters, _, keys = with_keys(filters, None, same, different, boxes, None)
-    reach = _within.checked(within, period, False)
-    boxes, _ = _sets(boxes, None, columns, None, reach is not None)
+    rows, _ = _sets(boxes, None, columns, None, within is not None or period is not None)
+    reach = _within.checked(within, period, rows, None)
     moving = ends(to, False, columns, None)
     which = (threads, filters, None, ignored, quarantine, touching, reach, moving, keys)
-    found: NDArray[np.uint32] = _find(_core.COMPONENTS, boxes, None, algorithm, False, *which)
+    try:
+        found: NDArray[np.uint32] = _find(_core.COMPONENTS, rows, None, algorithm, False, *which)
+    except InvalidBoxError as error:
+        raise _convert.explained(error, boxes, "boxes", columns) from None
     return found
 
 
+@_arguments.suggests
 def filters(
     n: int,
     *,
@@ -409,6 +429,7 @@ def filters(
     return made
 
 
+@_arguments.suggests
 def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
     """Intervals as boxes, which all functions and classes take.
 
@@ -434,6 +455,7 @@ def intervals(starts: ArrayLike, ends: ArrayLike) -> NDArray[np.float64]:
     return rows
 
 
+@_arguments.suggests
 def invalid_rows(boxes: Any, *, columns: Columns | None = None) -> NDArray[np.int64]:
     """The rows of invalid boxes, ascending: those with a NaN or a minimum greater than its maximum.
 

@@ -47,6 +47,7 @@ class Partition:
 
     __slots__ = ("__weakref__", "_partition")
 
+    @_arguments.suggests
     def __init__(self, sample: Any, parts: int, *, boxes: int = 0, columns: Columns | None = None) -> None:
         parts = _arguments.integer(parts, "parts", 1, 2**31 - 2)
         sample = _convert.given(sample, "sample", columns)

@@ -69,7 +69,7 @@ class Index:
     """An index for queries: which boxes overlap a box, contain a point, meet a ray, or are nearest to a point or a box.
 
     Args:
-        boxes: n boxes, whatever `pairs` takes. They are copied.
+        boxes: n boxes, whatever `pairs` takes, or points, as `nearest_pairs` takes them. They are copied.
         columns: The names of a table's columns of bounds, or a layout such as "xywh": see `pairs`.
         filters: A filter for each box, made by `broadside.filters`, for queries with filters.
         dtype: float32 or float64, to widen the boxes. Queries have the same dtype. So that answers are exact, an index
@@ -91,6 +91,7 @@ class Index:
 
     __slots__ = ("__weakref__", "_boxes", "_crs", "_filters", "_index")
 
+    @_arguments.suggests
     def __init__(
         self,
         boxes: Any,
@@ -99,14 +100,14 @@ class Index:
         columns: Columns | None = None,
         filters: NDArray[np.void] | None = None,
     ) -> None:
-        array = _convert.boxes(boxes, "boxes", columns)
+        array = _convert.boxes(boxes, "boxes", columns, or_points=True)
         if dtype is not None:
             has_doubles = _has_doubles(dtype)
             array = _convert.rows_of(array, "boxes", array.shape[1], has_doubles)
         try:
             self._take(array, _convert.crs_of(boxes), filters)
         except InvalidBoxError as error:
-            raise _convert.with_other_conventions(error, boxes, "boxes", columns) from None
+            raise _convert.explained(error, boxes, "boxes", columns) from None
 
     def _take(self, array: NDArray[Any], crs: Any, filters: Any) -> None:
         # Bytes are immutable, so an array over them cannot be made writable.
@@ -229,6 +230,7 @@ def _nearest(
     return Neighbours(*asked.nearest(queries, are_points, k, limit, threads, filters, exclude))
 
 
+@_arguments.suggests
 def nearest_pairs(
     boxes: Any,
     other: Any = None,

@@ -12,21 +12,28 @@ from broadside import _arguments, _convert, _core
 from broadside._columns import Columns
 
 
-def checked(within: Any, period: Any, is_between: bool) -> Any:
+_PERIODS = "a number, or one for each axis, with None (or infinity) for an axis that does not repeat"
+
+
+def checked(within: Any, period: Any, boxes: Any, other: Any) -> Any:
     """The reach and the periods as the extension module takes them; None if there are neither."""
     if within is None and period is None:
         return None
-    return _reach(within, is_between), periods(period)
+    return _reach(within, other is not None), periods(period, boxes, other)
 
 
-def periods(period: Any) -> NDArray[np.float64]:
-    """An array of the periods, infinite where they are None; empty for None."""
+def periods(period: Any, boxes: Any, other: Any) -> NDArray[np.float64]:
+    """An array of the periods on each axis of these rows, infinite where they are None; empty for None."""
     if period is None:
         return np.empty(0)
     if np.ndim(period) == 0:
-        raise TypeError(f"period is {period!r}; expected a number for each axis, or None for one that does not repeat")
+        if isinstance(period, (str, bytes)):
+            raise TypeError(f"period is {period!r}; expected {_PERIODS}")
+        # An empty list has no dimension.
+        columns = next((rows.shape[1] for rows in (boxes, other) if hasattr(rows, "shape")), 4)
+        return np.full(columns // 2, _arguments.number(period, "period"))
     if len(period) == 0:
-        raise ValueError("period is empty; expected a number for each axis, or None for one that does not repeat")
+        raise ValueError(f"period is empty; expected {_PERIODS}")
     return np.array([np.inf if one is None else _arguments.number(one, "period") for one in period], np.float64)
 
 
@@ -66,12 +73,13 @@ class NeighbourLists(NamedTuple):
     """shape (k,)"""
 
 
+@_arguments.suggests
 def distances(
     boxes: Any,
     pairs: ArrayLike,
     other: Any = None,
     *,
-    period: ArrayLike | None = None,
+    period: Any = None,
     columns: Columns | None = None,
     other_columns: Columns | None = None,
 ) -> NDArray[np.float64]:
@@ -89,9 +97,10 @@ def distances(
     """
     left = _convert.given(boxes, "boxes", columns, or_points=True)
     right = None if other is None else _convert.given(other, "other", other_columns, or_points=True)
-    return _core.distances(left, right, pairs, periods(period))
+    return _core.distances(left, right, pairs, periods(period, left, right))
 
 
+@_arguments.suggests
 def neighbour_lists(pairs: ArrayLike, n: int, *, full: bool = True) -> NeighbourLists:
     """The neighbours of each of `n` boxes, from pairs in any order.
 

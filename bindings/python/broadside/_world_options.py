@@ -53,7 +53,8 @@ def settings_of(options: dict[str, Any]) -> str:
     """The options as one text, such as ``"world:margin=0.1"``."""
     for name in options:
         if name not in OPTIONS:
-            raise TypeError(f"World() has no option {name!r}; expected one of: {', '.join(OPTIONS)}")
+            known = ("dimension", "dtype", "algorithm", "threads", *OPTIONS)
+            raise TypeError(_arguments.unknown_name("World", name, known))
     return ":".join(["world", *(f"{name}={OPTIONS[name].text(value)}" for name, value in options.items())])
 
 

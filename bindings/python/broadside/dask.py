@@ -37,6 +37,7 @@ _SAMPLE, _SAMPLE_OF_PART, _SAMPLE_OF_CHUNK = 2**15, 128, 256
 _MOST_DIRECT_LINKS = 2**14
 
 
+@_arguments.suggests
 def pairs(
     boxes: Any,
     other: Any = None,

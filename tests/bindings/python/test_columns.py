@@ -112,15 +112,16 @@ def test_rows_without_names_are_what_a_caller_says(made):
 
 def test_names_the_convention_by_which_all_rows_are_valid():
     rows = np.array([[0, 0, 10, 10], [12, 12, 6, 4.0]])
-    for call in (broadside.pairs, broadside.Index, lambda found: broadside.pairs(WHOLE, found)):
+    calls = (broadside.pairs, broadside.count, broadside.components, broadside.Index, broadside.Tracker(2).update)
+    for call in (*calls, broadside.World(2).add, lambda found: broadside.pairs(WHOLE, found)):
         with pytest.raises(broadside.InvalidBoxError, match="would be valid with columns='xywh' or columns='cxcywh' .check") as caught:
             call(rows)
         assert caught.value.row == 1
         with pytest.raises(broadside.InvalidBoxError, match="would be valid with columns='xywh'"):
             call(pandas.DataFrame({"image": [1, 1], "bbox": rows.tolist()}))
-        with pytest.raises(broadside.InvalidBoxError) as caught:
-            call(pandas.DataFrame(rows, columns=NAMES))
-        assert "columns=" not in str(caught.value)
+        for names in (NAMES, ["x1", "y1", "x2", "y2"]):
+            with pytest.raises(broadside.InvalidBoxError, match="would be valid as an array without names and with columns='xywh'"):
+                call(pandas.DataFrame(rows, columns=names))
     rows[0, 2] = -1
     with pytest.raises(broadside.InvalidBoxError) as caught:
         broadside.pairs(rows)
@@ -129,6 +130,40 @@ def test_names_the_convention_by_which_all_rows_are_valid():
     with pytest.raises(broadside.InvalidBoxError) as caught:
         broadside.pairs(solid)
     assert "columns=" not in str(caught.value)
+
+
+def test_says_how_many_rows_are_invalid_and_whether_one_is_swapped():
+    rows = WHOLE.copy()
+    rows[7, [1, 3]] = rows[7, [3, 1]]
+    swapped = r"^1 of 50 rows is invalid: (added )?box 7 has .* \(are its minimum and maximum on y swapped\?\)$"
+    for call in (broadside.pairs, broadside.components, broadside.Index, broadside.Tracker(2).update, broadside.World(2).add):
+        for found in (rows, pandas.DataFrame(rows, columns=NAMES), pandas.DataFrame({"bbox": rows.tolist()})):
+            with pytest.raises(broadside.InvalidBoxError, match=swapped):
+                call(found)
+    with pytest.raises(broadside.InvalidBoxError, match="^other: 1 of 50 rows is invalid: box 7 has .*swapped") as caught:
+        broadside.pairs(WHOLE, rows)
+    assert (caught.value.row, caught.value.argument) == (7, "other")
+    rows[[3, 7]] = np.nan
+    with pytest.raises(broadside.InvalidBoxError, match="^2 of 50 rows are invalid: box 3 has ") as caught:
+        broadside.count(rows)
+    assert "swapped" not in str(caught.value)
+    with pytest.raises(broadside.InvalidBoxError, match="^1 of 50 rows is invalid: box 7 has ") as caught:
+        broadside.count(np.insert(sizes_of(WHOLE)[1:], 7, [0, 0, -1, 1], axis=0), columns="xywh")
+    assert "swapped" not in str(caught.value)
+
+
+def test_names_the_row_of_a_list_that_has_another_length():
+    for rows in ([None, [0, 0, 1, 1], [0, 0, 1]], [None, np.zeros(4), np.zeros(3)]):
+        with pytest.raises(ValueError, match="column bbox of boxes has 4 elements in row 1 and 3 in row 2; expected rows of the same length"):
+            broadside.pairs(pandas.DataFrame({"bbox": rows}))
+    with pytest.raises(ValueError, match="boxes has no columns; expected xmin, ymin"):
+        broadside.pairs(pandas.DataFrame())
+
+
+def test_two_columns_are_no_points_if_one_has_boxes():
+    frame = pandas.DataFrame({"image": [1, 1], "bbox": [[0, 0, 2, 2], [1, 1, 3, 3]]})
+    assert len(broadside.Index(frame).overlapping(frame).box) == 4
+    assert broadside.pairs(frame, within=1).tolist() == [[0, 1]]
 
 
 @pytest.mark.parametrize("order", [["xmin", "xmax", "ymin", "ymax"], ["xmin", "ymax", "xmax", "ymin"]])
@@ -342,7 +377,7 @@ def test_points_of_a_table_are_points_of_an_array(table, names):
 
 def test_points_are_refused_where_columns_say_something_else():
     frame = pandas.DataFrame(BOXES, columns=["px", "py", "qx", "qy"])
-    for call in (broadside.pairs, broadside.Index, broadside.invalid_rows, broadside.draw):
+    for call in (broadside.pairs, broadside.invalid_rows, broadside.draw):
         for columns in (["px", "py"], ["px", "py", "qx"]):
             with pytest.raises(ValueError, match="the columns of boxes are px, py.*; for points say within=, or use nearest_pairs"):
                 call(frame, columns=columns)

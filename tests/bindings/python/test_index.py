@@ -129,6 +129,24 @@ def test_finds_the_nearest(data, k):
         np.testing.assert_array_equal(world.nearest(places, k).box[i, :there], handles[order])
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_takes_points_as_boxes_without_extent(dimension):
+    points = np.random.default_rng(1).random((50, dimension))
+    expected = broadside.Index(np.hstack([points, points]))
+    for found in (points, points.tolist(), points.astype(np.float32).astype(np.float64, order="F")):
+        index = broadside.Index(found)
+        assert len(index) == 50 and index.dimension == dimension
+    np.testing.assert_array_equal(broadside.Index(points).boxes, expected.boxes)
+    np.testing.assert_array_equal(broadside.Index(points).nearest(points, k=3).box, expected.nearest(points, k=3).box)
+    with pytest.raises(ValueError, match=r"np.hstack\(\[points, points\]\)"):
+        broadside.Index(points).overlapping(points)
+    with pytest.raises(ValueError, match=r"np.hstack\(\[points, points\]\)"):
+        broadside.pairs(points)
+    points[3, 1] = np.nan
+    with pytest.raises(broadside.InvalidBoxError, match="^1 of 50 rows is invalid: box 3"):
+        broadside.Index(points)
+
+
 def test_is_described_and_pickled():
     boxes = scattered(100, 3)
     index = broadside.Index(boxes)

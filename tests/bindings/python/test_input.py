@@ -96,9 +96,12 @@ def test_takes_integers_that_float64_holds_and_no_others():
     ],
 )
 def test_refuses_what_is_no_boxes(found, error, message):
-    for call in (broadside.pairs, broadside.count, broadside.Index, broadside.draw, broadside.World(2).add):
+    for call in (broadside.pairs, broadside.count, broadside.draw, broadside.World(2).add):
         with pytest.raises(error, match=message):
             call(found)
+    if "has the columns a, b" not in message and "points" not in message:  # which an index takes as points
+        with pytest.raises(error, match=message):
+            broadside.Index(found)
 
 
 @pytest.mark.parametrize("box", [[0, 0, np.nan, 1], [np.nan] * 4, [1, 0, 0, 1], [np.inf, np.inf, np.inf, -np.inf]])
@@ -195,7 +198,7 @@ def test_names_the_argument_of_an_invalid_box():
     bad[3, 0] = np.nan
     sets = [(bad, boxes, "boxes"), (boxes, bad, "other"), (boxes[:2], bad, "other"), (bad, bad, "boxes")]
     for left, right, name in sets:
-        with pytest.raises(broadside.InvalidBoxError, match=f"{name}: box 3") as caught:
+        with pytest.raises(broadside.InvalidBoxError, match=f"^{name}: 1 of 10 rows is invalid: box 3") as caught:
             broadside.pairs(left, right)
         assert (caught.value.argument, caught.value.row) == (name, 3)
         again = pickle.loads(pickle.dumps(caught.value))
@@ -274,3 +277,30 @@ def test_is_imported_without_other_packages():
     code = "import sys, broadside; print(sorted({'scipy', 'pandas', 'pyarrow', 'shapely'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_names_the_argument_that_is_meant():
+    boxes = np.zeros((3, 4))
+    for call, argument, meant in [
+        (broadside.pairs, "sorted", "sort"),
+        (broadside.pairs, "whithin", "within"),
+        (broadside.count, "by", "same"),
+        (broadside.components, "distance", "within"),
+        (broadside.nearest_pairs, "radius", "max_distance"),
+        (broadside.Index, "colums", "columns"),
+        (lambda _, **more: broadside.Tracker(2, **more), "touch", "touching"),
+        (lambda _, **more: broadside.World(2, **more), "margins", "margin"),
+    ]:
+        with pytest.raises(TypeError, match=f"has no argument '{argument}'; did you mean '{meant}'.$"):
+            call(boxes, **{argument: 1})
+    with pytest.raises(TypeError, match="filters.. has no argument 'colour'; expected one of: n, category, mask"):
+        broadside.filters(3, colour=1)
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'boxes'"):
+        broadside.pairs()
+
+    class Own:
+        def __array__(self, **_):
+            return np.zeros(boxes.shape, dtypo=float)
+
+    with pytest.raises(TypeError, match="zeros"):  # an error within the call is not about its arguments
+        broadside.pairs(Own(), sort=True)

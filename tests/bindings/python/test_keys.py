@@ -17,6 +17,7 @@ KEYS = {
     "bytes": RNG.choice(np.array([b"a", b"bc"]), 400),
     "objects": np.array(RNG.choice(["a", "b", "c"], 400).tolist(), object),
     "a list": RNG.integers(0, 9, 400).tolist(),
+    "whole floats": RNG.integers(-3, 3, 400).astype(np.float32),
     "all": np.arange(400),
 }
 
@@ -66,6 +67,12 @@ def test_columns_of_tables_are_keys():
     expected = broadside.count(BOXES, same=names)
     for column in (pandas.Series(names), pandas.Series(names, dtype="category"), pandas.Categorical(names)):
         assert broadside.count(BOXES, same=column) == expected
+    objects = pandas.Series(names.tolist(), dtype=object)
+    for column in (objects, pandas.Index(names), objects.astype("string"), pandas.Series([*names, "d"]).astype("category")[:400]):
+        assert broadside.count(BOXES, same=column) == expected
+        assert broadside.count(BOXES, BOXES, same=(column, names)) == 2 * expected + 400
+    with pytest.raises(TypeError, match="same has a float in row 2"):
+        broadside.pairs(BOXES[:3], same=pandas.Series(["a", "a", 0.5], dtype=object))
     left = pandas.Series(["a", "b"], dtype="category")
     right = pandas.Series(["b"], dtype="category")
     assert broadside.pairs(BOXES[[0, 0]], BOXES[[0]], same=(left, right)).tolist() == [[1, 0]]
@@ -107,10 +114,18 @@ def test_arrow_columns_are_keys():
     pyarrow = pytest.importorskip("pyarrow")
     names = pyarrow.array(KEYS["strings"].tolist())
     expected = broadside.count(BOXES, same=KEYS["strings"])
-    for column in (names, names.dictionary_encode(), pyarrow.chunked_array([names[:7], names[7:]])):
+    chunks = [names[:1].dictionary_encode(), names[1:].dictionary_encode()]
+    assert not chunks[0].dictionary.equals(chunks[1].dictionary)
+    for column in (names, names.dictionary_encode(), pyarrow.chunked_array([names[:7], names[7:]]), pyarrow.chunked_array(chunks)):
         assert broadside.count(BOXES, same=column) == expected
-    with pytest.raises(ValueError, match="same has no key in row 1"):
-        broadside.pairs(BOXES[:2], same=pyarrow.array(["a", None]))
+        assert broadside.count(BOXES, BOXES, same=(column, KEYS["strings"])) == 2 * expected + 400
+    integers = pyarrow.array(KEYS["integers"])
+    for column in (integers, integers.dictionary_encode()):
+        assert broadside.count(BOXES, same=column) == broadside.count(BOXES, same=KEYS["integers"])
+    assert broadside.count([], same=names[:0]) == broadside.count([], same=names[:0].dictionary_encode()) == 0
+    for missing in (pyarrow.array(["a", None]), pyarrow.array(["a", None]).dictionary_encode()):
+        with pytest.raises(ValueError, match="same has no key in row 1"):
+            broadside.pairs(BOXES[:2], same=missing)
 
 
 def test_filters_are_applied_as_well_or_refused():
@@ -134,11 +149,13 @@ def test_filters_are_applied_as_well_or_refused():
         ({"same": [1, 2, 3]}, ValueError, "same has 3 keys for 400 boxes; expected one for each box"),
         ({"same": KEYS["all"], "different": KEYS["all"][:3]}, ValueError, "different has 3 keys for 400 boxes"),
         ({"same": [np.nan] * 400}, ValueError, "same has no key in row 0"),
-        ({"same": [0.5] * 400}, TypeError, "same has dtype float64; expected integers, strings or categories"),
+        ({"same": [1.0, 0.5] * 200}, TypeError, 'same has dtype float64 and is 0.5 in row 1; .*.astype."Int64".'),
+        ({"same": [1.0, np.inf] * 200}, TypeError, "same has dtype float64 and is inf in row 1"),
+        ({"same": [1.0, 2.0**54] * 200}, TypeError, "same has dtype float64 and is 1.8.* in row 1"),
         ({"same": [[1]] * 400}, ValueError, r"same has shape \(400, 1\)"),
         ({"different": [None] * 400}, ValueError, "different has no key in row 0"),
         ({"different": "layer"}, TypeError, "different is 'layer', which no column of the boxes is called"),
-        ({"other": BOXES, "same": KEYS["all"]}, TypeError, "same is a ndarray; expected two arrays of keys"),
+        ({"other": BOXES, "same": KEYS["all"]}, TypeError, r"same has keys for one set of boxes \(a ndarray\), .* same=\(keys_of_boxes, keys_of_other\)"),
         ({"other": BOXES, "same": (KEYS["all"], KEYS["strings"])}, TypeError, "same has strings for one set"),
     ],
 )

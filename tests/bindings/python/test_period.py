@@ -34,6 +34,19 @@ def test_finds_points_whose_images_are_near(period, dtype):
     assert {tuple(pair) for pair in found.tolist()} == expected
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_one_period_is_that_of_all_axes(dimension):
+    points = np.random.default_rng(1).integers(-30, 30, (150, dimension)).astype(float)
+    each = (10,) * dimension
+    found = broadside.pairs(points, within=2, period=10, sort=True)
+    assert found.tolist() == broadside.pairs(points, within=2, period=each, sort=True).tolist()
+    assert len(found) == broadside.count(points, within=2, period=10) > broadside.count(points, within=2)
+    assert (broadside.distances(points, found, period=10) == broadside.distances(points, found, period=each)).all()
+    assert (broadside.components(points, within=2, period=10) == broadside.components(points, within=2, period=each)).all()
+    assert broadside.count(points, points, within=2, period=10) == broadside.count(points, points, within=2, period=each)
+    assert broadside.count(np.hstack([points, points]), [], period=10) == broadside.count([], points, within=1, period=10) == 0
+
+
 def test_joins_boxes_across_the_date_line():
     regions = np.array([[170.0, -10, 190, 10], [-180, 0, -175, 5], [0, 0, 1, 1]])
     assert broadside.pairs(regions, period=(360, None)).tolist() == [[0, 1]]
@@ -50,7 +63,11 @@ def test_refuses_what_is_no_period():
         broadside.pairs(boxes, period=(1, 1, 1))
     with pytest.raises(ValueError, match="period is empty"):
         broadside.pairs(boxes, period=[])
-    with pytest.raises(TypeError, match="period is 5; expected a number for each axis"):
-        broadside.pairs(boxes, period=5)
+    for period in ("5", object(), (1, "5")):
+        with pytest.raises(TypeError, match="period is .*; expected a number"):
+            broadside.pairs(boxes, period=period)
+    for call in (broadside.Tracker, broadside.World, broadside.Index, broadside.nearest_pairs):
+        with pytest.raises(TypeError, match=f"{call.__name__}.. has no argument 'period'. Only pairs.., .* know periodic space"):
+            call(boxes if call is broadside.Index else 2, period=1)
     with pytest.raises(ValueError, match="touching is False with within or period"):
         broadside.pairs(boxes, period=(1, 1), touching=False)
