@@ -105,6 +105,14 @@ fn main() {
     if env::var_os("DOCS_RS").is_some() {
         return; // documentation links nothing
     }
+    let is_cross = env::var("TARGET") != env::var("HOST");
+    if is_cross && env::var_os("BROADSIDE_LIB_DIR").is_none() && env::var_os("CMAKE_TOOLCHAIN_FILE").is_none() {
+        fail(
+            &format!("the target is {}, and the host {}", env::var("TARGET").unwrap(), env::var("HOST").unwrap()),
+            "To cross-compile, set CMAKE_TOOLCHAIN_FILE to a toolchain file of CMake for the target, or \
+             BROADSIDE_LIB_DIR to the folder of a library that was built for it. In WebAssembly, use the npm package.",
+        );
+    }
     match env::var("BROADSIDE_LIB_DIR") {
         Ok(folder) => link_installed(&folder),
         Err(_) => build(&root),

@@ -150,7 +150,8 @@ DecodedSnapshot<D, Real> SnapshotCodec<D, Real>::decode(std::span<const std::byt
   expect_equal("the dimension", int{in.get<std::uint8_t>()}, D);
   expect_equal("the size of a coordinate", std::size_t{in.get<std::uint8_t>()}, sizeof(Real));
   expect_equal("the byte order", in.get<std::uint16_t>(), snapshot::byte_order);
-  expect_equal("the length", in.get<std::uint64_t>(), std::uint64_t{bytes.size()});
+  const std::uint64_t length = in.get<std::uint64_t>();
+  expect_equal("the length", std::uint64_t{bytes.size()}, length);
   in.need(1, snapshot::checksum_bytes, "bytes of a checksum");
   const auto body = bytes.first(bytes.size() - snapshot::checksum_bytes);
   ByteReader end(bytes.last(snapshot::checksum_bytes), version);

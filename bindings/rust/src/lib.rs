@@ -33,6 +33,12 @@ macro_rules! owns {
         unsafe impl<B: Bounds> Send for $owner<B> {}
         unsafe impl<B: Bounds> Sync for $owner<B> {}
 
+        impl<B: Bounds> std::fmt::Debug for $owner<B> {
+            fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.debug_struct(stringify!($owner)).finish_non_exhaustive()
+            }
+        }
+
         impl<B: Bounds> Drop for $owner<B> {
             fn drop(&mut self) {
                 // SAFETY: the owner made it, and it is destroyed once.

@@ -121,6 +121,12 @@ pub struct Query<'a, Q: Queried> {
     except: Option<Q::Id>,
 }
 
+impl<Q: Queried> std::fmt::Debug for Query<'_, Q> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("Query").finish_non_exhaustive()
+    }
+}
+
 impl<'a, Q: Queried> Query<'a, Q> {
     pub(crate) fn new(of: &'a Q) -> Self {
         Query { of, filter: None, except: None }
