@@ -21,6 +21,13 @@ export function median(values: readonly number[]): number {
   return sorted.length % 2 === 1 ? sorted[middle]! : (sorted[middle - 1]! + sorted[middle]!) / 2;
 }
 
+/** How far the middle half of the values lies apart, as a part of their median. */
+export function spread(values: readonly number[]): number {
+  const sorted = [...values].sort((a, b) => a - b);
+  const quarter = sorted.length >> 2;
+  return (sorted[sorted.length - 1 - quarter]! - sorted[quarter]!) / median(values);
+}
+
 /** A step of the clock, in ms. */
 function clockTick(): number {
   const begin = performance.now();

@@ -319,15 +319,19 @@ std::string unread(std::string_view beginning, const std::string& name) {
   return "is " + found + "; expected CSV, a trace, PLY, OBJ or GeoJSON; the program reads more";
 }
 
-/// Opens a file by its content, as the program does, in the formats whose readers need no other library.
-lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
+/// Opens a file by its content or else by its name, as the program does, in the formats whose readers need no
+/// other library. `options` has the columns of a table.
+lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file, const lab::ReadOptions& options) {
   const std::string_view beginning = file->beginning();
   if (const std::string why = unread(beginning, file->name()); !why.empty())
     throw lab::FileError(file->name() + ": " + why);
-  for (const lab::Format& format : {lab::readers::trace(), lab::readers::mesh(), lab::readers::map()}) {
-    if (format.recognises(beginning, "")) return format.open(std::move(file), {});
+  for (const std::string& extension : {std::string(), file->extension()}) {
+    for (const lab::Format& format :
+         {lab::readers::trace(), lab::readers::mesh(), lab::readers::map(), lab::readers::csv()}) {
+      if (format.recognises(beginning, extension)) return format.open(std::move(file), options);
+    }
   }
-  return lab::readers::open_csv(std::move(file), {});
+  return lab::readers::open_csv(std::move(file), options);
 }
 
 /// The boxes of all frames, as floats; the numbers are the dimension and the number of boxes of each frame.
@@ -458,13 +462,17 @@ BROADSIDE_EXPORT(list_scenes)()->int {
 }
 
 #ifndef BROADSIDE_OBSERVE
-/// Reads a file: the text's first line is its name, and its bytes follow.
+/// Reads a file: the text's first line is its name, the second one the columns of a table, as for --columns,
+/// or empty; the bytes follow.
 BROADSIDE_EXPORT(read_file)()->int {
   return answer([] {
     const std::size_t end = input.text.find('\n');
+    const std::size_t next = input.text.find('\n', end + 1);
     const std::string name = input.text.substr(0, end);
-    const std::string_view bytes = std::string_view(input.text).substr(end + 1);
-    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes)), name);
+    const std::string_view bytes = std::string_view(input.text).substr(next + 1);
+    broadside::lab::ReadOptions options;
+    options.columns = input.text.substr(end + 1, next - end - 1);
+    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes), options), name);
   });
 }
 #endif

@@ -111,11 +111,11 @@ class LoadedEngine implements Engine {
       dimensions.map((dimension) => ({ name, summary, dimension })));
   }
 
-  read(name: string, bytes: Uint8Array): Recorded & { warning: string } {
-    const line = new TextEncoder().encode(name.replaceAll("\n", " ") + "\n");
-    const text = new Uint8Array(line.length + bytes.length);
-    text.set(line);
-    text.set(bytes, line.length);
+  read(name: string, bytes: Uint8Array, columns = ""): Recorded & { warning: string } {
+    const lines = new TextEncoder().encode(`${name.replaceAll("\n", " ")}\n${columns}\n`);
+    const text = new Uint8Array(lines.length + bytes.length);
+    text.set(lines);
+    text.set(bytes, lines.length);
     this.#plain.putBytes(text);
     this.#plain.call((exports) => exports.read_file());
     const [dimension = 2, ...counts] = this.#plain.numbers() as [2 | 3, ...number[]];

@@ -1,5 +1,6 @@
 import { signal } from "@preact/signals";
 
+import { nameOf } from "../state/spec.ts";
 import { PanelAlgorithm } from "../ui/algorithm_choice.tsx";
 import { Race } from "../ui/challenge_card.tsx";
 import { duration } from "../ui/numbers.ts";
@@ -41,10 +42,12 @@ export const choosing: Lesson = {
       algorithm has to take less than {enough} times as long as the fastest one.</p>,
     control: () => <><PanelAlgorithm panel={0} label="Algorithm" /><Race /></>,
     hint: <p>The list above has a line for each of the three.</p>,
+    suits: (now) => now.length > 0,
+    hasScenes: true,
     check({ state, duel }) {
       const now = cases.find((one) => one.scene.name === state.scene.name && one.scene.count === state.scene.count);
       const spec = state.panels[0]?.spec ?? "";
-      const mine = duel?.others.find((one) => one.spec === spec);
+      const mine = duel?.others.find((one) => one.spec === nameOf(spec));
       const best = duel?.others[0];
       let text = now === undefined ? "Show one of the three cases." : `Choose for ${now.name}, and race.`;
       if (now !== undefined && mine !== undefined && best !== undefined) {
