@@ -175,7 +175,6 @@ void find(std::size_t count) {
       statistics.hits += overlap(boxes[index(test.first)], boxes[index(test.second)]) ? 1 : 0;
   }
   answer_statistics(statistics);
-  answers.text = finder.explanation();
 }
 
 /// The cells that a tracker with `grid` keeps for these boxes, from the largest to the smallest.
@@ -319,18 +318,20 @@ std::string unread(std::string_view beginning, const std::string& name) {
   return "is " + found + "; expected CSV, a trace, PLY, OBJ or GeoJSON; the program reads more";
 }
 
-/// Opens a file by its content or else by its name, as the program does, in the formats whose readers need no
-/// other library. `options` has the columns of a table.
+/// Opens a file by its content, as the program does, in the formats whose readers need no other library.
+/// `options` has the columns of a table.
 lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file, const lab::ReadOptions& options) {
   const std::string_view beginning = file->beginning();
   if (const std::string why = unread(beginning, file->name()); !why.empty())
     throw lab::FileError(file->name() + ": " + why);
-  for (const std::string& extension : {std::string(), file->extension()}) {
-    for (const lab::Format& format :
-         {lab::readers::trace(), lab::readers::mesh(), lab::readers::map(), lab::readers::csv()}) {
-      if (format.recognises(beginning, extension)) return format.open(std::move(file), options);
-    }
+  for (const lab::Format& format : {lab::readers::trace(), lab::readers::mesh(), lab::readers::map()}) {
+    if (format.recognises(beginning, "")) return format.open(std::move(file), options);
   }
+  // JSON that is no map is no table either; the reader of maps says what it lacks.
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (beginning[first] == '[' || beginning[first] == '{') &&
+      lab::readers::map().recognises(beginning, file->extension()))
+    return lab::readers::map().open(std::move(file), options);
   return lab::readers::open_csv(std::move(file), options);
 }
 
@@ -425,6 +426,12 @@ BROADSIDE_EXPORT(list_algorithms)()->int {
 /// Finds the pairs of the input's `count` boxes, with the algorithm specified by the text.
 BROADSIDE_EXPORT(find_pairs)(std::uint32_t count, int dimension)->int {
   return answer_in(dimension, [&]<int D>() { find<D>(count); });
+}
+
+/// Explains the last search by the algorithm that the text specifies: apart, since a search is timed and its
+/// explanation is not part of it.
+BROADSIDE_EXPORT(explain)(int dimension)->int {
+  return answer_in(dimension, [&]<int D>() { answers.text = finder_of<D>(input.text).explanation(); });
 }
 
 BROADSIDE_EXPORT(lay_out)(std::uint32_t count, int dimension, int follows)->int {

@@ -107,7 +107,7 @@ export function readState(search: string, hash: string): { state: State; time: n
     const value = Number(text);
     const kept = Number.isFinite(value) ? Math.min(max, Math.max(min, value)) : defaultValue;
     if (kept !== value)
-      faults.push(`${name}=${text}: expected a number from ${min} to ${max}; the page takes ${kept}.`);
+      faults.push(`${name}=${text}: expected a number from ${min} to ${max.toLocaleString("en")}; the page takes ${kept}.`);
     return kept;
   };
   const whole = (name: string, defaultValue: number, min: number, max: number): number =>
@@ -116,7 +116,7 @@ export function readState(search: string, hash: string): { state: State; time: n
     const text = query.get(name);
     const found = values.find((value) => value === text);
     if (text !== null && found === undefined)
-      faults.push(`${name}=${text}: expected ${listed(values)}; the page takes ${defaultValue}.`);
+      faults.push(`${name}=${text}: ${values.length > 5 ? "there is none" : `expected ${listed(values)}`}; the page takes ${defaultValue}.`);
     return found ?? defaultValue;
   };
   const knobs = { ...defaultKnobs };

@@ -70,11 +70,12 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
   const verdict = useSignal<Verdict | null>(null);
   useEffect(() => {
     const judge = (): void => {
-      // The results must be those of the current settings.
+      // The results must be those of the current settings, and of one time.
       const now = shown.value;
       const { panels, scene } = state.value;
       const specs = (all: readonly { spec: string }[]): string => all.map(({ spec }) => spec).join(";");
-      if (now === null || specs(now.panels) !== specs(panels) || JSON.stringify(now.scene) !== JSON.stringify(scene)) return;
+      if (now === null || specs(now.panels) !== specs(panels) || JSON.stringify(now.scene) !== JSON.stringify(scene) ||
+        now.panels.some(({ late }) => late)) return;
       const next = lesson.exercise.check({ state: state.value, shown: now, duel: duel.value });
       if (next.text !== verdict.value?.text || next.done !== verdict.value.done) verdict.value = next;
       if (next.done && !done.value) {

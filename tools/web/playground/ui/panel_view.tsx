@@ -68,12 +68,14 @@ function Counts({ at }: { at: number }) {
 /** Why `grid` shows one cell, and how it shows several. */
 function OneCell({ at, result: { outline, spec } }: { at: number; result: PanelResult }) {
   const now = told.value!;
-  if (nameOf(spec) !== "grid" || settingsOf(spec).has("cell") || state.value.panels[at]?.follow !== false ||
-    outline?.levels.length !== 1 || outline.levels[0]!.length !== 2 * now.dimension) return null;
+  const isGrid = nameOf(spec) === "grid";
+  if ((!isGrid && outline?.caption.startsWith("grid:") !== true) || settingsOf(spec).has("cell") ||
+    state.value.panels[at]?.follow !== false || outline?.levels.length !== 1 || outline.levels[0]!.length !== 2 * now.dimension)
+    return null;
   const cell = String(Number(((now.bounds[now.dimension]! - now.bounds[0]!) / 20).toPrecision(2)));
   return (
-    <> – sweeping so few boxes at once is faster than cutting them into rows.{" "}
-      {!state.value.embed && <button type="button" onClick={() => changePanel(at, { spec: withSetting(spec, "cell", cell) })}>
+    <>: the fastest for so few boxes.{" "}
+      {isGrid && state.value.mode === "play" && !state.value.embed && <button type="button" onClick={() => changePanel(at, { spec: withSetting(spec, "cell", cell) })}>
         Show rows: cell={cell}</button>}</>
   );
 }

@@ -22,12 +22,12 @@ const counts = Array.from({ length: 33 }, (_, at) => Math.round(10 ** (1 + at / 
 const width = signal(640);
 
 function table(): Series[] {
-  const bySpec = new Map<string, [number, number][]>();
+  const bySpec = new Map<string, Map<number, number>>();
   for (const { spec, count, milliseconds } of measured.value) {
-    if (!bySpec.has(spec)) bySpec.set(spec, []);
-    bySpec.get(spec)!.push([count, milliseconds]);
+    if (!bySpec.has(spec)) bySpec.set(spec, new Map());
+    bySpec.get(spec)!.set(count, milliseconds);
   }
-  return [...bySpec].map(([name, points]) => ({ name, points: points.sort(([a], [b]) => a - b) }));
+  return [...bySpec].map(([name, points]) => ({ name, points: [...points].sort(([a], [b]) => a - b) }));
 }
 
 /** The results on screen are measurements as well: the latest for each number of boxes counts. */
@@ -76,9 +76,9 @@ export function TimesCard() {
   const summary = chart === "" ? "" : `Time against the number of boxes, from ${grouped(Math.min(...numbers))} to ` +
     `${grouped(Math.max(...numbers))}: ` +
     series.map(({ name, points }) => `${name} from ${duration(points[0]![1])} to ${duration(points.at(-1)![1])}`).join("; ");
-  const save = (kind: string, of: () => Blob | Promise<Blob>) =>
+  const save = (what: string, kind: string, of: () => Blob | Promise<Blob>) =>
     <button type="button" onClick={() => void attempt(async () => saveAs(await of(), `broadside-times.${kind.toLowerCase()}`))}>
-      {`Chart as ${kind}`}</button>;
+      {`${what} as ${kind}`}</button>;
   return (
     <Card title="Time against the number of boxes" class="large">
       <p class="note">How long does a search take, and how fast does the time grow? Measure every algorithm above on 10
@@ -88,9 +88,9 @@ export function TimesCard() {
         <button type="button" disabled={measuring.value || state.value.scene.name === fileScene} onClick={start}>
           {measuring.value ? "Measuring …" : "Measure 10 to 100,000 boxes"}</button>
         {chart !== "" && !measuring.value && <>
-          {save("SVG", () => new Blob([chart], { type: "image/svg+xml" }))}
-          {save("PNG", () => pngOfSvg(chart))}
-          {save("CSV", () => new Blob([csvOf(series)], { type: "text/csv" }))}
+          {save("Chart", "SVG", () => new Blob([chart], { type: "image/svg+xml" }))}
+          {save("Chart", "PNG", () => pngOfSvg(chart))}
+          {save("Times", "CSV", () => new Blob([csvOf(series)], { type: "text/csv" }))}
         </>}
       </div>
       <div ref={element} class="times" role="img" aria-label={summary || "No times yet"}
