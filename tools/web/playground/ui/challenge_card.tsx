@@ -15,9 +15,9 @@ const lost = 1.25;
 
 function judge(ratio: number, best: string, { chosen, unsteady }: Duel): string {
   if (Math.abs(ratio - 1) <= level) return chosen === best ? `Level: auto is ${best} here.` : "Level.";
-  if (ratio < 1) return "It won.";
   if (chosen === best) return `Yet auto is ${best} here: the rest is its look at the boxes, or noise.`;
-  if (ratio < lost || unsteady) return "That is too close to call.";
+  if (ratio < lost && (ratio > 1 || unsteady)) return "That is too close to call.";
+  if (ratio < 1) return "It won.";
   return ratio < 2 ? "It lost. Can you make it worse?" : "It lost badly. Copy the link and report it: it is worth a bug.";
 }
 
