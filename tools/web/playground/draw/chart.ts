@@ -20,9 +20,9 @@ const margin = { left: 70, right: 36, bottom: 46 };
 /** The widest that a letter of the legend is on average, in pixels. */
 const letter = 8;
 
-/** Powers of ten in the range; where these are few, also 2 and 5 times a power, or the range's ends. */
+/** Powers of ten in the range; where these are few, also 2 and 5 times each, or the range's ends. */
 function ticks([min, max]: readonly [number, number]): number[] {
-  const factors = max / min < 50 ? [1, 2, 5] : [1];
+  const factors = max / min < 1000 ? [1, 2, 5] : [1];
   const found: number[] = [];
   for (let power = Math.floor(Math.log10(min)); power <= Math.log10(max); ++power)
     found.push(...factors.map((factor) => factor * 10 ** power).filter((one) => one >= min * 0.999 && one <= max * 1.001));
