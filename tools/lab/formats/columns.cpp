@@ -292,7 +292,7 @@ std::string positional(std::size_t count, BoxColumns& columns) {
   return fmt::format("{} column{} of numbers and no names", count, count == 1 ? "" : "s");
 }
 
-std::vector<std::string> other_meanings(const BoxColumns& columns) {
+std::vector<std::string> other_meanings(const BoxColumns& columns, bool are_named) {
   const auto axes = static_cast<std::size_t>(columns.dimension);
   const bool has_bounds =
       !columns.has_geometry && std::all_of(columns.forms.begin(), columns.forms.begin() + columns.dimension,
@@ -322,10 +322,10 @@ std::vector<std::string> other_meanings(const BoxColumns& columns) {
   const auto column_at = [&](int place) {
     return std::find(columns.places.begin(), columns.places.end(), place);
   };
-  bool has_order = true;
+  bool may_be_sizes = !are_named;
   for (int axis = 0; axis < columns.dimension; ++axis)
-    has_order &= column_at(BoxColumns::first + axis) < column_at(BoxColumns::second + axis);
-  if (has_order)
+    may_be_sizes &= column_at(BoxColumns::first + axis) < column_at(BoxColumns::second + axis);
+  if (may_be_sizes)
     lists.push_back(named([](int bound, std::size_t axis) {
       return std::string(1, bound == 0 ? axis_letters[axis] : "whd"[axis]);
     }));

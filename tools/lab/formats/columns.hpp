@@ -151,8 +151,9 @@ bool is_geometry_name(std::string_view name);
 std::string positional(std::size_t count, BoxColumns& columns);
 
 /// Alternative meanings of columns, as lists for --columns: for the columns of a table, for rows of `count`
-/// numbers without names, and for names with which x,y may be a corner or a centre.
-std::vector<std::string> other_meanings(const BoxColumns& columns);
+/// numbers without names, and for names with which x,y may be a corner or a centre. Bounds that are named may
+/// be exchanged, but are no sizes.
+std::vector<std::string> other_meanings(const BoxColumns& columns, bool are_named);
 std::vector<std::string> unnamed_meanings(std::size_t count);
 std::vector<std::string> corner_or_centre(std::span<const std::string_view> names);
 

@@ -13,7 +13,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 /** For an engine without modules. */
 const nothing = gzipSync("").toString("base64");
 
-const licences = "/*! With Preact, signals, twgl.js, uPlot and gifenc, all under the MIT licence. */";
+const licences = "/*! With Preact, signals, twgl.js and gifenc, all under the MIT licence. */";
 
 /** Tests replace the library's engine by a naive one. */
 function withEngine(path) {

@@ -3,10 +3,9 @@
 import { render } from "preact";
 
 import { startBench } from "./bench/client.ts";
-import { sceneEntry } from "./scene/catalogue.ts";
 import { setClient } from "./state/client.ts";
 import { firstFrame, frames, Loop, scriptTimes } from "./state/loop.ts";
-import { clock, latest, patch, problem, shown, state } from "./state/store.ts";
+import { clock, latest, problem, shown, state } from "./state/store.ts";
 import { readState, writeState } from "./state/url.ts";
 import { App } from "./ui/app.tsx";
 import { keepAddress } from "./ui/address.ts";
@@ -16,16 +15,11 @@ import { Stage } from "./ui/stage.ts";
 
 function takeAddress(): void {
   const read = readState(location.search, location.hash);
-  const known = read.state.scene.name === "file" || sceneEntry(read.state.scene.name) !== undefined;
   state.value = read.state;
   clock.value = latest.value = read.time;
-  problem.value = "";
+  problem.value = read.faults.length === 0 ? "" : `The link says ${read.faults.join(" ")}`;
   // A link to a lesson shows the lesson's initial state, unless the link says otherwise.
   if (read.state.mode === "lesson" && !/[?#&](scene|a|n)=/.test(location.search + location.hash)) openLesson(read.state.lesson);
-  if (!known) {
-    problem.value = `The link names a scene "${read.state.scene.name}" that there is not. Drifting boxes are shown instead.`;
-    patch({ scene: { ...read.state.scene, name: "drift" } });
-  }
 }
 
 takeAddress();

@@ -2,7 +2,7 @@
 import type { Comparison, Measurement, RatioName } from "../charts/data.ts";
 import { el } from "./dom.ts";
 
-function save(name: string, type: string, text: string): void {
+export function save(name: string, type: string, text: string): void {
   const address = URL.createObjectURL(new Blob([text], { type }));
   const link = el("a", { href: address, download: name });
   document.body.append(link);

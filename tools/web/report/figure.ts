@@ -2,6 +2,7 @@
 import { echarts } from "../charts/echarts.ts";
 import type { Drawn, Place } from "../charts/frame.ts";
 import { el } from "./dom.ts";
+import { save } from "./downloads.ts";
 import { isPrinting, onTheme, theme } from "./themes.ts";
 
 type Draw = (place: Place) => Drawn;
@@ -39,6 +40,12 @@ class ChartView {
   fit(width: number): void {
     if (Math.abs(width - this.width) < 2) return;
     this.redraw();
+  }
+
+  /** The chart as a file, on the theme's background; undefined if it has not been drawn. */
+  svg(): string | undefined {
+    return this.chart?.renderToSVGString({ useViewBox: true })
+      .replace(/>/, `>\n<rect width="100%" height="100%" fill="${theme().background}"/>`);
   }
 
   redraw(): void {
@@ -79,8 +86,12 @@ export function chartFigure(caption: string, draw: Draw, note = ""): ChartFigure
   sights.observe(view.element);
   sizes.observe(view.element);
   const title = document.createTextNode(caption);
+  const button = el("button", { type: "button", class: "quiet downloads", "aria-label": "Save the chart as SVG", onclick: () => {
+    const text = view.svg();
+    if (text !== undefined) save(`${title.data.toLowerCase().replace(/[^a-z0-9]+/g, "-")}.svg`, "image/svg+xml", text);
+  } }, "SVG");
   return {
-    element: el("figure", {}, el("figcaption", {}, title, note !== "" && el("span", { class: "note" }, note)), view.element),
+    element: el("figure", {}, el("figcaption", {}, button, title, note !== "" && el("span", { class: "note" }, note)), view.element),
     show(other, draw) {
       title.data = other;
       view.show(draw);

@@ -250,6 +250,23 @@ describe("the report", { skip: missing !== "" && missing }, () => {
     await page.close();
   });
 
+  test("hands out each chart as an SVG of its own", async () => {
+    const watched = await open("fixture.html");
+    await read(watched);
+    const { page, problems } = watched;
+    const buttons = page.locator("figure:visible").getByRole("button", { name: "Save the chart as SVG" });
+    assert.ok(await buttons.count() > 2);
+    for (const button of await buttons.all()) {
+      const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+      assert.match(download.suggestedFilename(), /^[a-z0-9-]+\.svg$/);
+      const svg = readFileSync(await download.path(), "utf8");
+      assert.match(svg, /^<svg [^>]*xmlns=[^]*<path [^]*<\/svg>\s*$/);
+      assert.equal(await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror"), svg), null);
+    }
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+
   test("is reached by the keyboard: past the head, and each thing that acts is named", async () => {
     const { page } = await open("fixture.html");
     await page.keyboard.press("Tab");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +17,7 @@ namespace broadside::lab {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -228,8 +230,6 @@ TEST_F(CsvTable, NamesOtherMeaningsInWhichAllRowsAreValid) {
   EXPECT_THAT(refusal_of("0,0,10,10\n12,12,6,4\n"),
               AllOf(HasSubstr("bad.csv:2: min (12, 12) and max (6, 4)"),
                     HasSubstr("; as x,y,w,h all 2 rows are valid: say --columns=x,y,w,h")));
-  EXPECT_THAT(refusal_of("id,x1,y1,x2,y2\na,0,0,10,10\nb,12,12,6,4\n"),
-              HasSubstr("say --columns=id,x,y,w,h"));
   EXPECT_THAT(refusal_of("name,xmin,ymin,xmax,ymax\na,0,5,1,-4\nb,2,7,3,6\n"),
               HasSubstr("say --columns=-,min_x,max_y,max_x,min_y"));
   EXPECT_THAT(refusal_of("0,1,10,12\n5,9,-3,-2\n"), HasSubstr("say --columns=min_x,max_x,min_y,max_y"));
@@ -240,6 +240,23 @@ TEST_F(CsvTable, NamesOtherMeaningsInWhichAllRowsAreValid) {
   EXPECT_THAT(refusal_of("1,1,912,484,97,109,0,7,1\n2,1,912,484,97,109,0,7,1\n"),
               HasSubstr("say --columns=frame,id,left,top,width,height"));
   EXPECT_THAT(refusal_of("car 0.9 1 2 3 4\n"), HasSubstr("-,-,left,top,right,bottom"));
+}
+
+TEST_F(CsvTable, TakesNamedBoundsForNothingElseAndCountsTheInvalidRowsIfTheyAreFew) {
+  std::string rows;
+  for (int i = 0; i < 20; ++i) rows += fmt::format("\n{0},{0},{1},{1}", i + 1, i + 30);
+  const std::string flipped = rows + "\n9,9,3,12\n";
+  for (const std::string header : {"min_x,min_y,max_x,max_y", "x1,y1,x2,y2"})
+    EXPECT_THAT(refusal_of(header + flipped),
+                AllOf(HasSubstr("bad.csv:22: min (9, 9) and max (3, 12)"),
+                      HasSubstr("; 1 of 21 rows is invalid; min and max may be swapped in this row"),
+                      Not(HasSubstr("--columns"))));
+  EXPECT_THAT(refusal_of(flipped.substr(1)), AllOf(HasSubstr("; 1 of 21 rows"), Not(HasSubstr("--columns"))))
+      << "without names, too";
+  EXPECT_THAT(refusal_of("cx,cy,w,h" + rows + "\n9,9,-3,12\n9,9,3,-1\n"),
+              AllOf(HasSubstr("; 2 of 22 rows are invalid"), Not(HasSubstr("swapped"))));
+  EXPECT_THAT(refusal_of("id,x1,y1,x2,y2\na,0,0,10,10\nb,12,12,6,4\n"),
+              Not(AnyOf(HasSubstr("--columns"), HasSubstr("rows"))));
 }
 
 TEST_F(CsvTable, CallsACornerXAndYWhereTheUserNamesThem) {

@@ -89,7 +89,7 @@ class CsvOpener {
         options_.columns.empty() ? find_columns(comment) : take_columns(options_.columns, comment);
     if (!has_header) lines_ = rows_;
     look_into_rows();
-    std::vector<std::string> others = other_meanings(columns_);
+    std::vector<std::string> others = other_meanings(columns_, are_named_);
     if (!are_named_) {
       for (std::string& meaning : unnamed_meanings(fields_.size())) others.push_back(std::move(meaning));
     }

@@ -109,12 +109,14 @@ DoubleBox3 CsvRows::checked_box() const {
   const auto is_nan = [](double number) { return std::isnan(number); };
   if (std::any_of(min.begin(), min.end(), is_nan) || std::any_of(max.begin(), max.end(), is_nan))
     table_.lines.refuse("infinite numbers that add up to none", "bounds that can be computed");
-  table_.lines.refuse(
-      fmt::format("min ({}) and max ({})", fmt::join(min, ", "), fmt::join(max, ", ")),
-      fmt::format(
-          "min <= max on every axis, {}or no coordinates for an absent box{}{}",
-          columns().is_computed() ? "that is, sizes of 0 or more, " : "", other_ways(),
-          is_across && max[0] < 0 ? "; or --longitude of pairs, if the box is across the date line" : ""));
+  // A fault in few rows is one of theirs, not of how all are read.
+  std::string advice = few_invalid().empty() ? other_ways() : few_invalid();
+  if (!few_invalid().empty() && !columns().is_computed() && !is_across)
+    advice += "; min and max may be swapped in this row";
+  if (is_across && max[0] < 0) advice += "; or --longitude of pairs, if the box is across the date line";
+  table_.lines.refuse(fmt::format("min ({}) and max ({})", fmt::join(min, ", "), fmt::join(max, ", ")),
+                      fmt::format("min <= max on every axis, {}or no coordinates for an absent box{}",
+                                  columns().is_computed() ? "that is, sizes of 0 or more, " : "", advice));
 }
 
 DoubleBox3 CsvRows::geometry_box() const {
@@ -201,6 +203,13 @@ void CsvRows::refuse_number(int place) const {
                                                   : "a number that a double can hold";
   table_.lines.refuse(column_text(place) + (fault.found.empty() ? "" : ", " + fault.found),
                       fault.expected + (place < BoxColumns::first ? "" : other_ways()));
+}
+
+/// Computed once, as other_ways() is.
+const std::string& CsvRows::few_invalid() const {
+  if (!few_invalid_)
+    few_invalid_ = columns().has_geometry ? "" : readers::few_invalid(begin_, table_.separator, columns());
+  return *few_invalid_;
 }
 
 /// Computed once, not for each invalid row that is left out, because it reads all rows.

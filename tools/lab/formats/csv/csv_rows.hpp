@@ -44,6 +44,10 @@ RowBox box_of(const std::vector<CsvField>& fields, const BoxColumns& columns);
 /// Reads all rows.
 std::string other_ways(CsvLines lines, Separator separator, const std::vector<std::string>& lists);
 
+/// If at most one row in ten is invalid, the number of invalid rows, as the end of an error's text about one
+/// of them; otherwise empty. Reads all rows.
+std::string few_invalid(CsvLines lines, Separator separator, const BoxColumns& columns);
+
 /// Likewise for bounds in one field: whether all are valid as a corner and a size.
 std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns);
 
@@ -103,11 +107,13 @@ class CsvRows {
   std::string column_text(int place) const;
   [[noreturn]] void refuse_number(int place) const;
   const std::string& other_ways() const;
+  const std::string& few_invalid() const;
 
   CsvTable table_;
   CsvLines begin_;  // before the first row
   std::vector<CsvField> fields_;
   mutable std::optional<std::string> other_ways_;
+  mutable std::optional<std::string> few_invalid_;
 };
 
 /// Resolves a table's columns and opens it. Throws FileError.

@@ -61,6 +61,22 @@ std::string other_ways(CsvLines lines, Separator separator, const std::vector<st
                      ways.size() == 1 ? "--columns=" + found : "which by --columns");
 }
 
+std::string few_invalid(CsvLines lines, Separator separator, const BoxColumns& columns) {
+  std::vector<CsvField> fields;
+  std::uint64_t rows = 0;
+  std::uint64_t invalid = 0;
+  BoxColumns read = columns;
+  while (lines.next()) {
+    split(lines.line(), separator, fields);
+    if (fields.size() < columns.places.size()) continue;  // blank, or the number of a frame without changes
+    ++rows;
+    if (!is_valid(fields, read)) ++invalid;
+  }
+  if (invalid * 10 > rows) return {};
+  return fmt::format("; {} of {} rows {} invalid", grouped(invalid), grouped(rows),
+                     invalid == 1 ? "is" : "are");
+}
+
 std::string other_forms(CsvLines lines, Separator separator, const BoxColumns& columns) {
   if (columns.geometry_form != BoundsForm::min_max) return {};
   const auto column = static_cast<std::size_t>(

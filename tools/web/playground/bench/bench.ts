@@ -34,7 +34,7 @@ export class Bench {
   private async answer(request: Request): Promise<void> {
     switch (request.kind) {
       case "file":
-        this.open(request.name, request.bytes);
+        this.open(request.name, request.bytes, request.columns);
         return;
       case "setup":
         this.arrange(request.setup);
@@ -55,8 +55,8 @@ export class Bench {
     }
   }
 
-  private open(name: string, bytes: Uint8Array): void {
-    const { dimension, frames, warning } = this.engine.read(name, bytes);
+  private open(name: string, bytes: Uint8Array, columns: string): void {
+    const { dimension, frames, warning } = this.engine.read(name, bytes, columns);
     this.file = recordedScene({ dimension, frames });
     this.sceneKey = "";
     const boxes = frames[0]!.length / (2 * dimension);

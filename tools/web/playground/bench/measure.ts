@@ -5,7 +5,7 @@ import { fileScene, makeScene, type SceneChoice } from "../scene/catalogue.ts";
 import type { Dimension } from "../scene/scene.ts";
 import { refusal } from "./budget.ts";
 import type { Duel, Measured } from "./protocol.ts";
-import { batchesOf, median, timeOf } from "./times.ts";
+import { batchesOf, median, spread, timeOf } from "./times.ts";
 
 /** Budget of one measurement, in ms. */
 const budget = 25;
@@ -16,6 +16,19 @@ const raceBudget = 4000;
 
 /** What takes this many times as long as the fastest has lost, and runs in no further round. */
 const hopeless = 8;
+
+/** Above this spread of a racer's rounds, the machine is busy. */
+const maxSpread = 0.2;
+
+/** A copy in random order. */
+function shuffled<Item>(items: readonly Item[]): Item[] {
+  const mixed = [...items];
+  for (let at = mixed.length - 1; at > 0; --at) {
+    const other = Math.floor(Math.random() * (at + 1));
+    [mixed[at], mixed[other]] = [mixed[other]!, mixed[at]!];
+  }
+  return mixed;
+}
 
 function pause(): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, 0));
@@ -40,7 +53,10 @@ export async function* measure(engine: Engine, choice: SceneChoice, counts: read
   }
 }
 
-/** Times `auto` and the others in the same rounds, so that a slow moment slows all of them; medians. */
+/**
+ * Times `auto` and the others in the same rounds, so that a slow moment slows all of them; medians. Each round has an
+ * order of its own, since who follows a pause or a search of much memory is slower.
+ */
 export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimension): Promise<Duel> {
   const count = boxes.length / (2 * dimension);
   const specs = engine.algorithms()
@@ -52,18 +68,21 @@ export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimen
   const racers = ["auto", ...specs].map((spec) =>
     ({ spec, batch: batchesOf(engine, spec, boxes, dimension), times: [] as number[] }));
   for (let round = 0; round < rounds; ++round) {
-    const best = Math.min(...racers.map(({ times }) => round === 0 ? Infinity : median(times)));
-    for (const { batch, times } of racers) {
-      if (round < 3 ? !(times[0]! > 100 * best) : median(times) < hopeless * best) times.push(batch());
+    const best = Math.min(...racers.flatMap(({ times }) => times));
+    for (const { batch, times } of shuffled(racers)) {
+      // The least: one round may have been interrupted.
+      if (round < 2 || Math.min(...times) < (round < 4 ? 10 : 1) * hopeless * best) times.push(batch());
     }
     await pause();
     if (performance.now() - begin > raceBudget) break;
   }
-  const [auto, ...others] = racers.map(({ spec, times }) => ({ spec, milliseconds: median(times) }));
+  const [auto, ...others] = racers.map(({ spec, times }) => ({ spec, milliseconds: median(times), spread: spread(times) }));
+  others.sort((a, b) => a.milliseconds - b.milliseconds);
   return {
     auto: auto!.milliseconds,
+    chosen: specs.find((spec) => explanation.startsWith(`${spec},`)) ?? "",
     explanation,
-    others: others
-      .sort((a, b) => a.milliseconds - b.milliseconds),
+    unsteady: [auto!, ...others.slice(0, 1)].some((one) => one.spread > maxSpread),
+    others: others.map(({ spec, milliseconds }) => ({ spec, milliseconds })),
   };
 }

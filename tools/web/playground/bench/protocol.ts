@@ -31,7 +31,8 @@ export interface Start {
 
 export type Request =
   | { kind: "setup"; setup: Setup }
-  | { kind: "file"; name: string; bytes: Uint8Array<ArrayBuffer> }
+  /** `columns` says what a table's columns are, as the program's --columns does; empty: they say so themselves. */
+  | { kind: "file"; name: string; bytes: Uint8Array<ArrayBuffer>; columns: string }
   | { kind: "frame"; time: number; held: Edit | null }
   | { kind: "measure"; counts: number[]; specs: string[] }
   | { kind: "duel" };
@@ -104,7 +105,11 @@ export interface Measured {
 
 export interface Duel {
   auto: number;
+  /** The algorithm that it took, and why. */
+  chosen: string;
   explanation: string;
+  /** Whether rounds differ so much that small ratios say nothing: the machine is busy. */
+  unsteady: boolean;
   /** The library's other algorithms, fastest first. */
   others: { spec: string; milliseconds: number }[];
 }

@@ -12,13 +12,24 @@ const maxRecent = 40;
 /** A batch of runs takes at least this many ticks of the clock: its time is then right to 5 %. */
 const minTicks = 20;
 
-/** With a very coarse clock, batches of 20 ticks would take seconds. In ms. */
+/**
+ * With a very coarse clock, batches of 20 ticks would take seconds; with a very fine one, an interruption would be most of
+ * a batch. In ms.
+ */
 const maxBatch = 60;
+const minBatch = 0.5;
 
 export function median(values: readonly number[]): number {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;
   return sorted.length % 2 === 1 ? sorted[middle]! : (sorted[middle - 1]! + sorted[middle]!) / 2;
+}
+
+/** How far the middle half of the values lies apart, as a part of their median. */
+export function spread(values: readonly number[]): number {
+  const sorted = [...values].sort((a, b) => a - b);
+  const quarter = sorted.length >> 2;
+  return (sorted[sorted.length - 1 - quarter]! - sorted[quarter]!) / median(values);
 }
 
 /** A step of the clock, in ms. */
@@ -52,7 +63,7 @@ export class RecentTimes {
  * the clock. Each call of the result times a batch, and returns the milliseconds of one run.
  */
 export function batchesOf(engine: Engine, spec: string, boxes: Float32Array, dimension: Dimension): () => number {
-  const enough = Math.min(maxBatch, minTicks * clockTick());
+  const enough = Math.max(minBatch, Math.min(maxBatch, minTicks * clockTick()));
   engine.time(spec, boxes, dimension, 1);  // the first run allocates memory
   let runs = 1;
   return () => {

@@ -6,7 +6,7 @@ import { overlapStrength, testLines, type Painting } from "./painting.ts";
 /** A picture of more boxes than this opens in few programs. */
 export const maxSvgBoxes = 20_000;
 
-function escaped(text: string): string {
+export function escaped(text: string): string {
   return text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;").replace(/"/g, "&quot;");
 }
 

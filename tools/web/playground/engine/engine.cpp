@@ -175,7 +175,6 @@ void find(std::size_t count) {
       statistics.hits += overlap(boxes[index(test.first)], boxes[index(test.second)]) ? 1 : 0;
   }
   answer_statistics(statistics);
-  answers.text = finder.explanation();
 }
 
 /// The cells that a tracker with `grid` keeps for these boxes, from the largest to the smallest.
@@ -320,14 +319,20 @@ std::string unread(std::string_view beginning, const std::string& name) {
 }
 
 /// Opens a file by its content, as the program does, in the formats whose readers need no other library.
-lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file) {
+/// `options` has the columns of a table.
+lab::AnyFrameReader open_file(std::unique_ptr<lab::Input> file, const lab::ReadOptions& options) {
   const std::string_view beginning = file->beginning();
   if (const std::string why = unread(beginning, file->name()); !why.empty())
     throw lab::FileError(file->name() + ": " + why);
   for (const lab::Format& format : {lab::readers::trace(), lab::readers::mesh(), lab::readers::map()}) {
-    if (format.recognises(beginning, "")) return format.open(std::move(file), {});
+    if (format.recognises(beginning, "")) return format.open(std::move(file), options);
   }
-  return lab::readers::open_csv(std::move(file), {});
+  // JSON that is no map is no table either; the reader of maps says what it lacks.
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (beginning[first] == '[' || beginning[first] == '{') &&
+      lab::readers::map().recognises(beginning, file->extension()))
+    return lab::readers::map().open(std::move(file), options);
+  return lab::readers::open_csv(std::move(file), options);
 }
 
 /// The boxes of all frames, as floats; the numbers are the dimension and the number of boxes of each frame.
@@ -423,6 +428,12 @@ BROADSIDE_EXPORT(find_pairs)(std::uint32_t count, int dimension)->int {
   return answer_in(dimension, [&]<int D>() { find<D>(count); });
 }
 
+/// Explains the last search by the algorithm that the text specifies: apart, since a search is timed and its
+/// explanation is not part of it.
+BROADSIDE_EXPORT(explain)(int dimension)->int {
+  return answer_in(dimension, [&]<int D>() { answers.text = finder_of<D>(input.text).explanation(); });
+}
+
 BROADSIDE_EXPORT(lay_out)(std::uint32_t count, int dimension, int follows)->int {
   return answer_in(dimension, [&]<int D>() { outline_of<D>(count, follows != 0); });
 }
@@ -458,13 +469,17 @@ BROADSIDE_EXPORT(list_scenes)()->int {
 }
 
 #ifndef BROADSIDE_OBSERVE
-/// Reads a file: the text's first line is its name, and its bytes follow.
+/// Reads a file: the text's first line is its name, the second one the columns of a table, as for --columns,
+/// or empty; the bytes follow.
 BROADSIDE_EXPORT(read_file)()->int {
   return answer([] {
     const std::size_t end = input.text.find('\n');
+    const std::size_t next = input.text.find('\n', end + 1);
     const std::string name = input.text.substr(0, end);
-    const std::string_view bytes = std::string_view(input.text).substr(end + 1);
-    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes)), name);
+    const std::string_view bytes = std::string_view(input.text).substr(next + 1);
+    broadside::lab::ReadOptions options;
+    options.columns = input.text.substr(end + 1, next - end - 1);
+    read_frames(open_file(std::make_unique<broadside::lab::Input>(name, bytes), options), name);
   });
 }
 #endif

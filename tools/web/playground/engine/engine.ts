@@ -26,16 +26,14 @@ function statisticsOf([tests = 0, references = 0, cells = 0, hits = 0]: number[]
   return { tests, references, cells, hits };
 }
 
-function search(module: EngineModule, spec: string, boxes: Float32Array, dimension: 2 | 3): Search {
+/** The tests are empty unless the module observes them. */
+function search(module: EngineModule, spec: string, boxes: Float32Array, dimension: 2 | 3): Observation {
   module.putText(spec);
   const count = module.putBoxes(boxes, dimension);
   const milliseconds = module.call((exports) => exports.find_pairs(count, dimension));
-  return {
-    pairs: module.pairs(),
-    statistics: statisticsOf(module.numbers()),
-    explanation: module.text(),
-    milliseconds,
-  };
+  const [pairs, morePairs, statistics] = [module.pairs(), module.morePairs(), statisticsOf(module.numbers())];
+  module.call((exports) => exports.explain(dimension));
+  return { pairs, tests: morePairs, statistics, explanation: module.text(), milliseconds };
 }
 
 class LoadedEngine implements Engine {
@@ -63,7 +61,7 @@ class LoadedEngine implements Engine {
   }
 
   observe(spec: string, boxes: Float32Array, dimension: 2 | 3): Observation {
-    return { ...search(this.#observing, spec, boxes, dimension), tests: this.#observing.morePairs() };
+    return search(this.#observing, spec, boxes, dimension);
   }
 
   outline(spec: string, boxes: Float32Array, dimension: 2 | 3, follows = false): Outline {
@@ -111,11 +109,11 @@ class LoadedEngine implements Engine {
       dimensions.map((dimension) => ({ name, summary, dimension })));
   }
 
-  read(name: string, bytes: Uint8Array): Recorded & { warning: string } {
-    const line = new TextEncoder().encode(name.replaceAll("\n", " ") + "\n");
-    const text = new Uint8Array(line.length + bytes.length);
-    text.set(line);
-    text.set(bytes, line.length);
+  read(name: string, bytes: Uint8Array, columns = ""): Recorded & { warning: string } {
+    const lines = new TextEncoder().encode(`${name.replaceAll("\n", " ")}\n${columns}\n`);
+    const text = new Uint8Array(lines.length + bytes.length);
+    text.set(lines);
+    text.set(bytes, lines.length);
     this.#plain.putBytes(text);
     this.#plain.call((exports) => exports.read_file());
     const [dimension = 2, ...counts] = this.#plain.numbers() as [2 | 3, ...number[]];

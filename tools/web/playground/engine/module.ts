@@ -20,6 +20,7 @@ interface Exports {
   answer_number_count(): number;
   list_algorithms(): number;
   find_pairs(count: number, dimension: number): number;
+  explain(dimension: number): number;
   lay_out(count: number, dimension: number, follows: number): number;
   start_tracker(dimension: number): number;
   update_tracker(tracker: number, count: number): number;

@@ -104,9 +104,9 @@ export interface Engine {
   scene(spec: string, count: number, seed: number, dimension?: 2 | 3): Float32Array<ArrayBuffer>;
   /**
    * The boxes of a file, by the program's own readers (docs/formats.md); the warning says how it
-   * was interpreted.
+   * was interpreted. `columns` names a table's columns, as the program's --columns does.
    */
-  read(name: string, bytes: Uint8Array): Recorded & { warning: string };
+  read(name: string, bytes: Uint8Array, columns?: string): Recorded & { warning: string };
 }
 
 /**

@@ -1,6 +1,6 @@
 import { PanelAlgorithm } from "../ui/algorithm_choice.tsx";
 import { grouped, plural } from "../ui/numbers.ts";
-import { panels, scene, type Lesson } from "./lesson.ts";
+import { areOf, panels, scene, type Lesson } from "./lesson.ts";
 
 export const broadPhase: Lesson = {
   title: "What a broad phase is",
@@ -25,17 +25,18 @@ export const broadPhase: Lesson = {
       with <b>less than a tenth</b> of the tests.</p>,
     control: () => <PanelAlgorithm panel={1} label="The second panel's algorithm" />,
     hint: <p>Brute force appears twice in the list, as the library's and as the paper's. The other algorithms avoid
-      most tests, each by another idea: the next lessons have them.</p>,
+      most tests, each by another idea: the next lessons have them. If a panel is closed, choosing brings both back.</p>,
+    suits: (now) => now.length > 1 && areOf(now, "brute_force"),
     check({ shown }) {
       const brute = shown.panels.find(({ spec }) => spec === "brute_force");
       const other = shown.panels.find(({ spec }) => spec !== "brute_force");
-      if (brute === undefined || shown.panels.length < 2)
-        return { done: false, text: "Keep brute force in one of two panels, to compare with it." };
+      if (shown.panels.length < 2) return { done: false, text: "Choose an algorithm: the second panel comes back with it." };
+      if (brute === undefined) return { done: false, text: "Keep brute force in one of the panels, to compare with it." };
       if (other === undefined) return { done: false, text: "Both panels still search by brute force." };
       const share = other.statistics.tests / Math.max(1, brute.statistics.tests);
       const same = other.pairs === brute.pairs;
       return {
-        done: same && !other.late && other.error === undefined && share < 0.1,
+        done: same && other.error === undefined && share < 0.1,
         text: `${other.spec} makes ${plural(other.statistics.tests, "test")}, ${(100 * share).toFixed(1)} % of brute force's ` +
           `${grouped(brute.statistics.tests)}, and finds ${same ? "the same" : "other"} pairs.`,
       };

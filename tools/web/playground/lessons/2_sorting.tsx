@@ -1,14 +1,16 @@
 import { nameOf } from "../state/spec.ts";
 import { TunableField } from "../ui/algorithm_card.tsx";
 import { plural } from "../ui/numbers.ts";
-import { panels, scene, type Lesson } from "./lesson.ts";
+import { areOf, panels, scene, type Lesson } from "./lesson.ts";
 
 const count = 40;
 
 /** Most tests of a good sweep; along the wrong axis there are some 700. */
 const maxTests = 150;
 
-const along = (name: "street" | "tower") => ({ scene: scene(name, count), panels: panels("sweep_and_prune:axis=x:axes=1") });
+const alongX = "sweep_and_prune:axis=x:axes=1";
+
+const along = (name: "street" | "tower") => ({ scene: scene(name, count), panels: panels(alongX) });
 
 export const sorting: Lesson = {
   title: "Why sorting helps",
@@ -30,8 +32,9 @@ export const sorting: Lesson = {
   ),
   exercise: {
     task: <p>Sweep the tower of {count} boxes with fewer than {maxTests} tests, without taking another algorithm.</p>,
-    control: () => <TunableField panel={0} name="axis" />,
+    control: () => <TunableField panel={0} name="axis" of={alongX} />,
     hint: <p>Choose the axis along which the boxes' shadows overlap least.</p>,
+    suits: (now) => areOf(now, "sweep_and_prune"),
     check({ shown, state }) {
       const panel = shown.panels[0];
       if (panel === undefined || nameOf(panel.spec) !== "sweep_and_prune")

@@ -1,7 +1,7 @@
 import { nameOf } from "../state/spec.ts";
 import { TunableField } from "../ui/algorithm_card.tsx";
 import { grouped } from "../ui/numbers.ts";
-import { panels, scene, type Lesson } from "./lesson.ts";
+import { areOf, panels, scene, type Lesson } from "./lesson.ts";
 
 /** Limit on tests plus references; the best cell size needs about 1,600. */
 const maxTests = 1800;
@@ -25,14 +25,15 @@ export const cellSize: Lesson = {
         greater of the two minima on each axis, the <b>reference point</b>.</p>
       <p>Where sizes differ much, no cell suits all. The library's <code>grid</code> therefore cuts one axis only, into
         rows as long as the world, and sweeps each row. So a long box is in few rows. Left to itself, it takes rows of at
-        least some thirty boxes, and a single one for a few hundred.</p>
+        least some thirty boxes, and a single one for a few hundred: the picture then shows one frame.</p>
     </>
   ),
   exercise: {
     task: <p>Move the slider <b>cell</b> until tests and references of <code>paper_grid</code> add up to less than{" "}
       {grouped(maxTests)} for these 500 boxes.</p>,
-    control: () => <TunableField panel={0} name="cell" />,
+    control: () => <TunableField panel={0} name="cell" of="paper_grid:cell=60" />,
     hint: <p>Take cells about twice as wide as a usual box, and look at both counts while you drag.</p>,
+    suits: (now) => areOf(now, "paper_grid"),
     check({ shown, state }) {
       const panel = shown.panels.find(({ spec }) => nameOf(spec) === "paper_grid");
       if (panel === undefined) return { done: false, text: "Keep paper_grid in a panel." };

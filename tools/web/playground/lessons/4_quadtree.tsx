@@ -1,6 +1,6 @@
 import { grouped } from "../ui/numbers.ts";
 import { KnobSlider } from "../ui/scene_card.tsx";
-import { panels, scene, type Lesson } from "./lesson.ts";
+import { areOf, panels, scene, type Lesson } from "./lesson.ts";
 
 const count = 400;
 const both = panels("paper_grid:cell=10", "paper_quadtree:capacity=8");
@@ -36,8 +36,11 @@ export const quadtree: Lesson = {
     task: <p>Both panels search the same {count} boxes, the first in equal cells, the second in a quadtree. Pull the boxes
       into clusters until the cells make <b>one and a half times</b> the tests of the tree.</p>,
     control: () => <KnobSlider name="clustering" />,
-    hint: <p>The tighter the clusters, the more boxes share a cell, and there the tree splits. Beyond some 85 % nearly all
-      boxes of a cluster overlap each other, and no structure saves tests.</p>,
+    hint: <p>The tighter the clusters, the more boxes share a cell, and there the tree splits. Beyond some 90 % the boxes of
+      a cluster overlap so much that splitting no longer separates them: the tree then makes more tests than the cells,
+      though still fewer than brute force.</p>,
+    suits: (now) => areOf(now, ...both.map(({ spec }) => spec)),
+    knob: "clustering",
     check({ shown, state }) {
       const [cells, tree] = both.map((panel) => shown.panels.find(({ spec }) => spec === panel.spec)?.statistics.tests);
       if (cells === undefined || tree === undefined)

@@ -1,7 +1,7 @@
 import { nameOf } from "../state/spec.ts";
 import { plural } from "../ui/numbers.ts";
 import { KnobSlider } from "../ui/scene_card.tsx";
-import { panels, scene, type Lesson } from "./lesson.ts";
+import { areOf, panels, scene, type Lesson } from "./lesson.ts";
 
 const count = 400;
 const both = panels("paper_quadtree:capacity=8", "bvh");
@@ -32,6 +32,8 @@ export const bvh: Lesson = {
     task: <p>Let sizes differ until the quadtree has <b>{references} references for each box</b>. How many has the BVH?</p>,
     control: () => <KnobSlider name="ratio" />,
     hint: <p>A large box touches many leaves of the quadtree.</p>,
+    suits: (now) => areOf(now, "paper_quadtree", "bvh"),
+    knob: "ratio",
     check({ shown, state }) {
       const of = (name: string) => shown.panels.find(({ spec }) => nameOf(spec) === name)?.statistics.references;
       const [tree, bounds] = [of("paper_quadtree"), of("bvh")];

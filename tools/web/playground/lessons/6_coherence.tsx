@@ -30,6 +30,8 @@ export const coherence: Lesson = {
       keep <b>some moving</b>, until the second panel makes <b>less than half</b> of the first one's tests.</p>,
     control: () => <KnobSlider name="moving" />,
     hint: <p>A tracker compares each box that moves with many boxes near it, so let only a few move.</p>,
+    suits: (now) => now.length === 2 && now.every(({ follow }, at) => follow === both[at]!.follow),
+    knob: "moving",
     check({ shown, state }) {
       const searching = shown.panels.find((_, at) => state.panels[at]?.follow === false);
       const following = shown.panels.find((_, at) => state.panels[at]?.follow === true);

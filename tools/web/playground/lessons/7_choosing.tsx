@@ -1,5 +1,6 @@
 import { signal } from "@preact/signals";
 
+import { nameOf } from "../state/spec.ts";
 import { PanelAlgorithm } from "../ui/algorithm_choice.tsx";
 import { Race } from "../ui/challenge_card.tsx";
 import { duration } from "../ui/numbers.ts";
@@ -27,7 +28,7 @@ export const choosing: Lesson = {
         differ? How many move? The answers decide:</p>
       <ul>
         <li>up to some forty: <code>brute_force</code>, there is nothing to build;</li>
-        <li>some forty to some thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
+        <li>some forty to some ten thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
         <li>more, spread over the plane or space: <code>grid</code> as well;</li>
         <li>more, along a line: <code>sweep_and_prune</code>, one sorted sweep finds all pairs;</li>
         <li>more, crowded or in dense clusters: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
@@ -41,10 +42,12 @@ export const choosing: Lesson = {
       algorithm has to take less than {enough} times as long as the fastest one.</p>,
     control: () => <><PanelAlgorithm panel={0} label="Algorithm" /><Race /></>,
     hint: <p>The list above has a line for each of the three.</p>,
+    suits: (now) => now.length > 0,
+    hasScenes: true,
     check({ state, duel }) {
       const now = cases.find((one) => one.scene.name === state.scene.name && one.scene.count === state.scene.count);
       const spec = state.panels[0]?.spec ?? "";
-      const mine = duel?.others.find((one) => one.spec === spec);
+      const mine = duel?.others.find((one) => one.spec === nameOf(spec));
       const best = duel?.others[0];
       let text = now === undefined ? "Show one of the three cases." : `Choose for ${now.name}, and race.`;
       if (now !== undefined && mine !== undefined && best !== undefined) {

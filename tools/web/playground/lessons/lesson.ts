@@ -4,6 +4,7 @@ import type { ComponentChildren } from "preact";
 import type { Duel, PanelChoice, Shown } from "../bench/protocol.ts";
 import { defaultKnobs, type Knobs } from "../scene/drift.ts";
 import type { SceneChoice } from "../scene/catalogue.ts";
+import { nameOf } from "../state/spec.ts";
 import type { State } from "../state/state.ts";
 
 /** Facts by which an exercise is judged. */
@@ -24,6 +25,12 @@ export interface Exercise {
   /** The controls that the task speaks of. */
   control: () => ComponentChildren;
   hint: ComponentChildren;
+  /** Whether it can be done with these panels. If not, its controls first bring back those of the lesson's start. */
+  suits(panels: readonly PanelChoice[]): boolean;
+  /** The setting of the boxes that it is about. If others differ from the start, its controls bring back the start's. */
+  knob?: keyof Knobs;
+  /** Whether it is about several scenes, so that none is brought back. */
+  hasScenes?: true;
   check(facts: Facts): Verdict;
 }
 
@@ -38,10 +45,15 @@ export interface Lesson {
   text: ComponentChildren;
   tries: readonly Try[];
   /** Initial state of the lesson. */
-  start: Partial<State>;
+  start: Partial<State> & Pick<State, "scene" | "panels">;
   exercise: Exercise;
   /** Whether boxes have shadows on the axis of the sweep. */
   drawsShadows?: boolean;
+}
+
+/** Whether the panels search by these specs, or by others of the same names where a spec is a name alone. */
+export function areOf(panels: readonly PanelChoice[], ...specs: readonly string[]): boolean {
+  return specs.every((spec, at) => [panels[at]?.spec, nameOf(panels[at]?.spec ?? "")].includes(spec));
 }
 
 export function scene(name: string, count: number, knobs: Partial<Knobs> = {}): SceneChoice {

@@ -1,4 +1,4 @@
-// The panels as a PNG, each under its caption.
+// The panels as a PNG, each under its caption; and an SVG as a PNG.
 import type { Stage } from "../ui/stage.ts";
 import { palette } from "../ui/themes.ts";
 
@@ -17,6 +17,21 @@ export async function pngOf(stage: Stage, captions: readonly string[]): Promise<
     const place = stage.place(at);
     if (place !== undefined) context.fillText(caption, place.x + 8, place.y - 10);
   });
-  return await new Promise((resolve, reject) => picture.toBlob((blob) =>
+  return await blobOf(picture);
+}
+
+function blobOf(picture: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((resolve, reject) => picture.toBlob((blob) =>
     blob === null ? reject(new Error("the browser made no PNG")) : resolve(blob), "image/png"));
+}
+
+/** With two pixels for one of the SVG's, as documents need. */
+export async function pngOfSvg(svg: string): Promise<Blob> {
+  const image = new Image();
+  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  await image.decode();
+  const picture = document.createElement("canvas");
+  [picture.width, picture.height] = [2 * image.naturalWidth, 2 * image.naturalHeight];
+  picture.getContext("2d")!.drawImage(image, 0, 0, picture.width, picture.height);
+  return await blobOf(picture);
 }

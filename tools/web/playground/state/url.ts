@@ -4,6 +4,7 @@
 import { defaultKnobs, type Knobs } from "../scene/drift.ts";
 import type { Edit } from "../scene/edits.ts";
 import type { PanelChoice } from "../bench/protocol.ts";
+import { fileScene, sceneEntries } from "../scene/catalogue.ts";
 import { maxBoxes, maxPanels, defaultState, startOf, type Mode, type State } from "./state.ts";
 
 /** Four significant digits are finer than a pixel. */
@@ -17,13 +18,15 @@ function writeEdits(edits: readonly Edit[]): string {
   return edits.map((edit) => editNumbers.map((name) => short(edit[name])).join("_")).join("~");
 }
 
-function readEdits(text: string): Edit[] {
-  return text.split("~").flatMap((one) => {
+function readEdits(text: string): { valid: Edit[]; invalid: number } {
+  const parts = text.split("~").filter((one) => one !== "");
+  const valid = parts.flatMap((one) => {
     const numbers = one.split("_").map(Number);
     if (numbers.length !== editNumbers.length || !numbers.every(Number.isFinite)) return [];
     const edit = Object.fromEntries(editNumbers.map((name, at) => [name, numbers[at]])) as unknown as Edit;
     return Number.isInteger(edit.box) && edit.box >= 0 && edit.box < 2 * maxBoxes ? [edit] : [];
   });
+  return { valid, invalid: parts.length - valid.length };
 }
 
 function writePanels(panels: readonly PanelChoice[]): string {
@@ -31,16 +34,10 @@ function writePanels(panels: readonly PanelChoice[]): string {
 }
 
 function readPanels(text: string): PanelChoice[] {
-  return text.split(";").filter((one) => one !== "").slice(0, maxPanels).map((one) => {
+  return text.split(";").filter((one) => one !== "").map((one) => {
     const follow = one.startsWith("follow ");
     return { follow, spec: follow ? one.slice("follow ".length) : one };
   });
-}
-
-/** A number within a range, otherwise the default value. */
-function numberOf(text: string | null, defaultValue: number, min: number, max: number): number {
-  const value = text === null || text.trim() === "" ? NaN : Number(text);
-  return Number.isFinite(value) ? Math.min(max, Math.max(min, value)) : defaultValue;
 }
 
 const knobNames: Record<keyof Knobs, [min: number, max: number]> = {
@@ -86,38 +83,65 @@ export function writeState(state: State, time: number): string {
     .replace(/embed=$/, "embed");
 }
 
-/** Reads an address, before and after "#"; invalid values are replaced by defaults. */
-export function readState(search: string, hash: string): { state: State; time: number } {
+/** The items as a list: "a, b and c". */
+function listed(items: readonly unknown[]): string {
+  return items.length < 2 ? items.join() : `${items.slice(0, -1).join(", ")} or ${items[items.length - 1]}`;
+}
+
+/**
+ * Reads an address, before and after "#". Invalid values are replaced by defaults or by the nearest valid ones; `faults`
+ * are sentences that say so.
+ */
+export function readState(search: string, hash: string): { state: State; time: number; faults: string[] } {
   const query = new URLSearchParams(search.replace(/^\?/, ""));
   new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => query.set(name, value));
+  const faults: string[] = [];
   const usual = defaultState;
   const flag = (name: string, defaultValue: boolean): boolean => {
     const value = query.get(name);
     return value === null ? defaultValue : value !== "0" && value !== "false";
   };
-  const modes: Mode[] = ["play", "steps", "lesson"];
+  const number = (name: string, defaultValue: number, min: number, max: number): number => {
+    const text = query.get(name) ?? "";
+    if (text.trim() === "") return defaultValue;
+    const value = Number(text);
+    const kept = Number.isFinite(value) ? Math.min(max, Math.max(min, value)) : defaultValue;
+    if (kept !== value)
+      faults.push(`${name}=${text}: expected a number from ${min} to ${max.toLocaleString("en")}; the page takes ${kept}.`);
+    return kept;
+  };
+  const whole = (name: string, defaultValue: number, min: number, max: number): number =>
+    Math.round(number(name, defaultValue, min, max));
+  const oneOf = <Value extends string>(name: string, values: readonly Value[], defaultValue: Value): Value => {
+    const text = query.get(name);
+    const found = values.find((value) => value === text);
+    if (text !== null && found === undefined)
+      faults.push(`${name}=${text}: ${values.length > 5 ? "there is none" : `expected ${listed(values)}`}; the page takes ${defaultValue}.`);
+    return found ?? defaultValue;
+  };
   const knobs = { ...defaultKnobs };
   for (const [name, [min, max]] of Object.entries(knobNames) as [keyof Knobs, [number, number]][])
-    knobs[name] = numberOf(query.get(name), defaultKnobs[name], min, max);
+    knobs[name] = number(name, defaultKnobs[name], min, max);
   const panels = readPanels(query.get("a") ?? "");
-  const algorithms = ["brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"] as const;
-  const whole = (name: string, defaultValue: number, min: number, max: number): number =>
-    Math.round(numberOf(query.get(name), defaultValue, min, max));
-  const name = query.get("scene") ?? usual.scene.name;
-  const start = startOf(name);
-  const shownPanels = panels.length > 0 ? panels : start.panels;
+  if (panels.length > maxPanels) faults.push(`a: ${panels.length} panels; the page shows the first ${maxPanels}.`);
+  const scene = oneOf("scene", [...sceneEntries.map(({ name }) => name), fileScene], usual.scene.name);
+  const start = startOf(scene);
+  const shownPanels = panels.length > 0 ? panels.slice(0, maxPanels) : start.panels;
+  const edits = readEdits(query.get("edits") ?? "");
+  if (edits.invalid > 0) faults.push(`edits: ${edits.invalid} of them not of eight numbers; the page leaves them out.`);
   return {
-    time: numberOf(query.get("t"), 0, 0, 1e6),
+    faults,
+    time: number("t", 0, 0, 1e6),
     state: {
-      mode: query.has("lesson") ? "lesson" : modes.find((mode) => mode === query.get("mode")) ?? usual.mode,
+      mode: query.has("lesson") ? "lesson" : oneOf<Mode>("mode", ["play", "steps", "lesson"], usual.mode),
       lesson: whole("lesson", 1, 1, 7) - 1,
       scene: {
-        name,
+        name: scene,
         count: whole("n", start.count, 1, maxBoxes),
         seed: whole("seed", usual.scene.seed, 0, 2 ** 31 - 1),
         knobs,
       },
-      edits: readEdits(query.get("edits") ?? ""),
+      edits: edits.valid,
       panels: shownPanels,
       panel: whole("panel", 0, 0, shownPanels.length - 1),
       structure: flag("structure", true),
@@ -125,12 +149,12 @@ export function readState(search: string, hash: string): { state: State; time: n
       up: flag("up", false),
       selected: whole("box", -1, -1, 2 * maxBoxes),
       playing: !flag("paused", false),
-      pace: numberOf(query.get("pace"), 1, 0.05, 10),
+      pace: number("pace", 1, 0.05, 10),
       steps: {
-        algorithm: algorithms.find((one) => one === query.get("steps")) ?? usual.steps.algorithm,
+        algorithm: oneOf("steps", ["brute_force", "grid", "sweep_and_prune", "quadtree", "bvh"], usual.steps.algorithm),
         at: whole("step", 0, 0, 1e6),
         count: whole("stepboxes", usual.steps.count, 2, 40),
-        cell: numberOf(query.get("cell"), 0, 0, 1000),
+        cell: number("cell", 0, 0, 1000),
         capacity: whole("capacity", usual.steps.capacity, 1, 32),
       },
       embed: query.has("embed") && query.get("embed") !== "0",

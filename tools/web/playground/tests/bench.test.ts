@@ -4,6 +4,7 @@ import { test } from "node:test";
 
 import { Bench } from "../bench/bench.ts";
 import { refusal } from "../bench/budget.ts";
+import { duel } from "../bench/measure.ts";
 import { Mark, type Reply, type Setup, type Shown } from "../bench/protocol.ts";
 import { reasons } from "../bench/reasons.ts";
 import { sceneEntries } from "../scene/catalogue.ts";
@@ -80,7 +81,7 @@ test("a file is a scene of its frames, and a link without it says so", async () 
   await take({ kind: "setup", setup: file });
   await assert.rejects(frame(0), /no scene was set up/);
   const text = "frame,box,min_x,min_y,max_x,max_y\n0,0,0,0,1,1\n0,1,5,5,6,6\n1,0,0,0,5,5\n";
-  await take({ kind: "file", name: "boxes.csv", bytes: new TextEncoder().encode(text) });
+  await take({ kind: "file", name: "boxes.csv", bytes: new TextEncoder().encode(text), columns: "" });
   await take({ kind: "setup", setup: file });
   assert.equal((await frame(0)).pairs.length, 0);
   assert.equal((await frame(0.06)).pairs.length, 2);
@@ -106,6 +107,25 @@ test("frames that the clock did not see have no time, and some of them a mean", 
   assert.ok(Number.isNaN(times.add(0)));
   assert.equal(times.add(0.1), 0.05);
   assert.equal(median([3, 1, 2]), 2);
+});
+
+test("a race has its order drawn anew each round, and says what auto took and whether the machine was busy", async () => {
+  const order: string[] = [];
+  const engine = {
+    ...await loadEngine(),
+    find: () => ({ pairs: new Uint32Array(), statistics: { tests: 0, references: 0, cells: 0, hits: 0 }, milliseconds: 0,
+      explanation: "grid, since there are few boxes" }),
+    time: (spec: string, _: Float32Array, __: number, runs: number) => {
+      if (order.at(-1) !== spec) order.push(spec);
+      return runs * (spec === "bvh" && order.length % 2 === 0 ? 90 : 60);
+    },
+  };
+  const { auto, chosen, others, unsteady } = await duel(engine, new Float32Array(4), 2);
+  assert.equal(chosen, "grid");
+  assert.equal(auto, others[0]!.milliseconds);
+  assert.equal(unsteady, false, "only auto and the fastest count");
+  const before = order.filter((_, at) => order[at + 1] === "auto");
+  assert.ok(new Set(before).size > 2, `before auto came only ${[...new Set(before)].join()}`);
 });
 
 test("brute force is refused where it would stop the page", () => {

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { loadEngine } from "../engine/engine.ts";
+import { withoutOptions } from "../state/advice.ts";
 
 const engine = await loadEngine();
 
@@ -19,9 +20,9 @@ function bytesOf(hex: string): Uint8Array {
   return Uint8Array.from(hex.trim().split(/\s+/), (byte) => Number.parseInt(byte, 16));
 }
 
-function read(text: string | Uint8Array, name = "a file"): { frames: number[][][]; warning: string } {
+function read(text: string | Uint8Array, name = "a file", columns = ""): { frames: number[][][]; warning: string } {
   const { dimension, frames, warning } =
-    engine.read(name, typeof text === "string" ? new TextEncoder().encode(text) : text);
+    engine.read(name, typeof text === "string" ? new TextEncoder().encode(text) : text, columns);
   const stride = 2 * dimension;
   const boxes = (frame: Float32Array): number[][] =>
     Array.from({ length: frame.length / stride }, (_, at) => [...frame.subarray(stride * at, stride * at + stride)]);
@@ -58,6 +59,28 @@ test("says what is wrong with a table as the program does", () => {
     /^Error: a\.csv:2: column max_y is 'one', text; expected a number/);
   assert.throws(() => read("0,0,10,10\n12,12,6,4\n", "a.csv"), /say --columns=x,y,w,h/);
   assert.throws(() => read("name,colour\na,red\n", "a.csv"), /a\.csv:1: 'name,colour': no columns that give bounds/);
+});
+
+test("what the program's options would say is offered as columns, with which the file can be read", () => {
+  const adviceFor = (text: string): { text: string; ways: string[] } => {
+    try {
+      return withoutOptions(read(text, "a.csv").warning);
+    } catch (error) {
+      return withoutOptions((error as Error).message);
+    }
+  };
+  const table = "x,y,width,height\n1,2,4,6\n";
+  const { text, ways } = adviceFor(table);
+  assert.equal(text, "a.csv:1: 'x,y,width,height': column 'x' may be a minimum or a centre. But the one row is valid as this:");
+  assert.deepEqual(ways.map((columns) => read(table, "a.csv", columns).frames), [[[[1, 2, 5, 8]]], [[[-1, -1, 3, 5]]]]);
+  assert.deepEqual(adviceFor("0,0,10,10\n12,12,6,4\n").ways, ["x,y,w,h"]);
+  assert.deepEqual(adviceFor("0,0,10,10\n").ways, ["x,y,w,h"]);
+  for (const other of ["name,colour\na,red\n", "1,2,3\n", "bbox\n\"0,0,9,9\"\n", "min_x,min_y,max_x,max_y\n3,3,1,1\n"])
+    assert.doesNotMatch(adviceFor(other).text, /--/);
+});
+
+test("a JSON file that is no map is no table either", () => {
+  assert.throws(() => read('[{"x":1,"w":2}]', "club.json"), /club\.json: an array; expected an object of GeoJSON, COCO or/);
 });
 
 test("names what the page does not read", () => {

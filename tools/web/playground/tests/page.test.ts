@@ -360,6 +360,32 @@ describe("the playground", { skip: missing }, () => {
     await page.close();
   });
 
+  test("choosing in an exercise brings back what the exercise needs", { skip: hasLibrary ? false : "skipped: the engine is missing" }, async () => {
+    const { page } = await open(browser, "mode=lesson&lesson=1");
+    await page.getByRole("button", { name: "50 boxes" }).click();
+    await until(page, () => window.playground.state.panels.length === 1);
+    await page.getByLabel("The second panel's algorithm").selectOption("quadtree");
+    await page.locator(".exercise.done").waitFor();
+    assert.deepEqual(await page.evaluate(() => [window.playground.state.scene.count, ...window.playground.state.panels.map(({ spec }) => spec)]),
+      [200, "brute_force", "quadtree"]);
+    await page.getByRole("button", { name: "Lesson 2:" }).click();
+    await page.getByRole("button", { name: "A street" }).click();
+    await page.getByLabel("Algorithm of panel 1").selectOption("bvh");
+    const axis = page.getByLabel("axis", { exact: true });
+    assert.equal(await axis.locator("option[value=z]").count(), 0);
+    await axis.selectOption("y");
+    await page.locator(".exercise.done").waitFor();
+    for (const [lesson, slider, value] of [[4, "Clustering", "0.7"], [6, "Share that moves", "0.02"]] as const) {
+      await page.getByRole("button", { name: `Lesson ${lesson}:` }).click();
+      await page.getByRole("button", { name: "Close panel 2" }).click();
+      await page.getByRole("slider", { name: slider }).fill(value);
+      await page.locator(".exercise.done").waitFor();
+    }
+    await page.getByRole("slider", { name: "Share that moves" }).fill("0");
+    await page.getByText("Done before").waitFor();
+    await page.close();
+  });
+
   test("is embedded without its controls, and leads to the whole", async () => {
     const { page, problems } = await open(browser, "n=50", { search: "?embed", width: 480, height: 320 });
     assert.equal(await page.locator("header.top").count(), 0);
@@ -403,6 +429,13 @@ describe("the playground", { skip: missing }, () => {
     assert.match(svg, /grid:cell=4: \d+ tests, \d+ pairs/);
     assert.equal((await save(/^GIF/)).subarray(0, 6).toString(), "GIF89a");
     assert.equal((await save(/^WebM/)).readUInt32BE(0), 0x1a45dfa3);
+    // The numbers shown are points of the chart.
+    await page.getByRole("slider", { name: "Number of boxes" }).fill("2.2");
+    await page.getByRole("button", { name: "Chart as SVG" }).waitFor();
+    const chart = (await save("Chart as SVG")).toString();
+    assert.match(chart, /^<svg xmlns[^]*grid:cell=4[^]*<circle /);
+    assert.equal((await save("Chart as PNG")).subarray(1, 4).toString(), "PNG");
+    assert.match((await save("Times as CSV")).toString(), /^algorithm,boxes,milliseconds\ngrid:cell=4,40,[\d.]+\n/);
     await page.getByRole("button", { name: "JavaScript" }).click();
     assert.match(await page.locator("pre.lines").innerText(), /algorithm: "grid:cell=4"/);
     assert.deepEqual(problems, []);

@@ -55,6 +55,15 @@ test("what an address says wrongly is as usual, and numbers keep to their range"
   assert.equal(state.pace, 1);
 });
 
+test("an address that is wrong says so, and what is taken instead", () => {
+  const { faults, state } = readState("", "#scene=drfit&n=abc&steps=octree&lesson=9&a=grid;bvh;auto;grid;grid&edits=1_2~x");
+  assert.deepEqual(faults.map((fault) => fault.split(":")[0]), ["a", "scene=drfit", "edits", "lesson=9", "n=abc", "steps=octree"]);
+  assert.match(faults.join(), /n=abc: expected a number from 1 to 100,000; the page takes 400/);
+  assert.equal(state.scene.name, "drift");
+  assert.equal(state.panels.length, 4);
+  assert.deepEqual(readState("?embed", "#n=5&pace=0.5&a=grid").faults, []);
+});
+
 test("a thrown box flies, bounces and was where it was before", () => {
   const boxes = new Float32Array(16);
   const bounds = [0, 0, 100, 100];

@@ -1,7 +1,7 @@
 // The current panel's algorithm: its description, its tunables and the reason for auto's choice.
 import type { Tunable } from "../engine/types.ts";
 import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
-import { algorithms, changePanel, patch, state, told } from "../state/store.ts";
+import { algorithms, changePanel, dimension, patch, state, told } from "../state/store.ts";
 import { Card, Choice, Slider, Switch } from "./field.tsx";
 
 /** The range of a slider for a tunable without bounds of its own. */
@@ -19,18 +19,26 @@ function short(value: number): string {
   return String(Number(value.toPrecision(3)));
 }
 
-/** A tunable of a panel's algorithm; nothing if the algorithm has none of that name. */
-export function TunableField({ panel, name }: { panel: number; name: string }) {
-  const spec = state.value.panels[panel]!.spec;
+/**
+ * A tunable of a panel's algorithm; nothing if the algorithm has none of that name. With `of`, that of this spec if the
+ * panel has another algorithm.
+ */
+export function TunableField({ panel, name, of }: { panel: number; name: string; of?: string }) {
+  const current = (): string => {
+    const { spec } = state.value.panels[panel]!;
+    return of === undefined || nameOf(spec) === nameOf(of) ? spec : of;
+  };
+  const spec = current();
   const tunable = tunablesOf(spec).find((one) => one.name === name);
   if (tunable === undefined) return null;
   const bounds = told.value?.bounds;
   const worldWidth = bounds === undefined ? 100 : bounds[told.value!.dimension]! - bounds[0]!;
   const value = settingsOf(spec).get(name);
-  const set = (text: string | undefined): void => changePanel(panel, { spec: withSetting(spec, name, text) });
+  const set = (text: string | undefined): void => changePanel(panel, { spec: withSetting(current(), name, text) });
   if (tunable.type === "choice") {
     return <Choice label={tunable.name} value={value ?? tunable.default}
-      options={[...new Set([tunable.default, ...(tunable.choices ?? [])])].map((one) => ({ value: one, label: one }))}
+      options={[...new Set([tunable.default, ...(tunable.choices ?? [])])].filter((one) => one !== "z" || dimension.value === 3)
+        .map((one) => ({ value: one, label: one }))}
       onChange={(one) => set(one === tunable.default ? undefined : one)} />;
   }
   const [min, max] = rangeOf(tunable, worldWidth);

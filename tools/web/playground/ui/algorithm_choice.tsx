@@ -11,7 +11,8 @@ export function PanelAlgorithm({ panel, label, bare = false }: { panel: number; 
     ({ value: one.name, label: one.name, group: groups[one.kind] ?? one.kind }));
   // An algorithm that does not support the scene's dimension stays listed, with its search's error
   // beside it.
-  if (!options.some(({ value }) => value === name)) options.unshift({ value: name, label: name, group: "Chosen" });
+  if (!options.some(({ value }) => value === name))
+    options.unshift({ value: name, label: name === "" ? "choose one …" : name, group: "Chosen" });
   return <Choice label={label} value={name} options={options} bare={bare}
     onChange={(spec) => changePanel(panel, { spec })} />;
 }

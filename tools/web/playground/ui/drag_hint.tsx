@@ -2,6 +2,7 @@
 import { useSignalEffect } from "@preact/signals";
 import { useRef } from "preact/hooks";
 
+import { fileScene } from "../scene/catalogue.ts";
 import { held, shown, state } from "../state/store.ts";
 import { between } from "./numbers.ts";
 import type { Stage } from "./stage.ts";
@@ -30,7 +31,7 @@ export function DragHint({ stage }: { stage: Stage }) {
     const { mode, edits, embed, selected } = state.value;
     const hint = element.current;
     if (hint === null) return;
-    hint.hidden = now === null || now.dimension !== 2 || mode !== "play" || embed || edits.length > 0 || selected >= 0 ||
+    hint.hidden = now === null || now.dimension !== 2 || now.scene.name === fileScene || mode !== "play" || embed || edits.length > 0 || selected >= 0 ||
       held.value !== null;
     if (hint.hidden || now === null) return;
     if (scene.current !== now.scene.name || 4 * box.current >= now.boxes.length) {

@@ -3,6 +3,7 @@ import { batch, signal } from "@preact/signals";
 
 import type { Opened } from "../bench/protocol.ts";
 import { fileScene } from "../scene/catalogue.ts";
+import { withoutOptions } from "../state/advice.ts";
 import { bench } from "../state/client.ts";
 import { defaultState } from "../state/state.ts";
 import { changeScene, chooseScene, fileName, patch, problem, say, state } from "../state/store.ts";
@@ -12,10 +13,21 @@ import { wholeView } from "./view.ts";
 /** Whether a file hovers over the page. */
 export const hovering = signal(false);
 
+/** How the open file was read, if that is uncertain. */
+export const fileNote = signal("");
+
+let last: File | undefined;
+
+/** Reads the last file again, with other columns. */
+export async function openAgain(columns: string): Promise<void> {
+  if (last !== undefined) await openFile(last, columns);
+}
+
 /** Lets the bench read a file; it replies that the file is open, or why not. */
-export async function openFile(file: File): Promise<void> {
+export async function openFile(file: File, columns = ""): Promise<void> {
+  last = file;
   try {
-    bench().send({ kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+    bench().send({ kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), columns });
   } catch (error) {
     problem.value = error instanceof Error ? error.message : String(error);
   }
@@ -24,6 +36,7 @@ export async function openFile(file: File): Promise<void> {
 export function showFile({ name, boxes, frames, warning }: Opened): void {
   batch(() => {
     fileName.value = name;
+    fileNote.value = warning;
     patch({ mode: "play" });
     chooseScene(fileScene);
     // The settings of the opening scene do not suit other boxes.
@@ -32,7 +45,7 @@ export function showFile({ name, boxes, frames, warning }: Opened): void {
     changeScene({ count: boxes, seed: Math.floor(performance.now()) });
     wholeView();
   });
-  say(`${name}: ${plural(boxes, "box")}, ${plural(frames, "frame")}${warning === "" ? "" : `. ${warning}`}`);
+  say(`${name}: ${plural(boxes, "box")}, ${plural(frames, "frame")}${warning === "" ? "" : `. ${withoutOptions(warning).text}`}`);
 }
 
 export function acceptDrops(): void {

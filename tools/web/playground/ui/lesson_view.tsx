@@ -4,6 +4,7 @@ import { useEffect } from "preact/hooks";
 
 import { lessons } from "../lessons/index.ts";
 import type { Lesson, Verdict } from "../lessons/lesson.ts";
+import type { Knobs } from "../scene/drift.ts";
 import type { State } from "../state/state.ts";
 import { clock, duel, latest, patch, say, shown, state } from "../state/store.ts";
 import { wholeView } from "./view.ts";
@@ -19,6 +20,16 @@ function show(change: Partial<State>): void {
 
 export function openLesson(at: number): void {
   show({ ...lessons[at]!.start, mode: "lesson", lesson: at });
+}
+
+/** Brings back what the exercise needs of the lesson's start, and leaves the rest as it is. */
+function restore({ start, exercise }: Lesson): void {
+  const { scene, panels } = state.value;
+  const knobs = Object.keys(start.scene.knobs) as (keyof Knobs)[];
+  const isSame = exercise.hasScenes === true || (scene.name === start.scene.name && scene.count === start.scene.count &&
+    knobs.every((name) => name === exercise.knob || scene.knobs[name] === start.scene.knobs[name]));
+  if (!isSame) patch({ scene: start.scene, edits: [], selected: -1 });
+  if (!exercise.suits(panels)) patch({ panels: start.panels, panel: start.panel ?? 0 });
 }
 
 export function LessonText() {
@@ -59,11 +70,12 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
   const verdict = useSignal<Verdict | null>(null);
   useEffect(() => {
     const judge = (): void => {
-      // The results must be those of the current settings.
+      // The results must be those of the current settings, and of one time.
       const now = shown.value;
       const { panels, scene } = state.value;
       const specs = (all: readonly { spec: string }[]): string => all.map(({ spec }) => spec).join(";");
-      if (now === null || specs(now.panels) !== specs(panels) || JSON.stringify(now.scene) !== JSON.stringify(scene)) return;
+      if (now === null || specs(now.panels) !== specs(panels) || JSON.stringify(now.scene) !== JSON.stringify(scene) ||
+        now.panels.some(({ late }) => late)) return;
       const next = lesson.exercise.check({ state: state.value, shown: now, duel: duel.value });
       if (next.text !== verdict.value?.text || next.done !== verdict.value.done) verdict.value = next;
       if (next.done && !done.value) {
@@ -75,10 +87,11 @@ function ExerciseView({ lesson }: { lesson: Lesson }) {
     return () => clearInterval(timer);
   }, [lesson]);
   return (
-    <section class={`exercise ${done.value ? "done" : ""}`} aria-label="Exercise">
-      <h2>Exercise {done.value && <span class="badge">Done</span>}</h2>
+    <section class={`exercise ${verdict.value?.done === true ? "done" : ""}`} aria-label="Exercise">
+      <h2>Exercise {done.value && <span class="badge">{verdict.value?.done === true ? "Done" : "Done before"}</span>}</h2>
       {lesson.exercise.task}
-      {lesson.exercise.control()}
+      {/* Before the control's own handler. */}
+      <div onInputCapture={() => restore(lesson)} onChangeCapture={() => restore(lesson)}>{lesson.exercise.control()}</div>
       <p class="verdict">{verdict.value?.text ?? "…"}</p>
       <div class="row">
         <button type="button" onClick={() => show(lesson.start)}>Start again</button>

@@ -2,6 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 
 import type { PanelResult } from "../bench/protocol.ts";
+import { nameOf, settingsOf, withSetting } from "../state/spec.ts";
 import { changePanel, removePanel, state, told } from "../state/store.ts";
 import { PanelAlgorithm } from "./algorithm_choice.tsx";
 import { DragHint } from "./drag_hint.tsx";
@@ -35,8 +36,10 @@ export function PanelView({ at, stage }: { at: number; stage: Stage }) {
         aria-label={`Boxes, searched by ${choice.spec}`} aria-describedby="keys-help" onKeyDown={windowKey}>
         {at === 0 && <DragHint stage={stage} />}
       </div>
-      <Counts at={at} />
-      {!embed && <Explanation at={at} stage={stage} window={element} />}
+      <div class="below">
+        <Counts at={at} />
+        {!embed && <Explanation at={at} stage={stage} window={element} />}
+      </div>
       {at === 0 && <p id="keys-help" class="unseen">{keysHelp}</p>}
     </section>
   );
@@ -56,8 +59,24 @@ function Counts({ at }: { at: number }) {
       <p class="structure-caption">
         {result.late ? "Too slow for every frame: shown is an earlier one. " : ""}
         {result.outline?.caption ?? ""}
+        <OneCell at={at} result={result} />
       </p>
     </div>
+  );
+}
+
+/** Why `grid` shows one cell, and how it shows several. */
+function OneCell({ at, result: { outline, spec } }: { at: number; result: PanelResult }) {
+  const now = told.value!;
+  const isGrid = nameOf(spec) === "grid";
+  if ((!isGrid && outline?.caption.startsWith("grid:") !== true) || settingsOf(spec).has("cell") ||
+    state.value.panels[at]?.follow !== false || outline?.levels.length !== 1 || outline.levels[0]!.length !== 2 * now.dimension)
+    return null;
+  const cell = String(Number(((now.bounds[now.dimension]! - now.bounds[0]!) / 20).toPrecision(2)));
+  return (
+    <>: the fastest for so few boxes.{" "}
+      {isGrid && state.value.mode === "play" && !state.value.embed && <button type="button" onClick={() => changePanel(at, { spec: withSetting(spec, "cell", cell) })}>
+        Show rows: cell={cell}</button>}</>
   );
 }
 

@@ -3,8 +3,9 @@ import { sceneEntries, sceneEntry, fileScene } from "../scene/catalogue.ts";
 import type { Knobs } from "../scene/drift.ts";
 import { maxBoxes } from "../state/state.ts";
 import { changeScene, chooseScene, fileName, state } from "../state/store.ts";
-import { openFile } from "./drop.ts";
+import { fileNote, openFile } from "./drop.ts";
 import { Card, Choice, Slider } from "./field.tsx";
+import { FileAdvice } from "./file_advice.tsx";
 import { grouped } from "./numbers.ts";
 
 interface Knob {
@@ -39,7 +40,7 @@ export function KnobSlider({ name }: { name: keyof Knobs }) {
   const { label, min, max, logarithmic, text, hint } = knobs.find((knob) => knob.name === name)!;
   return <Slider label={label} value={scene.knobs[name]} min={min} max={max} text={text} hint={hint}
     logarithmic={logarithmic ?? false}
-    onChange={(value) => changeScene({ knobs: { ...scene.knobs, [name]: value } })} />;
+    onChange={(value) => changeScene({ knobs: { ...state.value.scene.knobs, [name]: value } })} />;
 }
 
 export function SceneCard() {
@@ -51,6 +52,7 @@ export function SceneCard() {
     <Card title="Boxes">
       <Choice label="Scene" value={scene.name} options={options} onChange={chooseScene} />
       <p class="note">{entry?.summary ?? "Boxes of a file that was dropped here. It stays in this page."}</p>
+      {entry === undefined && fileNote.value !== "" && <FileAdvice text={fileNote.value} />}
       {entry?.breaks !== undefined && <p class="note">It breaks <code>{entry.breaks.spec}</code>: {entry.breaks.why}</p>}
       {scene.name !== fileScene && <Slider label="Number of boxes" value={scene.count} min={10} max={maxBoxes}
         logarithmic text={grouped} onChange={(value) => changeScene({ count: rounded(value) })} />}
@@ -60,7 +62,7 @@ export function SceneCard() {
           <button type="button" onClick={() => changeScene({ seed: scene.seed % 1000 + 1 })}>Draw new boxes at random</button>}
         <label class="file-choice">
           <span>Open a file …</span>
-          <input type="file" class="unseen" accept=".csv,.txt,.btrace,.ply,.json,.geojson" onChange={(event) => {
+          <input type="file" class="unseen" accept=".csv,.txt,.btrace,.ply,.obj,.json,.geojson" onChange={(event) => {
             const file = event.currentTarget.files?.[0];
             if (file !== undefined) void openFile(file);
           }} />

@@ -38,7 +38,7 @@ function captions(): string[] {
 }
 
 /** Reports an error instead of saving. */
-async function attempt(work: () => Promise<void> | void): Promise<void> {
+export async function attempt(work: () => Promise<void> | void): Promise<void> {
   try {
     await work();
   } catch (error) {

@@ -9,6 +9,7 @@ import { changeScene, patch, state } from "../state/store.ts";
 import { steps } from "../steps/index.ts";
 import { Buttons, Slider } from "./field.tsx";
 import { grouped } from "./numbers.ts";
+import { Notice } from "./stage_view.tsx";
 import { StepPicture } from "./step_picture.tsx";
 import { StepStateText } from "./step_state.tsx";
 
@@ -22,6 +23,24 @@ const algorithms: readonly { value: StepAlgorithm; label: string }[] = [
 
 function change(part: Partial<State["steps"]>): void {
   patch({ steps: { ...state.value.steps, ...part } });
+}
+
+/** The structure of each algorithm, as its picture shows it. */
+const structures: Record<StepAlgorithm, string> = {
+  brute_force: "", grid: "cells; filled: the current one, or those that the box covers",
+  sweep_and_prune: "the sweep line, and the active boxes", quadtree: "nodes; filled: the current one", bvh: "nodes; filled: the current ones",
+};
+
+function StepLegend({ algorithm }: { algorithm: StepAlgorithm }) {
+  const key = (colour: string) => <i class={`key key-${colour}`} aria-hidden="true" />;
+  return (
+    <ul class="legend" aria-label="Legend">
+      <li>{key("about")} the current box</li>
+      <li>{key("tested")} compared now (dashed: they are apart)</li>
+      <li>{key("lit")} in a pair</li>
+      {structures[algorithm] !== "" && <li>{key("structure")} {structures[algorithm]}</li>}
+    </ul>
+  );
 }
 
 export function StepsView() {
@@ -82,11 +101,13 @@ export function StepsView() {
         <p>The picture marks the current box or pair, and the listing marks the current line: the paper's,
           with its errors mended. Step with the
           buttons or the arrow keys.</p>
+        <Notice />
       </header>
       <div class="steps-left">
         <Buttons label="Algorithm" value={algorithm} options={algorithms}
           onChange={(value) => change({ algorithm: value, at: 0 })} />
         <StepPicture boxes={boxes} step={step} found={found} />
+        <StepLegend algorithm={algorithm} />
         <p class="step-text" role="status" aria-live={playing.value ? "off" : "polite"}>{step.text}</p>
         <div class="row" role="group" aria-label="Steps">
           <button type="button" aria-label="First step" disabled={at === 0} onClick={() => go(0)}>|◂</button>

@@ -1,64 +1,33 @@
 // Time by number of boxes: measured over the whole range, or collected while the visitor drags the
 // number.
-import { useEffect, useRef } from "preact/hooks";
-import UPlot from "uplot";
+import { signal } from "@preact/signals";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
 import type { Measured } from "../bench/protocol.ts";
+import { chartOf, csvOf, type Series } from "../draw/chart.ts";
+import { pngOfSvg } from "../out/png.ts";
+import { saveAs } from "../out/save.ts";
 import { fileScene } from "../scene/catalogue.ts";
 import { bench } from "../state/client.ts";
 import { measured, measuring, shown, state, timesKey } from "../state/store.ts";
 import { Card } from "./field.tsx";
 import { duration, grouped } from "./numbers.ts";
+import { attempt } from "./share_card.tsx";
 import { theme } from "./themes.ts";
 
 /** Eight per power of ten, from 10 to 100,000. */
 const counts = Array.from({ length: 33 }, (_, at) => Math.round(10 ** (1 + at / 8)));
 
-/** Five colours that colour-blind people can tell apart (after Okabe and Ito); light and dark. */
-const inks: readonly (readonly [string, string])[] = [
-  ["#0067a8", "#5cb8f5"], ["#c84a00", "#ff9350"], ["#00806a", "#2fc49a"], ["#9c3f87", "#e08fbe"], ["#7a5200", "#f0b43c"],
-];
-const dashes = [[], [6, 3], [2, 3], [8, 3, 2, 3], []];
+/** Width of the chart, in pixels. */
+const width = signal(640);
 
-/** The series by spec. */
-function table(): { specs: string[]; data: UPlot.AlignedData } {
+function table(): Series[] {
   const bySpec = new Map<string, Map<number, number>>();
   for (const { spec, count, milliseconds } of measured.value) {
-    const times = bySpec.get(spec) ?? new Map<number, number>();
-    bySpec.set(spec, times);
-    times.set(count, milliseconds);
+    if (!bySpec.has(spec)) bySpec.set(spec, new Map());
+    bySpec.get(spec)!.set(count, milliseconds);
   }
-  const xs = [...new Set([...bySpec.values()].flatMap((times) => [...times.keys()]))].sort((a, b) => a - b);
-  return {
-    specs: [...bySpec.keys()],
-    data: [xs, ...[...bySpec.values()].map((times) => xs.map((x) => times.get(x) ?? null))],
-  };
-}
-
-function options(specs: readonly string[], width: number): UPlot.Options {
-  const dark = theme.value === "dark";
-  const text = dark ? "#a5aebd" : "#5a6473";
-  const grid = { stroke: dark ? "#2a313d" : "#e6e9ef", width: 1 };
-  const axis = { stroke: text, grid, ticks: grid, font: "13px system-ui, sans-serif" };
-  // uPlot leaves out the labels between powers of ten.
-  return {
-    width, height: Math.round(Math.min(460, Math.max(300, 0.4 * width))),
-    padding: [null, 24, null, null],
-    legend: { live: false },
-    cursor: { drag: { x: false, y: false } },
-    scales: { x: { distr: 3, time: false }, y: { distr: 3 } },
-    axes: [
-      { ...axis, label: "boxes", labelFont: axis.font, labelSize: 20, values: (_, all) => all.map((one) => one === null ? "" : grouped(one)) },
-      { ...axis, size: 70, values: (_, all) => all.map((one) => one === null ? "" : duration(one)) },
-    ],
-    series: [
-      { label: "boxes" },
-      ...specs.map((spec, at) => ({
-        label: spec, stroke: inks[at % inks.length]![dark ? 1 : 0], width: 2, dash: dashes[at % dashes.length]!,
-        spanGaps: true, points: { show: true, size: 5 },
-      })),
-    ],
-  };
+  return [...bySpec].map(([name, points]) => ({ name, points: [...points].sort(([a], [b]) => a - b) }));
 }
 
 /** The results on screen are measurements as well: the latest for each number of boxes counts. */
@@ -80,7 +49,8 @@ function noteShown(): void {
 export function TimesCard() {
   const element = useRef<HTMLDivElement>(null);
   const key = useRef(timesKey.value);
-  const { specs, data } = table();
+  const series = table();
+  const numbers = new Set(measured.value.map(({ count }) => count));
   useEffect(() => {
     if (key.current !== timesKey.value) {
       key.current = timesKey.value;
@@ -92,30 +62,39 @@ export function TimesCard() {
     const timer = setInterval(noteShown, 500);
     return () => clearInterval(timer);
   }, []);
-  useEffect(() => {
-    if (element.current === null || data[0].length < 2) return undefined;
-    const chart = new UPlot(options(specs, Math.max(240, element.current.clientWidth)), data, element.current);
-    return () => chart.destroy();
-  }, [measured.value, theme.value]);
+  useLayoutEffect(() => {
+    const sizes = new ResizeObserver(() => { width.value = Math.max(300, element.current!.clientWidth); });
+    sizes.observe(element.current!);
+    return () => sizes.disconnect();
+  }, []);
   const start = (): void => {
     measuring.value = true;
     measured.value = [];
     bench().send({ kind: "measure", counts, specs: [...new Set(state.value.panels.map(({ spec }) => spec))] });
   };
-  const last = data[0].length - 1;
-  const summary = last < 1 ? "" : `Time against the number of boxes, from ${grouped(data[0][0]!)} to ${grouped(data[0][last]!)}: ` +
-    specs.map((spec, at) => {
-      const known = [...data[at + 1]!].filter((one): one is number => typeof one === "number");
-      return `${spec} from ${duration(known[0] ?? 0)} to ${duration(known[known.length - 1] ?? 0)}`;
-    }).join("; ");
+  const chart = numbers.size < 2 ? "" : chartOf(series, width.value, theme.value);
+  const summary = chart === "" ? "" : `Time against the number of boxes, from ${grouped(Math.min(...numbers))} to ` +
+    `${grouped(Math.max(...numbers))}: ` +
+    series.map(({ name, points }) => `${name} from ${duration(points[0]![1])} to ${duration(points.at(-1)![1])}`).join("; ");
+  const save = (what: string, kind: string, of: () => Blob | Promise<Blob>) =>
+    <button type="button" onClick={() => void attempt(async () => saveAs(await of(), `broadside-times.${kind.toLowerCase()}`))}>
+      {`${what} as ${kind}`}</button>;
   return (
     <Card title="Time against the number of boxes" class="large">
       <p class="note">How long does a search take, and how fast does the time grow? Measure every algorithm above on 10
         to 100,000 of these boxes, or drag the number of boxes yourself: each time shown becomes a point. Times are
         measured in this browser, on this machine; both axes are logarithmic.</p>
-      <button type="button" disabled={measuring.value || state.value.scene.name === fileScene} onClick={start}>
-        {measuring.value ? "Measuring …" : "Measure 10 to 100,000 boxes"}</button>
-      <div ref={element} class="times" role="img" aria-label={summary || "No times yet"} />
+      <div class="row">
+        <button type="button" disabled={measuring.value || state.value.scene.name === fileScene} onClick={start}>
+          {measuring.value ? "Measuring …" : "Measure 10 to 100,000 boxes"}</button>
+        {chart !== "" && !measuring.value && <>
+          {save("Chart", "SVG", () => new Blob([chart], { type: "image/svg+xml" }))}
+          {save("Chart", "PNG", () => pngOfSvg(chart))}
+          {save("Times", "CSV", () => new Blob([csvOf(series)], { type: "text/csv" }))}
+        </>}
+      </div>
+      <div ref={element} class="times" role="img" aria-label={summary || "No times yet"}
+        dangerouslySetInnerHTML={{ __html: chart }} />
     </Card>
   );
 }

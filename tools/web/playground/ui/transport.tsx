@@ -50,6 +50,8 @@ export function Transport() {
         {flat && <Switch label="record drags for replay" value={recording.value}
           hint="Keep the path of a dragged box, to scrub through it later"
           onChange={(value) => { recording.value = value; }} />}
+        {flat && recording.value && <span class="note">Drag a box along a path, then move Time back: it goes the same way
+          again. Otherwise only the place where it was let go is kept.</span>}
         {edits.length > 0 && <button type="button" onClick={() => {
           patch({ edits: [], selected: -1 });
           say("All boxes are as the scene has them");
