@@ -27,8 +27,8 @@ export const choosing: Lesson = {
       <p>No algorithm suits all boxes. How many are there? Are they spread evenly, along a line, or in clusters? Do sizes
         differ? How many move? The answers decide:</p>
       <ul>
-        <li>up to some forty: <code>brute_force</code>, there is nothing to build;</li>
-        <li>some forty to some ten thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
+        <li>up to some 300: <code>brute_force</code>, there is nothing to build;</li>
+        <li>some 300 to some ten thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
         <li>more, spread over the plane or space: <code>grid</code> as well;</li>
         <li>more, along a line: <code>sweep_and_prune</code>, one sorted sweep finds all pairs;</li>
         <li>more, crowded or in dense clusters: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
