@@ -216,18 +216,18 @@ constexpr std::size_t kept_in_registers = 2;
 
 constexpr std::size_t vectors = fan_out / lanes;
 
-/// The lists of a group: `size` in number if it is not 0, otherwise group.count.
-template <int D, std::size_t size>
+/// The lists of a group: `Size` in number if it is not 0, otherwise group.count.
+template <int D, std::size_t Size>
 class NearLists {
  public:
   HWY_INLINE explicit NearLists(NearGroup<D>& group) : group_(group) {
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < Size; ++i) {
       for (std::size_t v = 0; v < vectors; ++v) kept_[i][v] = load(i, v);
     }
   }
 
   HWY_INLINE void store() {
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < Size; ++i) {
       for (std::size_t v = 0; v < vectors; ++v) hn::Store(kept_[i][v], Keys(), place(i, v));
     }
   }
@@ -235,9 +235,9 @@ class NearLists {
   /// Inserts a box with these keys into the lists of vector `v`. Returns whether it may be in any.
   HWY_INLINE unsigned insert(std::size_t v, hn::Vec<Keys> key) {
     const Keys tag;
-    if constexpr (size != 0) {
-      const auto is_near = hn::Lt(key, kept_[size - 1][v]);
-      for (std::size_t i = 0; i < size; ++i) {
+    if constexpr (Size != 0) {
+      const auto is_near = hn::Lt(key, kept_[Size - 1][v]);
+      for (std::size_t i = 0; i < Size; ++i) {
         const auto other = kept_[i][v];
         kept_[i][v] = hn::Min(key, other);
         key = hn::Max(key, other);
@@ -261,8 +261,8 @@ class NearLists {
     const Keys tag;
     auto farthest = hn::Zero(tag);
     for (std::size_t v = 0; v < vectors; ++v) {
-      if constexpr (size != 0)
-        farthest = hn::Max(farthest, kept_[size - 2][v]);
+      if constexpr (Size != 0)
+        farthest = hn::Max(farthest, kept_[Size - 2][v]);
       else
         farthest = hn::Max(farthest, load(group_.count - 2, v));
     }
@@ -276,15 +276,15 @@ class NearLists {
   HWY_INLINE hn::Vec<Keys> load(std::size_t i, std::size_t v) const { return hn::Load(Keys(), place(i, v)); }
 
   NearGroup<D>& group_;
-  hn::Vec<Keys> kept_[size == 0 ? 1 : size][vectors];
+  hn::Vec<Keys> kept_[Size == 0 ? 1 : Size][vectors];
 };
 
 /// The queries of a group, to measure distances from boxes, or from points that are lower bounds.
-template <int D, bool are_points>
+template <int D, bool ArePoints>
 class NearQueries {
  public:
   HWY_INLINE explicit NearQueries(const NearGroup<D>& group) : group_(group) {
-    if constexpr (are_points) {
+    if constexpr (ArePoints) {
       for (int axis = 0; axis < D; ++axis) {
         for (std::size_t v = 0; v < vectors; ++v) {
           const FloatVector at = load(group.queries.min[axis], v * lanes);
@@ -297,7 +297,7 @@ class NearQueries {
   /// The squared distances, finite, from the box in a lane of a leaf to the queries of vector `v`.
   HWY_INLINE FloatVector distances(const Block<D>& leaf, std::size_t lane, std::size_t v) const {
     FloatVector sum;
-    if constexpr (are_points) {
+    if constexpr (ArePoints) {
       sum = hn::Zero(Floats());
       for (int axis = 0; axis < D; ++axis) {
         const FloatVector gap = hn::Sub(all(leaf.min[axis][lane]), at_[axis][v]);
@@ -316,15 +316,15 @@ class NearQueries {
   FloatVector at_[D][vectors];
 };
 
-template <int D, bool are_points, std::size_t size>
+template <int D, bool ArePoints, std::size_t Size>
 HWY_INLINE void search_group(const BvhView<D>& tree, NearGroup<D>& group) {
   const Keys tag;
   float limit = group.limit;
   std::size_t tested = 0;
   std::uint32_t leaves = 0;
   const DistanceFrom<D> from_all({bounds(group.queries), group.weight});
-  const NearQueries<D, are_points> queries(group);
-  NearLists<D, size> lists(group);
+  const NearQueries<D, ArePoints> queries(group);
+  NearLists<D, Size> lists(group);
   traverse_near(
       tree, from_all, group.own_leaf, [&] { return limit; },
       [&](std::uint32_t number) HWY_ATTR {
