@@ -80,8 +80,8 @@ void with_each_follower(const Body& body) {
   for (const Algorithm& algorithm : algorithms()) {
     if (algorithm.kind != AlgorithmKind::own) continue;
     const bool follows = !algorithm.in<D>().followers.empty();
-    EXPECT_EQ(follows, offers_update(algorithm)) << algorithm.name;
-    EXPECT_EQ(follows, algorithm.gives_candidates) << algorithm.name;
+    EXPECT_TRUE(follows || !offers_update(algorithm)) << algorithm.name;
+    EXPECT_TRUE(algorithm.gives_candidates || !follows) << algorithm.name;
     for (const FollowerChoice<D>& choice : algorithm.in<D>().followers) {
       SCOPED_TRACE(algorithm.name + ", " + choice.name + ", " + std::to_string(D) + "D");
       const std::unique_ptr<Follower<D>> follower =
