@@ -175,7 +175,7 @@ windows: build/windows/build.ninja ## Build the program for Windows with MinGW-w
 
 clang: tests-clang ## Run the tests in an optimised clang build; CI uses clang only with the address sanitizer
 
-format: setup-ci ## Format every source file
+format: setup ## Format every source file
 	$(sources) | xargs clang-format -i
 
 lint: check-format build/lint/build.ninja ## Check format and types, and run clang-tidy on library, lab and program
@@ -185,7 +185,7 @@ lint: check-format build/lint/build.ninja ## Check format and types, and run cla
 	  '/(tests|bench)/|/lab/page_template\.cpp$$|/linked_algorithms\.cpp$$|\.c$$' | \
 	  xargs -P $(jobs) -n 1 clang-tidy -p build/lint --quiet
 
-check-format: setup-ci
+check-format: setup
 	$(sources) | xargs clang-format --dry-run --Werror
 
 clean: ## Remove everything that was built or fetched
@@ -203,6 +203,8 @@ of_experiments := --paper
 of_published := --peers --paper
 of_deb := --deb
 of_docs := --docs
+of_format := --format
+of_check-format := --format
 of_systems := --systems
 of_windows := --systems
 of_python := --python

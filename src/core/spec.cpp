@@ -86,6 +86,7 @@ Spec::Spec(std::string_view text) {
       if (part.empty()) refuse("no name");
       name = part;
     } else {
+      if (part.empty()) refuse(end == text.size() ? "it ends in ':'" : "nothing between two ':'");
       const std::size_t equals = part.find('=');
       if (equals == std::string_view::npos || equals == 0)
         refuse(message({"'", part, "' has no ", equals == 0 ? "name before " : "", "'='"}));
@@ -154,7 +155,11 @@ Settings::Settings(const Spec& spec, std::span<const Tunable> tunables) {
 const SpecValue& Settings::value(std::string_view tunable) const {
   const auto found =
       std::find_if(values_.begin(), values_.end(), [&](const auto& value) { return value.first == tunable; });
-  if (found == values_.end()) throw InvalidSpec(message({"there is no tunable '", tunable, "'"}));
+  if (found == values_.end()) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values_) names.push_back(name);
+    throw InvalidSpec(message({"there is no tunable '", tunable, "'", core::did_you_mean(tunable, names)}));
+  }
   return found->second;
 }
 

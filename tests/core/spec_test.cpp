@@ -2,6 +2,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -65,7 +66,8 @@ TEST(Spec, RefusesWhatIsNoSpec) {
   EXPECT_THAT(refusal(""), names("''", "no name"));
   EXPECT_THAT(refusal(":cell=1"), names("':cell=1'", "no name"));
   EXPECT_THAT(refusal("grid:cell"), names("'grid:cell'", "'cell'", "'='"));
-  EXPECT_THAT(refusal("grid:"), names("'grid:'", "''", "'='"));
+  EXPECT_THAT(refusal("grid:"), names("'grid:': it ends in ':'"));
+  EXPECT_THAT(refusal("grid::cell=1"), names("'grid::cell=1': nothing between two ':'"));
   EXPECT_THAT(refusal("grid:=1"), names("'grid:=1'", "'=1'", "'='"));
   EXPECT_THAT(refusal("grid:cell=1:cell=1"), names("'grid:cell=1:cell=1'", "'cell'", "twice"));
 }
@@ -166,7 +168,11 @@ TEST(CurrentSpec, LosesWhatIsGoneFromOursAndNothingFromOthers) {
 
 TEST(Settings, RefuseToReadATunableThatDoesNotExist) {
   const Settings settings(Spec("grid"), tunables);
-  EXPECT_THROW(static_cast<void>(settings.text("depth")), InvalidSpec);
+  const auto refusal = [&](std::string_view tunable) {
+    return message_of<InvalidSpec>([&] { static_cast<void>(settings.text(tunable)); });
+  };
+  EXPECT_EQ(refusal("depth"), "there is no tunable 'depth'");
+  EXPECT_EQ(refusal("cel"), "there is no tunable 'cel' (did you mean 'cell'?)");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ struct Result {
   std::uint64_t tests = 0;
 
   friend bool operator==(const Result&, const Result&) = default;
+
+  friend void PrintTo(const Result& result, std::ostream* out) {
+    *out << testing::PrintToString(result.pairs) << ", by " << result.tests << " tests";
+  }
 };
 
 /// Compares two entries as a kernel does. Whether `a` and `b` were a test is returned.

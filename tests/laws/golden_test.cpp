@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <ios>
 #include <string_view>
 #include <vector>
 
@@ -44,7 +45,7 @@ struct GoldenOrder {
   std::uint64_t hash;
 };
 
-constexpr std::array<GoldenOrder, 14> golden_orders = {{
+constexpr auto golden_orders = std::to_array<GoldenOrder>({
     {"auto", 2, 0xe6634f59d2ef9559U},
     {"auto", 3, 0x015017327fed702eU},
     {"brute_force", 2, 0x79bebaf2ce36ffbdU},
@@ -57,7 +58,7 @@ constexpr std::array<GoldenOrder, 14> golden_orders = {{
     {"quadtree", 3, 0x4e4907df8b50316aU},
     {"bvh", 2, 0x84e8fe29d048d7edU},
     {"bvh", 3, 0xa5ece44084832406U},
-}};
+});
 
 template <int D>
 lab::History<D> history_of(std::string_view name) {
@@ -109,7 +110,7 @@ TEST_P(GoldenOrders, AreTheSame) {
       return order.algorithm == algorithm().name && order.dimension == D;
     });
     ASSERT_NE(golden, golden_orders.end())
-        << "add {\"" << algorithm().name << "\", " << D << ", " << hasher.hash << "U}";
+        << "add {\"" << algorithm().name << "\", " << D << ", 0x" << std::hex << hasher.hash << "U},";
     EXPECT_EQ(hasher.hash, golden->hash);
   });
 }
