@@ -50,7 +50,7 @@ const std::vector<Rule>& rules() {
       {"src/core/", core},
       {"src/kernels/",
        standard +
-           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(bit_cast|moved_box|cell_axis|large_array|margins|rounding)\.hpp")" +
+           R"(|"broadside/(box|error|executor|pair)\.hpp"|"core/(bit_cast|moved_box|cell_axis|large_array|margins|rounding|sample)\.hpp")" +
            R"(|"kernels/[a-z_]+\.hpp"|<hwy/[a-z_]+\.h>)"},
       {"src/algorithms/registry", core + R"(|"algorithms/registry\.hpp")"},
       {"src/algorithms/", algorithm},
