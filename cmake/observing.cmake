@@ -2,6 +2,8 @@
 # program compiles them with BROADSIDE_OBSERVE and lists them before the libraries, so that they replace the libraries'
 # versions.
 set(broadside_observing_sources
+  ${PROJECT_SOURCE_DIR}/src/algorithms/brute_force/brute_force.cpp
+  ${PROJECT_SOURCE_DIR}/src/find/group_search.cpp
   ${PROJECT_SOURCE_DIR}/src/find/search.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bvh_join.cpp
   ${PROJECT_SOURCE_DIR}/src/kernels/bucket_sweep.cpp

@@ -11,8 +11,12 @@ namespace broadside::algorithm {
 
 template <int D>
 struct AutoThresholds {
-  /// Up to this many boxes brute_force is the fastest.
+  /// Up to this many boxes brute_force is the fastest. WebAssembly's vectors are too short to compare bytes.
+#ifdef __wasm__
+  static constexpr std::size_t few_boxes = 44;
+#else
   static constexpr std::size_t few_boxes = D == 2 ? 256 : 320;
+#endif
 
   /// Up to this many, the grid needs no sample: they are one tile of it, however unevenly they are spread.
   static constexpr std::size_t boxes_of_a_tile = 4096;
