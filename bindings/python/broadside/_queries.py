@@ -286,7 +286,7 @@ def nearest_pairs(
             try:
                 return Neighbours(*_core.nearest_pairs(rows, *kind, _checked_k(k, len(rows)), limit, threads, filters))
             except InvalidBoxError as error:
-                raise _convert.with_other_conventions(error, rows, "boxes", None) from None
+                raise _convert.explained(error, boxes, "boxes", columns) from None
     groups = None if same is None else groups_of(same, "same", [boxes] if other is None else [boxes, other])
     as_rows = _convert.boxes if groups is None else _convert.valid_boxes
     left = as_rows(boxes, "boxes", columns, or_points=True)
