@@ -38,7 +38,7 @@ std::unique_ptr<AnyIndex> make_index(nb::handle boxes, nb::handle filters) {
   return std::make_unique<AnyIndex>(rows.kind(), rows, python::filters(filters, rows.size(), "filters"));
 }
 
-/// The k nearest others of each row: of a box or, with so many columns as dimensions, a point.
+/// The k other boxes nearest to each. A row is a box or, if it has one column for each dimension, a point.
 nb::tuple nearest_pairs_of(nb::handle boxes, std::size_t columns, bool are_doubles, std::size_t k,
                            double max_distance, nb::handle max_threads, nb::handle given_filters) {
   const Rows rows = Rows::of(boxes, "boxes", columns, are_doubles);

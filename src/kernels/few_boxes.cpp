@@ -101,8 +101,8 @@ HWY_INLINE float coordinate(Corner corner, int axis) {
 
 #endif
 
-/// Axes for boxes of which eight are looked at, so that outliers do not determine them: the range of all but
-/// two, and as much again on either side.
+/// Chooses the axes by a sample of eight boxes. Bytes cover the range of the sample without its least and its
+/// greatest minimum, which may be outliers, and as much again on either side.
 template <int D>
 HWY_INLINE std::array<ByteAxis, D> choose_axes(std::span<const Box<D>> boxes) {
   constexpr std::size_t looked_at = 8;
@@ -300,7 +300,7 @@ class ByteQuery {
     const Bytes bytes;
     constexpr std::size_t lanes = hn::MaxLanes(bytes);
 #if HWY_TARGET <= HWY_AVX3  // AVX-512
-    // A comparison is also an and, and loads one operand.
+    // One instruction loads an operand, compares, and combines the result with the mask.
     if constexpr (lanes == word_bits) {
       __mmask64 all = ~__mmask64{0};
       for (int axis = 0; axis < D; ++axis) {

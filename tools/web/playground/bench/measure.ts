@@ -54,8 +54,8 @@ export async function* measure(engine: Engine, choice: SceneChoice, counts: read
 }
 
 /**
- * Times `auto` and the others in the same rounds, so that a slow moment slows all of them; medians. Each round has an
- * order of its own, since who follows a pause or a search of much memory is slower.
+ * Times `auto` and the others in the same rounds, so that a slow moment slows all of them, and returns medians. Each
+ * round draws an order, because a search takes longer after a pause or after one that used much memory.
  */
 export async function duel(engine: Engine, boxes: Float32Array, dimension: Dimension): Promise<Duel> {
   const count = boxes.length / (2 * dimension);
