@@ -11,9 +11,9 @@ namespace broadside::algorithm {
 
 template <int D>
 struct AutoThresholds {
-  /// Up to this many boxes brute_force is the fastest. WebAssembly's vectors are too short to compare bytes.
+  /// Up to this many boxes brute_force is the fastest. WebAssembly compares only sixteen bytes at a time.
 #ifdef __wasm__
-  static constexpr std::size_t few_boxes = 44;
+  static constexpr std::size_t few_boxes = 64;
 #else
   static constexpr std::size_t few_boxes = D == 2 ? 256 : 320;
 #endif
