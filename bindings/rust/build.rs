@@ -106,11 +106,12 @@ fn main() {
         return; // documentation links nothing
     }
     let is_cross = env::var("TARGET") != env::var("HOST");
-    if is_cross && env::var_os("BROADSIDE_LIB_DIR").is_none() && env::var_os("CMAKE_TOOLCHAIN_FILE").is_none() {
+    let is_set = |name: &str| env::var_os(name).is_some();
+    if is_cross && !["BROADSIDE_LIB_DIR", "CMAKE_TOOLCHAIN_FILE", "CXX"].iter().any(|name| is_set(name)) {
         fail(
             &format!("the target is {}, and the host {}", env::var("TARGET").unwrap(), env::var("HOST").unwrap()),
-            "To cross-compile, set CMAKE_TOOLCHAIN_FILE to a toolchain file of CMake for the target, or \
-             BROADSIDE_LIB_DIR to the folder of a library that was built for it. In WebAssembly, use the npm package.",
+            "To cross-compile, set CXX to a compiler for the target, CMAKE_TOOLCHAIN_FILE to a toolchain file of CMake, \
+             or BROADSIDE_LIB_DIR to the folder of a library for it. In WebAssembly, use the npm package.",
         );
     }
     match env::var("BROADSIDE_LIB_DIR") {

@@ -41,7 +41,8 @@ def suggests(function: _Called) -> _Called:
                 raise
             known = inspect.signature(function).parameters
             unknown = [name for name in named if name not in known]
-            if not unknown:
+            takes_any = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in known.values())
+            if takes_any or not unknown:
                 raise
             raise TypeError(unknown_name(function.__qualname__.removesuffix(".__init__"), unknown[0], known)) from None
 

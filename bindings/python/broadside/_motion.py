@@ -131,7 +131,10 @@ class World:
                 "velocities are given to a world of predicted_frames=0; expected more than 0, or no velocities"
             )
         _convert.common_crs(self._crs, "the world", boxes, "boxes")
-        self._world.move(handles, _convert.given(boxes, "boxes", columns), velocities)
+        try:
+            self._world.move(handles, _convert.given(boxes, "boxes", columns), velocities)
+        except InvalidBoxError as error:
+            raise _convert.explained(error, boxes, "boxes", columns) from None
 
     def remove(self, handles: ArrayLike) -> None:
         """Removes boxes; their pairs end at the next update. Raises InvalidHandleError."""

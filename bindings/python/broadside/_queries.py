@@ -310,7 +310,7 @@ def nearest_pairs(
         other_filters = filters
     how: dict[str, Any] = {"max_distance": _checked_distance(max_distance), "threads": threads}
     if groups is None:
-        return Index(right, filters=other_filters).nearest(left, k, filters=filters, exclude=exclude, **how)
+        return Index(right, filters=other_filters).nearest(left, k, filters=filters, **how)
     searched, asked = _Set(right, groups[-1], other_filters), _Set(left, groups[0], filters)
     return _nearest_by_key(asked, searched, _checked_k(k, len(right)), exclude is not None, how)
 

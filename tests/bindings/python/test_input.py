@@ -297,6 +297,8 @@ def test_names_the_argument_that_is_meant():
         broadside.filters(3, colour=1)
     with pytest.raises(TypeError, match="missing 1 required positional argument: 'boxes'"):
         broadside.pairs()
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'dimension'"):
+        broadside.World(margin=0.1)
 
     class Own:
         def __array__(self, **_):

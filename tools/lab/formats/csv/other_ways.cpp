@@ -72,7 +72,7 @@ std::string few_invalid(CsvLines lines, Separator separator, const BoxColumns& c
     ++rows;
     if (!is_valid(fields, read)) ++invalid;
   }
-  if (invalid * 10 > rows) return {};
+  if (invalid * 3 > rows) return {};  // then the layout is another one
   return fmt::format("; {} of {} rows {} invalid", grouped(invalid), grouped(rows),
                      invalid == 1 ? "is" : "are");
 }

@@ -27,8 +27,8 @@ export const choosing: Lesson = {
       <p>No algorithm suits all boxes. How many are there? Are they spread evenly, along a line, or in clusters? Do sizes
         differ? How many move? The answers decide:</p>
       <ul>
-        <li>up to some 300: <code>brute_force</code>, there is nothing to build;</li>
-        <li>some 300 to some ten thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
+        <li>up to some 64 on this page, or 300 in a native program: <code>brute_force</code>, there is nothing to build;</li>
+        <li>from there to some four thousand: <code>grid</code>, however they lie, since all fit in the processor's cache;</li>
         <li>more, spread over the plane or space: <code>grid</code> as well;</li>
         <li>more, along a line: <code>sweep_and_prune</code>, one sorted sweep finds all pairs;</li>
         <li>more, crowded or in dense clusters: <code>bvh</code>, whose bounds fit themselves to the boxes;</li>
@@ -50,7 +50,8 @@ export const choosing: Lesson = {
       const mine = duel?.others.find((one) => one.spec === nameOf(spec));
       const best = duel?.others[0];
       let text = now === undefined ? "Show one of the three cases." : `Choose for ${now.name}, and race.`;
-      if (now !== undefined && mine !== undefined && best !== undefined) {
+      if (spec !== nameOf(spec)) text = `Take ${nameOf(spec)} as it is: the race takes no tunables.`;
+      else if (now !== undefined && mine !== undefined && best !== undefined) {
         const good = mine.milliseconds <= enough * best.milliseconds;
         text = `${spec} took ${duration(mine.milliseconds)}, the fastest, ${best.spec}, ${duration(best.milliseconds)}.`;
         if (good && !solved.value.has(now.name)) solved.value = new Set([...solved.value, now.name]);

@@ -2,7 +2,7 @@
 
 /** A message without the options of the program, and the columns as which it says that a table can be read. */
 export function withoutOptions(message: string): { text: string; ways: string[] } {
-  const choice = /; as (.+?) ((?:all [\d,]+ rows are|the one row is) valid): say (?:which by --columns|--columns=(\S+))/.exec(message);
+  const choice = /; as (.+?) ((?:all [\d,]+ rows are|the one row is) valid): say (?:which by --columns|--columns=([^\s;]+))/.exec(message);
   if (choice !== null) {
     const fault = message.slice(0, message.indexOf("; expected"));
     return { text: `${fault}. But ${choice[2]} as this:`, ways: choice[3] === undefined ? choice[1]!.split(" or ") : [choice[3]] };

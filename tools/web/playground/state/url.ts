@@ -83,7 +83,7 @@ export function writeState(state: State, time: number): string {
     .replace(/embed=$/, "embed");
 }
 
-/** The items as a list: "a, b and c". */
+/** The items as a list: "a, b or c". */
 function listed(items: readonly unknown[]): string {
   return items.length < 2 ? items.join() : `${items.slice(0, -1).join(", ")} or ${items[items.length - 1]}`;
 }
