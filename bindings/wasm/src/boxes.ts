@@ -51,12 +51,20 @@ export function countOf(core: Core, boxes: unknown, name = "boxes"): number {
     if (!boxes.isOf(core)) refuse(name, boxes, "boxes of this module; these are another one's");
     return boxes.count;
   }
+  const row = dimension === 2 ? "minX, minY, maxX, maxY" : "minX, minY, minZ, maxX, maxY, maxZ";
   const first = (boxes as ArrayLike<unknown> | undefined)?.[0];
-  if (typeof first === "object") {
-    refuse(`${name}[0]`, first, `a number: one array has all boxes, ${dimension === 2 ? "minX, minY, maxX, maxY" :
-      "minX, minY, minZ, maxX, maxY, maxZ"} of each`);
-  }
-  return countIn(boxes, 2 * dimension, name);
+  if (typeof first === "object") refuse(`${name}[0]`, first, `a number: one array has all boxes, ${row} of each`);
+  const length: unknown = (boxes as ArrayLike<unknown> | undefined)?.length;
+  if (typeof boxes === "object" && boxes !== null && length === undefined) refuse(name, boxes, `an array of numbers: ${row} of each box`);
+  return countOfNumbers(boxes, 2 * dimension, name);
+}
+
+/** As countIn(). Throws if the first is not a number: it tells an array of texts or booleans from one of numbers. */
+export function countOfNumbers(numbers: unknown, each: number, name: string): number {
+  const count = countIn(numbers, each, name);
+  const first: unknown = (numbers as ArrayLike<unknown>)[0];
+  if (count > 0 && typeof first !== "number") refuse(`${name}[0]`, first, "a number");
+  return count;
 }
 
 /** How many groups of `each` numbers an array has. */
@@ -127,28 +135,35 @@ export function checkFilters(filters: Filters, count: number, name = "filters"):
   }
 }
 
+/** A whole number of 32 bits, which may also be below 0, as JavaScript's bit operations give it. */
+function whole(value: number, name: string, box: number | undefined): number {
+  if (value >>> 0 === value || (value | 0) === value) return value;
+  return refuse(box === undefined ? name : `${name}[${box}]`, value, "a whole number of at most 32 bits");
+}
+
 function writeFilter(words: Uint32Array, at: number, category: number, mask: number | undefined, group: number,
-  isStatic: number | boolean): void {
-  words[at] = category;
+  isStatic: number | boolean, name: string, box?: number): void {
+  words[at] = whole(category, `${name}.category`, box);
   words[at + 1] = 0;
-  words[at + 2] = mask ?? allBits;
+  words[at + 2] = mask === undefined ? allBits : whole(mask, `${name}.mask`, box);
   words[at + 3] = mask === undefined ? allBits : 0;
-  words[at + 4] = group;
+  words[at + 4] = whole(group, `${name}.group`, box);
   words[at + 5] = isStatic ? 1 : 0;
 }
 
-export function putFilters(core: Core, filters: Filters | undefined, count: number): number {
+export function putFilters(core: Core, filters: Filters | undefined, count: number, name = "filters"): number {
   if (filters === undefined) return 0;
   const address = core.take(bytesOfFilter * Math.max(count, 1));
   const { category, mask, group, isStatic } = filters;
   for (let i = 0, at = address / 4; i < count; ++i, at += bytesOfFilter / 4)
-    writeFilter(core.u32, at, category?.[i] ?? 1, mask?.[i], group?.[i] ?? 0, isStatic?.[i] ?? false);
+    writeFilter(core.u32, at, category?.[i] ?? 1, mask?.[i], group?.[i] ?? 0, isStatic?.[i] ?? false, name, i);
   return address;
 }
 
 export function putFilter(core: Core, filter: Filter, name = "filter"): number {
   checkOptions(filter, properties, name);
   const address = core.take(bytesOfFilter);
-  writeFilter(core.u32, address / 4, filter.category ?? 1, filter.mask, filter.group ?? 0, filter.isStatic ?? false);
+  writeFilter(core.u32, address / 4, filter.category ?? 1, filter.mask, filter.group ?? 0, filter.isStatic ?? false,
+    name);
   return address;
 }

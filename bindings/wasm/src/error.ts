@@ -64,8 +64,9 @@ export function checkOptions(options: object, known: readonly string[], name = "
   if (typeof options !== "object" || options === null) refuse(name, options, `an object of ${known.join(", ")}`);
   for (const option in options) {
     if (!known.includes(option)) {
-      throw new BroadsideError("INVALID_ARGUMENT",
-        `unknown option '${option}'; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
+      const meant = known.find((name) => name.startsWith(option) || option.startsWith(name));
+      throw new BroadsideError("INVALID_ARGUMENT", `unknown option '${option}'${meant ? ` (did you mean '${meant}'?)` : ""}` +
+        `; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
     }
   }
 }

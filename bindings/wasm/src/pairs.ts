@@ -165,7 +165,7 @@ export class Pairs {
     const at = put(core, boxes);
     const rightAt = right === undefined ? 0 : put(core, right);
     core.check(core.exports.finder_find(finder, at, count, rightAt, rightCount,
-      putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount),
+      putFilters(core, some(filters), count), putFilters(core, some(rightFilters), rightCount, "rightFilters"),
       reach | (options.touching === false ? mode | Mode.leavesOutTouching : mode), putDoubles(core, within),
       putDoubles(core, rightWithin), putDoubles(core, different)));
   }

@@ -3,7 +3,7 @@ import type {
   BoxArray, Dimension, Events, FrameOptions, Tracker, TrackerOptions, TrackerUpdateOptions, Uint32s,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, put, putFilters, putWords,
+  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countOf, countOfNumbers, put, putFilters, putWords,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
 import { asksForView, checkOptions, checkSwitch, refuse } from "./error.ts";
@@ -25,7 +25,7 @@ export const frameOptions = ["changed", "filters"];
 export function putFrame(core: Core, boxes: Given, options: FrameOptions, listName = "changed") {
   const { changed, filters } = options;
   const count = countOf(core, boxes);
-  const changedCount = changed === undefined ? 0 : countIn(changed, 1, listName);
+  const changedCount = changed === undefined ? 0 : countOfNumbers(changed, 1, listName);
   if (filters !== undefined) checkFilters(filters, count);
   core.stage(bytesOf(boxes) + 4 * changedCount + (filters === undefined ? 0 : bytesOfFilter * (count + 1)));
   return {

@@ -4,7 +4,7 @@ import type {
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, properties, put, putFilter, putFilters,
+  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, countOfNumbers, properties, put, putFilter, putFilters,
   putFloats,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
@@ -24,7 +24,9 @@ export function handlesOf(core: Core, number: number, each: number, view: boolea
 }
 
 function countOfHandles(handles: Handles): number {
-  return typeof handles === "number" ? 1 : countIn(handles, 1, "handles");
+  if (typeof handles === "number") return 1;
+  if (handles === undefined) refuse("handles", handles, "a handle, or an array of them");
+  return countOfNumbers(handles, 1, "handles");
 }
 
 function putHandles(core: Core, handles: Handles, count: number): number {
@@ -124,6 +126,8 @@ export class KeptWorld extends Kept implements World {
   update(options: ResultOptions = {}): Events<Float64s> {
     const { core } = this;
     const world = this.address;
+    if (ArrayBuffer.isView(options) || Array.isArray(options) || options instanceof Kept)
+      refuse("options", options, "an object: a world takes boxes by add() and move()");
     const view = viewAlone(options);
     core.check(core.exports.world_update(world));
     return { begun: handlesOf(core, 0, 1, view), ended: handlesOf(core, 1, 1, view) };

@@ -44,6 +44,39 @@ test("invalid boxes are named, in the library's words", () => {
     /^box 0 has min \(0\.100000001, 0\) and max \(-1e-30, 1\);/);
 });
 
+test("numbers that are none, before they are read as others", () => {
+  const isRefused = (call: () => unknown, message: string) => assert.equal(errorOf(call).message, message);
+  const filters = (filter: object) => () => broadside.pairs(overlapping, { filters: filter });
+  isRefused(filters({ category: ["a", 1] }), "filters.category[0] is 'a'; expected a whole number of at most 32 bits");
+  isRefused(filters({ mask: [1, NaN] }), "filters.mask[1] is NaN; expected a whole number of at most 32 bits");
+  isRefused(filters({ group: [1.5, 1] }), "filters.group[0] is 1.5; expected a whole number of at most 32 bits");
+  assert.deepEqual([...broadside.pairs(overlapping, { filters: { category: [~0, 2 ** 31], mask: [~0, 2 ** 32 - 1] } })],
+    [0, 1], "as bit operations give them");
+  isRefused(() => broadside.join(overlapping, overlapping, { rightFilters: { category: [1, 2 ** 32] } }),
+    "rightFilters.category[1] is 4294967296; expected a whole number of at most 32 bits");
+  const world = broadside.world();
+  isRefused(() => world.addOne([0, 0, 1, 1], { filter: { mask: 0.5 } }),
+    "filters.mask[0] is 0.5; expected a whole number of at most 32 bits");
+  const handle = world.addOne([0, 0, 1, 1]);
+  isRefused(() => world.setFilter(handle, { group: Infinity }),
+    "filter.group is Infinity; expected a whole number of at most 32 bits");
+  isRefused(() => world.remove(undefined as unknown as number), "handles is undefined; expected a handle, or an array of them");
+  isRefused(() => world.update(new Float32Array(4) as object),
+    "options is Float32Array; expected an object: a world takes boxes by add() and move()");
+  world.free();
+  const tracker = broadside.tracker();
+  tracker.update(overlapping);
+  isRefused(() => tracker.update(overlapping, { changed: [false, true] as unknown as number[] }),
+    "changed[0] is false; expected a number");
+  tracker.free();
+  isRefused(() => broadside.pairs(["0", "0", "1", "1"] as unknown as number[]), "boxes[0] is '0'; expected a number");
+  isRefused(() => broadside.world().addOne({ x: 0 } as unknown as number[]),
+    "box is an object; expected an array of numbers: minX, minY, maxX, maxY of each box");
+  isRefused(() => broadside.pairs(overlapping, { sort: true } as object),
+    "unknown option 'sort' (did you mean 'sorted'?); expected some of: dimension, algorithm, filters, same, different, " +
+    "touching, within, period, sorted, view");
+});
+
 test("specs", () => {
   const error = errorOf(() => broadside.pairs(overlapping, { algorithm: "grit", sorted: true }));
   assert.equal(error.code, "INVALID_SPEC");
