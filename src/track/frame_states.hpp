@@ -29,7 +29,10 @@ class FrameStates {
             core::Parallel& parallel) {
     const bool had_filters = !filters_before_.empty();
     is_whole_ = !takes_all && lists_all && frame.filters.empty() != had_filters;
-    if (is_whole_) return take_all_boxes(frame, known_, parallel);
+    if (is_whole_) {
+      if (!had_filters) filters_now_.clear();  // which the frame before may have dropped
+      return take_all_boxes(frame, known_, parallel);
+    }
     if (std::exchange(now_is_old_, false)) now_ = before_;
     const std::size_t size = std::max(frame.boxes.size(), known_);
     core::resize_by_eighths(before_, size, absent_box<D, Real>());

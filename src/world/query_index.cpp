@@ -32,6 +32,7 @@ void QueryIndex<D, Real>::update(const BoxTable<D, Real>& table) {
   index_->update({.boxes = table.boxes(), .changed = marked_, .filters = table.filters().values()});
   for (const BoxId slot : marked_) is_marked_[index(slot)] = 0;
   marked_.clear();
+  updates_unused_ = 0;
   is_current_.store(true, std::memory_order_release);
 }
 

@@ -54,10 +54,10 @@ class QueryIndex {
   /// Lists the slots in which `old` differs from `now`, the table of boxes that replaces it. O(slots).
   void mark_differences(const BoxTable<D, Real>& old, const BoxTable<D, Real>& now);
 
-  /// Drops the index if a rebuild for `slots` slots costs about as much as an update, because queries have
-  /// not used it for long. The next query builds it anew.
+  /// After each update of the world: drops the index if most of `slots` slots have changed and queries have
+  /// not used it for some updates, so that marking changes costs no more. The next query builds it anew.
   void drop_outdated(std::size_t slots) noexcept {
-    if (marked_.size() > slots / 2 + 1024) drop();
+    if (marked_.size() > slots / 2 + 1024 && ++updates_unused_ == max_updates_unused) drop();
   }
 
   /// Releases all memory; the next query builds the index.
@@ -66,6 +66,9 @@ class QueryIndex {
   std::size_t bytes() const;
 
  private:
+  /// Queries of every few frames need the index, which takes many changes in a fraction of a build's time.
+  static constexpr int max_updates_unused = 16;
+
   void make_room(std::size_t count);
   void update(const BoxTable<D, Real>& table);
 
@@ -73,6 +76,7 @@ class QueryIndex {
   std::vector<BoxId> marked_;
   std::vector<std::uint8_t> is_marked_;  // by slot
   std::atomic<bool> is_current_ = false;
+  int updates_unused_ = 0;  // since the last query, counted while most slots are marked
   mutable std::mutex updating_;
 };
 

@@ -101,6 +101,52 @@ TEST(DynamicBvh, HoldsEachBoxOnceAfterRandomChanges) {
   });
 }
 
+TEST(DynamicBvh, RefitsAllBoundsAfterMostBoxesMoved) {
+  on_each_instruction_set([]<int D>() {
+    Rng rng(D);
+    DynamicBvh<D> tree;
+    std::vector<Box<D>> boxes(600);
+    for (int round = 0; round < 60; ++round) {
+      if (round % 20 == 0) {
+        for (Box<D>& box : boxes) box = rng.one_in(8) ? absent_box<D>() : draw<D>(rng);
+        tree.build(boxes);
+      }
+      // Nodes split and vanish in between, and then their numbers no longer follow their levels.
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (rng.one_in(4)) continue;
+        boxes[i] = rng.one_in(8) ? absent_box<D>() : draw<D>(rng);
+        if (is_present(boxes[i]) && tree.slot(BoxId(i)) != kernels::no_slot)
+          tree.overwrite(BoxId(i), boxes[i]);
+        else
+          tree.set(BoxId(i), boxes[i]);
+      }
+      tree.refit_all();
+      expect_whole(tree, boxes, rng);
+      if (testing::Test::HasFailure()) FAIL() << "round " << round;
+    }
+  });
+}
+
+TEST(DynamicBvh, TellsHowMuchItsLeavesGrew) {
+  const auto square = [](float x, float y) { return Box2{{x, y}, {x + 1, y + 1}}; };
+  std::vector<Box2> boxes;
+  for (int i = 0; i < 1024; ++i)
+    boxes.push_back(square(static_cast<float>(i % 32), static_cast<float>(i / 32)));
+  DynamicBvh<2> tree;
+  tree.build(boxes);
+  EXPECT_EQ(tree.refit_all(), 1);
+  const auto growth = [&](float factor) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      tree.overwrite(BoxId(i), {{factor * boxes[i].min[0], factor * boxes[i].min[1]},
+                                {factor * boxes[i].max[0], factor * boxes[i].max[1]}});
+    return tree.refit_all();
+  };
+  EXPECT_EQ(growth(3), 9);
+  EXPECT_EQ(growth(0.5), 1) << "what shrank costs no more";
+  tree.build({});
+  EXPECT_EQ(tree.refit_all(), 0);
+}
+
 /// follow() and what a tracker does after it: the pairs of each box that toggle, against the boxes as they
 /// stand at its turn.
 TEST(DynamicBvh, TellsWhatMovesToggle) {

@@ -523,6 +523,39 @@ TEST(BoxIndex, TakesWhatChangedWhateverTheNumberOfBoxes) {
   }
 }
 
+TEST(BoxIndex, IsBuiltAnewOnlyWhenMovesSpoilIt) {
+  constexpr std::size_t size = 4000;
+  std::vector<Box2> boxes(size);
+  Rng rng{5};
+  const auto place = [&] { return static_cast<float>(rng.below(1000)); };
+  const auto scatter = [&] {
+    for (Box2& box : boxes) {
+      const float x = place();
+      const float y = place();
+      box = {{x, y}, {x + 10, y + 10}};
+    }
+  };
+  scatter();
+  auto index = index_of(boxes);
+  std::vector<BoxId> all;
+  for (std::size_t i = 0; i < size; ++i) all.push_back(BoxId(i));
+  for (int frame = 0; frame < 4; ++frame) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const float step = i % 2 == 0 ? 1 : -1;
+      boxes[i] = {{boxes[i].min[0] + step, boxes[i].min[1]}, {boxes[i].max[0] + step, boxes[i].max[1]}};
+    }
+    EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), size) << "moved in their leaves";
+  }
+  scatter();
+  EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), 2 * size) << "moved, and then built";
+  // One box of sixty-four leaves: each search would visit its leaf.
+  boxes.resize(1000);
+  index.update({.boxes = boxes});
+  all.resize(1000);
+  boxes[0] = {{100'000, 0}, {100'010, 10}};
+  EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), 2 * 1000);
+}
+
 TEST(BoxIndex, TakesWhatChangedAmongManyAbsentBoxes) {
   for (const std::size_t size : {2000U, 200'000U}) {
     std::vector<Box2> boxes = row(size);

@@ -111,7 +111,8 @@ TEST_P(GoldenOrders, AreTheSame) {
     });
     ASSERT_NE(golden, golden_orders.end())
         << "add {\"" << algorithm().name << "\", " << D << ", 0x" << std::hex << hasher.hash << "U},";
-    EXPECT_EQ(hasher.hash, golden->hash);
+    EXPECT_EQ(hasher.hash, golden->hash)
+        << "if the order was meant to change, write 0x" << std::hex << hasher.hash << "U";
   });
 }
 

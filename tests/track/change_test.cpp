@@ -259,6 +259,9 @@ TEST(Change, HoldsEveryBoxForChangedWhereFiltersBeginOrCeaseToBeGiven) {
   EXPECT_EQ(follower.changed(), 0u);
   EXPECT_EQ(update(tracker, {boxes, {}}), (PairEvents{without_one, {}}));
   EXPECT_EQ(follower.changed(), 3u);
+  // The frame after, with every box listed, is taken in another way: CheckingFollower sees no filters in it
+  // either.
+  EXPECT_EQ(update(tracker, {boxes, Ids{BoxId{0}, BoxId{1}, BoxId{2}}}), PairEvents());
   filters.pop_back();
   EXPECT_THAT(message_of<InvalidFrame>([&] {
                 update(tracker, {boxes, {}, filters});

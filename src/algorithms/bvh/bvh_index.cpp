@@ -34,6 +34,9 @@ float in_tree(Real t_max, int exponent) {
     return rounded_up(std::ldexp(t_max, exponent));
 }
 
+/// Boxes that moved are kept in their leaves while searches visit at most so many times as many of these.
+constexpr double max_growth = 1.5;
+
 template <int D, typename Real>
 bool is_point(const Box<D, Real>& box) {
   return box.min == box.max;
@@ -50,23 +53,37 @@ void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
   if (!rebuild) list_changes(frame);
 
   const std::span<const Box<D, Real>> boxes = frame.boxes;
-  // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
-  if (rebuild || changed_.size() > tree_.size() / 4 + boxes.size() / 64 + 16) {
-    build(boxes);
-  } else {
-    if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
-    for (const BoxId id : changed_) {
-      const bool is_there = index(id) < boxes.size() && is_present(boxes[index(id)]);
-      tree_.set(id, is_there ? in_tree(boxes[index(id)]) : absent_box<D>());
-      are_points_ &= !is_there || is_point(boxes[index(id)]);
-      if constexpr (!is_float<Real>) {
-        if (index(id) < boxes.size()) exact_[index(id)] = boxes[index(id)];
-      }
-    }
-    if (tree_.needs_rebuild()) build(boxes);
-  }
+  if (rebuild || !take_changes(boxes)) build(boxes);
   size_ = boxes.size();
   dirty_ = false;
+}
+
+/// Takes the boxes in changed_. False if the tree must be built anew, because that costs less or makes
+/// searches faster; then only some of them are in the tree.
+template <int D, typename Real>
+bool BvhIndex<D, Real>::take_changes(std::span<const Box<D, Real>> boxes) {
+  // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
+  const std::size_t few = tree_.size() / 4 + boxes.size() / 64 + 16;
+  const bool refits = changed_.size() > few;
+  std::size_t single_changes = 0;
+  if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
+  for (const BoxId id : changed_) {
+    const bool is_listed = index(id) < boxes.size();
+    const Box<D, Real> box = is_listed ? boxes[index(id)] : absent_box<D, Real>();
+    const bool is_there = is_present(box);
+    if (refits && is_there && tree_.slot(id) != kernels::no_slot) {
+      tree_.overwrite(id, in_tree(box));
+    } else {
+      if (refits && ++single_changes > few) return false;
+      tree_.set(id, is_there ? in_tree(box) : absent_box<D>());
+    }
+    are_points_ &= !is_there || is_point(box);
+    if constexpr (!is_float<Real>) {
+      if (is_listed) exact_[index(id)] = box;
+    }
+  }
+  if (refits && tree_.refit_all() > max_growth) return false;
+  return !tree_.needs_rebuild();
 }
 
 template <int D, typename Real>

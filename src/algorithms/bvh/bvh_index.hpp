@@ -95,6 +95,7 @@ class BvhIndex {
   /// Whether there is nothing to find: no box, or the last update failed.
   bool is_empty() const noexcept { return dirty_ || tree_.size() == 0; }
 
+  bool take_changes(std::span<const Box<D, Real>> boxes);
   void take_filters_of(const Frame<D, Real>& frame, bool rebuild);
   void list_changes(const Frame<D, Real>& frame);
   void build(std::span<const Box<D, Real>> boxes);

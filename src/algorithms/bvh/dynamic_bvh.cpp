@@ -25,6 +25,14 @@ bool touches_border(const Box<D>& bounds, const Box<D>& box) {
   return touches;
 }
 
+/// The sum of the extents.
+template <int D>
+float extents(const Box<D>& box) {
+  float sum = 0;
+  for (int axis = 0; axis < D; ++axis) sum += box.max[axis] - box.min[axis];
+  return sum;
+}
+
 }  // namespace
 
 template <int D>
@@ -54,6 +62,8 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   nodes_.reserve(leaves + leaves / 3 + 16);
   info_.reserve(nodes_.capacity());
   add_leaves();
+  built_extents_.resize(children_.size());
+  for (const Child& leaf : children_) built_extents_[leaf.number & ~leaf_bit] = extents(leaf.box);
   arrange<D>(children_);
   while (children_.size() > 1) add_level();
   root_ = children_.front().number;
@@ -214,6 +224,32 @@ void DynamicBvh<D>::refit_above(std::uint32_t node) {
     write(up, bounds);
     node = up / fan_out;
   }
+}
+
+template <int D>
+double DynamicBvh<D>::refit_all() {
+  double growth = 0;
+  if (root_ != no_slot) refit_below(root_, growth);
+  return growth / static_cast<double>(std::max<std::size_t>(1, built_extents_.size()));
+}
+
+/// Sets the bounds below a node and returns its own. Adds its leaves' growth.
+template <int D>
+Box<D> DynamicBvh<D>::refit_below(std::uint32_t number, double& growth) {
+  const std::uint32_t node = number & ~leaf_bit;
+  if (node == number) {
+    for (std::size_t lane = 0; lane < info_[node].count; ++lane)
+      write(static_cast<std::uint32_t>(node * fan_out + lane), refit_below(nodes_[node].id[lane], growth));
+    return kernels::bounds_of(nodes_[node]);
+  }
+  const Box<D> bounds = kernels::bounds_of(nodes_[node]);
+  double grown = 1;
+  if (node < built_extents_.size() && extents(bounds) > built_extents_[node]) {
+    const double ratio = static_cast<double>(extents(bounds)) / static_cast<double>(built_extents_[node]);
+    grown = D == 2 ? ratio * ratio : ratio * ratio * ratio;
+  }
+  growth += grown;
+  return bounds;
 }
 
 template <int D>

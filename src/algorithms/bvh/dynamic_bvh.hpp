@@ -42,6 +42,16 @@ class DynamicBvh {
   /// Makes the bounds around a box exact again, after follow() enlarged them.
   void refit(BoxId id) { refit_above(slot(id) / kernels::fan_out); }
 
+  /// Moves a box that is there, but not the bounds around it: refit_all() must follow.
+  void overwrite(BoxId id, const Box<D>& box) noexcept {
+    ++boxes_taken_;
+    write(slot(id), box);
+  }
+
+  /// Makes all bounds exact. Returns how many times as many leaves a search of a small region now visits as
+  /// after build(), as far as the bounds tell: the mean, over the leaves, of (extent now / extent then)^D.
+  double refit_all();
+
   /// Removes a box and inserts it where bounds grow least.
   void reinsert(BoxId id) {
     const Box<D> box = box_at(slot(id));
@@ -93,7 +103,8 @@ class DynamicBvh {
   }
 
   std::size_t bytes() const noexcept {
-    return packer_.bytes() + core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_);
+    return packer_.bytes() +
+           core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_, built_extents_);
   }
 
   /// How many boxes build() and set() have taken so far. Tests measure this instead of time.
@@ -129,6 +140,7 @@ class DynamicBvh {
   void split(std::uint32_t node, const Child& added);
   void remove_at(std::uint32_t slot);
   void refit_above(std::uint32_t node);
+  Box<D> refit_below(std::uint32_t number, double& growth);
 
   BvhPacker<D> packer_;
   core::Parallel parallel_;
@@ -141,6 +153,7 @@ class DynamicBvh {
   std::vector<kernels::BvhNodeInfo> info_;
   std::vector<std::uint32_t> free_;        // nodes
   core::LargeArray<std::uint32_t> slots_;  // by id
+  std::vector<float> built_extents_;       // of the leaves that build() made, by node
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;
   std::size_t insertions_ = 0;  // since the last build

@@ -45,7 +45,7 @@ class SweepAndPruneSearcher final : public Searcher<D> {
  public:
   explicit SweepAndPruneSearcher(const Settings& settings) : axis_(axis_of(settings)) {
     if (!settings.is_auto("axes")) axes_ = static_cast<int>(settings.text("axes")[0] - '0');
-    if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x or y in 2D");
+    if (axis_ >= D) throw InvalidSpec("sweep_and_prune: axis is 'z'; expected x, y or auto in 2D");
   }
 
   std::optional<Statistics> search(const SearchInput<D>& input, PairSink& pairs) override {
