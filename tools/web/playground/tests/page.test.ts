@@ -297,6 +297,35 @@ describe("the playground", { skip: missing }, () => {
     await page.close();
   });
 
+  test("infinite boxes are where they are, with WebGL and without", async () => {
+    const means: number[][] = [];
+    for (const before of [() => {}, () => {
+      HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+        apply: (get, canvas, [kind, ...rest]) => kind === "webgl2" ? null : Reflect.apply(get, canvas, [kind, ...rest]),
+      });
+    }]) {
+      const { page, problems } = await open(browser, "overlaps=0&structure=0&paused=1", { before });
+      await page.locator('input[type="file"]').setInputFiles({ name: "boxes.csv", mimeType: "text/csv", buffer: Buffer.from(
+        "min_x,min_y,max_x,max_y\n0,0,inf,1\n-inf,3,inf,3.5\n2,-inf,2.5,1e300\n1,0.5,2,2\n4,4,5,5\n") });
+      await until(page, () => window.playground.shown!.boxes.length === 20);
+      await settled(page);
+      // The blue of 20 rows, which tells the boxes from the background.
+      means.push(await page.evaluate(() => {
+        const copy = document.createElement("canvas");
+        [copy.width, copy.height] = [1, 20];
+        const context = copy.getContext("2d")!;
+        context.imageSmoothingQuality = "high";
+        context.drawImage(document.querySelector<HTMLCanvasElement>("canvas.picture")!, 0, 0, 1, 20);
+        return Array.from(context.getImageData(0, 0, 1, 20).data).filter((_, at) => at % 4 === 2);
+      }));
+      assert.deepEqual(problems, []);
+      await page.close();
+    }
+    const [webgl, canvas] = means as [number[], number[]];
+    assert.ok(Math.max(...canvas) - Math.min(...canvas) > 20, "the picture is empty");
+    webgl.forEach((one, row) => assert.ok(Math.abs(one - canvas[row]!) < 10, `row ${row}: ${webgl.join()} and ${canvas.join()}`));
+  });
+
   test("the pairs shown are the definition's on every scene", async () => {
     const { page, problems } = await open(browser, "paused=1&t=2.4");
     for (const { name } of sceneEntries) {
