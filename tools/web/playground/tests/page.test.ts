@@ -462,9 +462,20 @@ describe("the playground", { skip: missing }, () => {
     await page.getByRole("slider", { name: "Number of boxes" }).fill("2.2");
     await page.getByRole("button", { name: "Chart as SVG" }).waitFor();
     const chart = (await save("Chart as SVG")).toString();
-    assert.match(chart, /^<svg xmlns[^]*grid:cell=4[^]*<circle /);
+    assert.match(chart, /^<svg xmlns[^]*Drifting boxes[^]*grid:cell=4[^]*seed 1; [^]*Chrome \d+[^]*<circle /);
     assert.equal((await save("Chart as PNG")).subarray(1, 4).toString(), "PNG");
-    assert.match((await save("Times as CSV")).toString(), /^algorithm,boxes,milliseconds\ngrid:cell=4,40,[\d.]+\n/);
+    assert.match((await save("Times as CSV")).toString(), /^algorithm,boxes,milliseconds,measured_in,scene,seed,settings\ngrid:cell=4,40,[\d.]+,frames,drift,1,ratio=3 /);
+    if (hasLibrary) {
+      await page.getByRole("button", { name: /^Measure/ }).click();
+      await page.getByRole("button", { name: "Chart as SVG" }).waitFor({ state: "detached" });
+      await page.getByRole("button", { name: "Chart as SVG" }).waitFor();
+      const frames = await page.evaluate(() => window.playground.frames);
+      await page.waitForTimeout(1200);
+      await until(page, (before) => window.playground.frames > before + 1, frames);
+      const times = (await save("Times as CSV")).toString();
+      assert.match(times, /^bvh,100000,[\d.]+,batches,/m);
+      assert.doesNotMatch(times, /frames/, "frames on screen are among the batches");
+    }
     await page.getByRole("button", { name: "JavaScript" }).click();
     assert.match(await page.locator("pre.lines").innerText(), /algorithm: "grid:cell=4"/);
     assert.deepEqual(problems, []);
