@@ -95,7 +95,7 @@ Algorithm grid() {
   std::vector<Tunable> tunables = {{
       .name = "cell",
       .summary = "side of a cell, in the coordinates' unit; doubled while the grid would be too large for "
-                 "memory (errata 2c and 3i)",
+                 "memory",  // errata 2c and 3i
       .default_value = "auto",
       .min = std::numeric_limits<float>::min(),
       .max = std::numeric_limits<float>::max(),

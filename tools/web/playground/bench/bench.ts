@@ -60,7 +60,10 @@ export class Bench {
     this.file = recordedScene({ dimension, frames });
     this.sceneKey = "";
     const boxes = frames[0]!.length / (2 * dimension);
-    this.send({ kind: "opened", opened: { name, boxes, frames: frames.length, warning } });
+    const isEmpty = frames.every((frame) => frame.length === 0);
+    this.send({ kind: "opened", opened: {
+      name, boxes, frames: frames.length, warning: warning === "" && isEmpty ? `${name}: the file holds no boxes` : warning,
+    } });
   }
 
   /** Time and held box of the last frame. (Its boxes were transferred.) */

@@ -3,7 +3,8 @@
 //
 // A box drawn as a shape costs several vertices and two or more triangles, whatever its size. In a
 // crowd, nearly all boxes are small enough for a point, which is one vertex.
-import type { Dimension } from "../scene/scene.ts";
+import type { Bounds, Dimension } from "../scene/scene.ts";
+import { between } from "../ui/numbers.ts";
 
 /** How boxes are seen. */
 export interface Lens {
@@ -13,7 +14,16 @@ export interface Lens {
   pixels: readonly [number, number];
   /** A box whose longer side has up to this many pixels is drawn as a point. */
   maxPoint: number;
+  /** Of the scene. */
+  bounds: Bounds;
 }
+
+/**
+ * Shapes are cut this far from the picture's middle, in halves of the picture, in 3D in sizes of the scene: infinity is
+ * no place, and a product of 0 with it no number.
+ */
+const cutFlat = 4;
+const cutSolid = 20;
 
 /** Boxes just beyond the panel's edge may reach into it, because tiny boxes are drawn enlarged. */
 const edge = 1.02;
@@ -34,6 +44,8 @@ export class Batch {
   points = 0;
   shapes = 0;
   private large = new Uint32Array(0);
+  /** Where shapes are cut. */
+  private readonly cut = new Float32Array(6);
 
   constructor(private readonly dimension: Dimension) {}
 
@@ -52,7 +64,14 @@ export class Batch {
     this.reserve(count);
     this.clear();
     const large = this.dimension === 2 ? this.addFlat(boxes, marks, lens) : this.addSolid(boxes, marks, lens);
-    for (let k = 0; k < large; ++k) this.put(this.points + k, boxes, marks, this.large[k]!);
+    for (let k = 0; k < large; ++k) {
+      const to = this.points + k;
+      this.put(to, boxes, marks, this.large[k]!);
+      for (let at = 0; at < stride; ++at) {
+        const axis = at % this.dimension;
+        this.boxes[stride * to + at] = between(this.boxes[stride * to + at]!, this.cut[axis]!, this.cut[axis + 3]!);
+      }
+    }
     this.shapes = large;
   }
 
@@ -79,6 +98,9 @@ export class Batch {
     // The scale is below 0 if y grows downwards in the world.
     const [least, most] = [-Math.sign(scaleY) * edge, Math.sign(scaleY) * edge];
     const [top, bottom] = [(least - shiftY) / scaleY, (most - shiftY) / scaleY];
+    const widest = cutFlat / edge;
+    const [x, y] = [-shiftX / scaleX, -shiftY / scaleY];
+    this.cut.set([x + widest * (left - x), y + widest * (top - y), 0, x + widest * (right - x), y + widest * (bottom - y)]);
     const maxExtent = maxPoint / (scaleX * pixels[0]);
     let [points, found] = [0, 0];
     for (let box = 0, at = 0; at < boxes.length; ++box, at += 4) {
@@ -92,8 +114,10 @@ export class Batch {
     return found;
   }
 
-  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, maxPoint }: Lens): number {
+  private addSolid(boxes: Float32Array, marks: Uint8Array | undefined, { matrix: m, pixels, maxPoint, bounds }: Lens): number {
     const { large } = this;
+    const reach = cutSolid * Math.max(...[0, 1, 2].map((axis) => bounds[axis + 3]! - bounds[axis]!));
+    this.cut.set(bounds.map((one, at) => at < 3 ? one - reach : one + reach));
     const norm = (row: number): number => Math.hypot(m[row]!, m[4 + row]!, m[8 + row]!);
     const maxRadius = Math.sqrt(0.75) * maxPoint / (norm(1) * pixels[1]);  // radius of a cube, by its distance
     const [slackX, slackY] = [norm(0) + norm(3), norm(1) + norm(3)];

@@ -98,7 +98,7 @@ export class CanvasPainter implements Painter {
     for (let at = 0; at < painting.overlaps.length; at += stride) context.fillRect(...project(painting.overlaps, at));
     if (panel.tests === undefined) return;
     const others = panel.tests.others.subarray(0, maxTestLines);
-    const lines = testLines(boxes, dimension, panel.tests.box, others);
+    const lines = testLines(painting, panel.tests.box, others);
     context.strokeStyle = palette.marks[2]!;
     context.globalAlpha = 0.8;
     context.beginPath();

@@ -59,21 +59,25 @@ export function overlapStrength({ overlaps, bounds, dimension }: Painting): numb
   };
   const world = volume(bounds, 0);
   let sum = 0;
-  for (let at = 0; at < overlaps.length; at += 2 * dimension) sum += Math.min(world, volume(overlaps, at));
+  for (let at = 0; at < overlaps.length; at += 2 * dimension) sum += Math.min(world, volume(overlaps, at) || 0);
   return (dimension === 2 ? 0.62 : 0.4) / Math.max(1, sum / (0.12 * world));
 }
 
 /** Maximum number of lines from a selected box to the boxes that it was tested against. */
 export const maxTestLines = 3000;
 
-/** Lines between centres: two points each. */
-export function testLines(boxes: Float32Array, dimension: Dimension, box: number, others: Uint32Array):
+/** Lines between centres: two points each. An infinite side counts as far as the scene's bounds. */
+export function testLines({ boxes, bounds, dimension }: Painting, box: number, others: Uint32Array):
     Float32Array<ArrayBuffer> {
   const stride = 2 * dimension;
   const count = Math.min(maxTestLines, others.length);
   const lines = new Float32Array(6 * count);
+  const side = (of: number, at: number): number => {
+    const one = boxes[stride * of + at]!;
+    return Number.isFinite(one) ? one : bounds[at]!;
+  };
   const centre = (of: number, axis: number): number =>
-    axis < dimension ? (boxes[stride * of + axis]! + boxes[stride * of + dimension + axis]!) / 2 : 0;
+    axis < dimension ? (side(of, axis) + side(of, dimension + axis)) / 2 : 0;
   for (let line = 0; line < count; ++line) {
     for (let axis = 0; axis < 3; ++axis) {
       lines[6 * line + axis] = centre(box, axis);

@@ -48,9 +48,8 @@ void main() {
   vec2 pixels = 0.5 * viewport.zw;
   vec2 middle, extent;
   if (dimension == 2) {
-    // A border beyond the picture need not be exact, and infinity is no place.
-    vec2 a = clamp((matrix * vec4(low.xy, 0.0, 1.0)).xy, -4.0, 4.0);
-    vec2 b = clamp((matrix * vec4(high.xy, 0.0, 1.0)).xy, -4.0, 4.0);
+    vec2 a = (matrix * vec4(low.xy, 0.0, 1.0)).xy;
+    vec2 b = (matrix * vec4(high.xy, 0.0, 1.0)).xy;
     middle = 0.5 * (a + b);
     extent = 0.5 * abs(b - a);
   } else {
@@ -100,7 +99,7 @@ void main() {
   fetchBox(first + (gl_VertexID >> 3), low, high, mark);
   ink = vec4(inks[mark].rgb, 1.0) * (inks[mark].a * (faces ? fills[mark] * 0.45 : 0.85));
   vec3 corner = vec3(gl_VertexID & 1, (gl_VertexID >> 1) & 1, (gl_VertexID >> 2) & 1);
-  gl_Position = matrix * vec4(clamp(mix(low, high, corner), -1e6, 1e6), 1.0);
+  gl_Position = matrix * vec4(mix(low, high, corner), 1.0);
 }`;
 
 export const solidFragment = `#version 300 es

@@ -51,7 +51,7 @@ export function svgOf(painting: Painting, captions: readonly string[]): string {
     for (let at = 0; at < painting.overlaps.length; at += stride) overlaps.push(path(painting.overlaps, at));
     parts.push(`<path fill="${palette.overlap}" fill-opacity="${overlapStrength(painting).toFixed(3)}" d="${overlaps.join("")}"/>`);
     if (panel.tests !== undefined) {
-      const lines = testLines(boxes, dimension, panel.tests.box, panel.tests.others);
+      const lines = testLines(painting, panel.tests.box, panel.tests.others);
       const point = (at: number): string => {
         const place = lines.subarray(at, at + dimension);
         return project(Float32Array.from([...place, ...place]), 0).slice(0, 2).map(short).join(" ");

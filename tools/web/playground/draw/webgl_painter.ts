@@ -148,7 +148,7 @@ export class WebglPainter implements Painter {
       ? flatMatrix(flatCamera(bounds, panel.place, view), panel.place) : solidMatrix(bounds, panel.place, view);
     const count = boxes.length / (2 * dimension);
     const isCrowd = count > minCrowd;
-    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], maxPoint: (isCrowd ? 16 : 8) * ratio };
+    const lens: Lens = { matrix, pixels: [viewport[2] / 2, viewport[3] / 2], maxPoint: (isCrowd ? 16 : 8) * ratio, bounds };
     const draw = (layer: Layer, style: Style): void => this.draw(layer, dimension, matrix, viewport, style);
     if (panel.outline !== undefined && this.setStructure(panel.outline, dimension, lens)) {
       const flat = dimension === 2;
@@ -176,7 +176,7 @@ export class WebglPainter implements Painter {
       });
     }
     if (panel.tests !== undefined && panel.tests.others.length > 0) {
-      const lines = testLines(boxes, dimension, panel.tests.box, panel.tests.others);
+      const lines = testLines(painting, panel.tests.box, panel.tests.others);
       setAttribInfoBufferFromArray(gl, this.lineInfo.attribs!["point"]!, lines);
       gl.useProgram(this.line.program);
       setBuffersAndAttributes(gl, this.line, this.lineInfo);

@@ -38,8 +38,9 @@ export const choosing: Lesson = {
     </>
   ),
   exercise: {
-    task: <p>For each of the three cases, choose an algorithm (not <code>auto</code>), then press <b>Race</b>. Your
-      algorithm has to take less than {enough} times as long as the fastest one.</p>,
+    task: <p>Show one of the three cases with its button above, <b>{cases[0].name}</b>, <b>{cases[1].name}</b> or{" "}
+      <b>{cases[2].name}</b>. Choose an algorithm (not <code>auto</code>), then press <b>Race</b>. Your algorithm may take
+      at most {enough} times as long as the fastest one. Do so for all three.</p>,
     control: () => <><PanelAlgorithm panel={0} label="Algorithm" /><Race /></>,
     hint: <p>The list above has a line for each of the three.</p>,
     suits: (now) => now.length > 0,
@@ -53,7 +54,9 @@ export const choosing: Lesson = {
       if (spec !== nameOf(spec)) text = `Take ${nameOf(spec)} as it is: the race takes no tunables.`;
       else if (now !== undefined && mine !== undefined && best !== undefined) {
         const good = mine.milliseconds <= enough * best.milliseconds;
-        text = `${spec} took ${duration(mine.milliseconds)}, the fastest, ${best.spec}, ${duration(best.milliseconds)}.`;
+        text = mine === best ? `${spec} is the fastest here: ${duration(mine.milliseconds)}.`
+          : `${spec} took ${duration(mine.milliseconds)}; the fastest, ${best.spec}, took ${duration(best.milliseconds)}.`;
+        text += good ? " That counts; you need not race again." : " That is too slow: choose another one.";
         if (good && !solved.value.has(now.name)) solved.value = new Set([...solved.value, now.name]);
       }
       const left = cases.filter(({ name }) => !solved.value.has(name));

@@ -67,6 +67,12 @@ export function sceneEntry(name: string): SceneEntry | undefined {
   return sceneEntries.find((entry) => entry.name === name);
 }
 
+/** The sliders' values as text, such as "ratio=3 clustering=0"; empty for a scene without sliders. */
+export function settingsText({ name, knobs }: SceneChoice): string {
+  if (sceneEntry(name)?.knobs !== true) return "";
+  return Object.entries(knobs).map(([knob, value]) => `${knob}=${Number((value as number).toPrecision(3))}`).join(" ");
+}
+
 /** The scene of that name. Throws if there is none. */
 export function makeScene({ name, count, seed, knobs }: SceneChoice): Scene {
   if (name === "drift") return drift(2, count, seed, knobs);

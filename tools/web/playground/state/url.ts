@@ -44,6 +44,12 @@ const knobNames: Record<keyof Knobs, [min: number, max: number]> = {
   ratio: [1, 1000], clustering: [0, 1], moving: [0, 1], speed: [0, 10],
 };
 
+/** All that an address may set. */
+const names: ReadonlySet<string> = new Set([
+  ...Object.keys(knobNames), "mode", "lesson", "scene", "n", "seed", "a", "panel", "structure", "overlaps", "up", "box", "paused",
+  "pace", "t", "edits", "steps", "step", "stepboxes", "cell", "capacity", "embed",
+]);
+
 /** The state at a given time, such as "scene=drift&n=500&a=grid:cell=4;bvh&t=2.5". */
 export function writeState(state: State, time: number): string {
   const query = new URLSearchParams();
@@ -93,9 +99,12 @@ function listed(items: readonly unknown[]): string {
  * are sentences that say so.
  */
 export function readState(search: string, hash: string): { state: State; time: number; faults: string[] } {
-  const query = new URLSearchParams(search.replace(/^\?/, ""));
-  new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => query.set(name, value));
   const faults: string[] = [];
+  const query = new URLSearchParams(search.replace(/^\?/, ""));
+  new URLSearchParams(hash.replace(/^#/, "")).forEach((value, name) => {
+    query.set(name, value);
+    if (!names.has(name)) faults.push(`${name}=${value}: the page has no such setting.`);
+  });
   const usual = defaultState;
   const flag = (name: string, defaultValue: boolean): boolean => {
     const value = query.get(name);

@@ -9,11 +9,11 @@ const size = { width: 400, height: 300 };
 const pixels = [200, 150] as const;
 
 function flatLens(bounds: number[], view: View = defaultView): Lens {
-  return { matrix: flatMatrix(flatCamera(bounds, size, view), size), pixels, maxPoint: 8 };
+  return { matrix: flatMatrix(flatCamera(bounds, size, view), size), pixels, maxPoint: 8, bounds };
 }
 
 function solidLens(bounds: number[], view: View = defaultView): Lens {
-  return { matrix: solidMatrix(bounds, size, view), pixels, maxPoint: 8 };
+  return { matrix: solidMatrix(bounds, size, view), pixels, maxPoint: 8, bounds };
 }
 
 function seen(dimension: 2 | 3, boxes: number[][], lens: Lens): { points: number[]; shapes: number[] } {
@@ -22,7 +22,14 @@ function seen(dimension: 2 | 3, boxes: number[][], lens: Lens): { points: number
   batch.set(Float32Array.from(boxes.flat()), Uint8Array.from(boxes.keys()), lens);
   for (let at = 0; at < batch.count; ++at) {
     const copy = [...batch.boxes.subarray(2 * dimension * at, 2 * dimension * (at + 1))];
-    assert.deepEqual(copy, boxes[batch.marks[at]!]!.map(Math.fround));
+    boxes[batch.marks[at]!]!.map(Math.fround).forEach((one, side) => {
+      // What is cut stays beyond the picture, on its side of it.
+      const axis = side % dimension;
+      const [size, middle] = [lens.bounds[axis + dimension]! - lens.bounds[axis]!, (lens.bounds[axis + dimension]! + lens.bounds[axis]!) / 2];
+      const cut = Math.sign(one - middle) * (copy[side]! - middle);
+      assert.ok(copy[side] === one || (cut > size && Number.isFinite(cut) && cut < Math.abs(one - middle)),
+        `${copy.join()} of ${boxes[batch.marks[at]!]!.join()}`);
+    });
   }
   return {
     points: [...batch.marks.subarray(0, batch.points)],
@@ -48,9 +55,10 @@ describe("a batch", () => {
   test("leaves out what is absent and what is out of sight, and keeps what reaches into the picture", () => {
     const boxes = [
       [Infinity, Infinity, -Infinity, -Infinity], [-90, 10, -80, 20], [10, 400, 20, 410], [-1000, 10, 0, 11],
-      [-Infinity, 10, Infinity, 20], [300, 0, 301, 1],
+      [-Infinity, 10, Infinity, 20], [300, 0, 301, 1], [0, 0, Infinity, 1], [0, 0, Infinity, Infinity],
     ];
-    assert.deepEqual(seen(2, boxes, flatLens(flat)), { points: [], shapes: [3, 4] });
+    for (const up of [false, true])
+      assert.deepEqual(seen(2, boxes, flatLens(flat, { ...defaultView, up })), { points: [], shapes: [3, 4, 6, 7] });
   });
 
   test("does so in 3D", () => {

@@ -87,6 +87,14 @@ test("a file is a scene of its frames, and a link without it says so", async () 
   assert.equal((await frame(0.06)).pairs.length, 2);
 });
 
+test("a file without boxes says so", async () => {
+  const replies: Reply[] = [];
+  const one = new Bench({ ...await loadEngine(), read: () => ({ dimension: 2, frames: [new Float32Array()], warning: "" }) },
+    (reply) => replies.push(reply));
+  await one.take({ kind: "file", name: "boxes.csv", bytes: new Uint8Array(), columns: "" });
+  assert.match(JSON.stringify(replies), /boxes\.csv: the file holds no boxes/);
+});
+
 test("with a clock of 0.1 ms, a search of a microsecond has its time, and not 0", async (context) => {
   let now = 0;
   context.mock.method(performance, "now", () => Math.floor((now += 1e-4) * 10) / 10);

@@ -297,6 +297,35 @@ describe("the playground", { skip: missing }, () => {
     await page.close();
   });
 
+  test("infinite boxes are where they are, with WebGL and without", async () => {
+    const means: number[][] = [];
+    for (const before of [() => {}, () => {
+      HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+        apply: (get, canvas, [kind, ...rest]) => kind === "webgl2" ? null : Reflect.apply(get, canvas, [kind, ...rest]),
+      });
+    }]) {
+      const { page, problems } = await open(browser, "overlaps=0&structure=0&paused=1", { before });
+      await page.locator('input[type="file"]').setInputFiles({ name: "boxes.csv", mimeType: "text/csv", buffer: Buffer.from(
+        "min_x,min_y,max_x,max_y\n0,0,inf,1\n-inf,3,inf,3.5\n2,-inf,2.5,1e300\n1,0.5,2,2\n4,4,5,5\n") });
+      await until(page, () => window.playground.shown!.boxes.length === 20);
+      await settled(page);
+      // The blue of 20 rows, which tells the boxes from the background.
+      means.push(await page.evaluate(() => {
+        const copy = document.createElement("canvas");
+        [copy.width, copy.height] = [1, 20];
+        const context = copy.getContext("2d")!;
+        context.imageSmoothingQuality = "high";
+        context.drawImage(document.querySelector<HTMLCanvasElement>("canvas.picture")!, 0, 0, 1, 20);
+        return Array.from(context.getImageData(0, 0, 1, 20).data).filter((_, at) => at % 4 === 2);
+      }));
+      assert.deepEqual(problems, []);
+      await page.close();
+    }
+    const [webgl, canvas] = means as [number[], number[]];
+    assert.ok(Math.max(...canvas) - Math.min(...canvas) > 20, "the picture is empty");
+    webgl.forEach((one, row) => assert.ok(Math.abs(one - canvas[row]!) < 10, `row ${row}: ${webgl.join()} and ${canvas.join()}`));
+  });
+
   test("the pairs shown are the definition's on every scene", async () => {
     const { page, problems } = await open(browser, "paused=1&t=2.4");
     for (const { name } of sceneEntries) {
@@ -433,9 +462,20 @@ describe("the playground", { skip: missing }, () => {
     await page.getByRole("slider", { name: "Number of boxes" }).fill("2.2");
     await page.getByRole("button", { name: "Chart as SVG" }).waitFor();
     const chart = (await save("Chart as SVG")).toString();
-    assert.match(chart, /^<svg xmlns[^]*grid:cell=4[^]*<circle /);
+    assert.match(chart, /^<svg xmlns[^]*Drifting boxes[^]*grid:cell=4[^]*seed 1; [^]*Chrome \d+[^]*<circle /);
     assert.equal((await save("Chart as PNG")).subarray(1, 4).toString(), "PNG");
-    assert.match((await save("Times as CSV")).toString(), /^algorithm,boxes,milliseconds\ngrid:cell=4,40,[\d.]+\n/);
+    assert.match((await save("Times as CSV")).toString(), /^algorithm,boxes,milliseconds,measured_in,scene,seed,settings\ngrid:cell=4,40,[\d.]+,frames,drift,1,ratio=3 /);
+    if (hasLibrary) {
+      await page.getByRole("button", { name: /^Measure/ }).click();
+      await page.getByRole("button", { name: "Chart as SVG" }).waitFor({ state: "detached" });
+      await page.getByRole("button", { name: "Chart as SVG" }).waitFor();
+      const frames = await page.evaluate(() => window.playground.frames);
+      await page.waitForTimeout(1200);
+      await until(page, (before) => window.playground.frames > before + 1, frames);
+      const times = (await save("Times as CSV")).toString();
+      assert.match(times, /^bvh,100000,[\d.]+,batches,/m);
+      assert.doesNotMatch(times, /frames/, "frames on screen are among the batches");
+    }
     await page.getByRole("button", { name: "JavaScript" }).click();
     assert.match(await page.locator("pre.lines").innerText(), /algorithm: "grid:cell=4"/);
     assert.deepEqual(problems, []);

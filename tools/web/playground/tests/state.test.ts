@@ -21,8 +21,9 @@ test("an address holds the whole state", () => {
     steps: { algorithm: "quadtree", at: 17, count: 9, cell: 1.5, capacity: 2 },
     embed: true,
   };
-  const { state: read, time } = readState("", `#${writeState(state, 3.25)}`);
+  const { state: read, time, faults } = readState("", `#${writeState(state, 3.25)}`);
   assert.deepEqual(read, state);
+  assert.deepEqual(faults, []);
   assert.equal(time, 3.25);
 });
 
@@ -56,8 +57,8 @@ test("what an address says wrongly is as usual, and numbers keep to their range"
 });
 
 test("an address that is wrong says so, and what is taken instead", () => {
-  const { faults, state } = readState("", "#scene=drfit&n=abc&steps=octree&lesson=9&a=grid;bvh;auto;grid;grid&edits=1_2~x");
-  assert.deepEqual(faults.map((fault) => fault.split(":")[0]), ["a", "scene=drfit", "edits", "lesson=9", "n=abc", "steps=octree"]);
+  const { faults, state } = readState("", "#scene=drfit&n=abc&steps=octree&lesson=9&a=grid;bvh;auto;grid;grid&edits=1_2~x&foo=3");
+  assert.deepEqual(faults.map((fault) => fault.split(":")[0]), ["foo=3", "a", "scene=drfit", "edits", "lesson=9", "n=abc", "steps=octree"]);
   assert.match(faults.join(), /n=abc: expected a number from 1 to 100,000; the page takes 400/);
   assert.equal(state.scene.name, "drift");
   assert.equal(state.panels.length, 4);

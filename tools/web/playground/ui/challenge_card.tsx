@@ -30,8 +30,8 @@ export function Race() {
         duelling.value = true;
         bench().send({ kind: "duel" });
       }}>{duelling.value ? "Racing …" : "Race"}</button>
-      {result?.unsteady === true && <p class="note">The rounds differ much: this machine is busy. Race again when it is
-        quiet.</p>}
+      {result?.unsteady === true && <p class="note">The rounds differ much, since this machine is busy: small differences
+        say nothing.</p>}
       {result !== null && (
         <table>
           <caption class="unseen">Time of a search by each algorithm</caption>

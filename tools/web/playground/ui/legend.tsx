@@ -14,7 +14,7 @@ export function Legend() {
         onChange={(value) => patch({ overlaps: value })} /></li>
       <li><Switch label={<>{key("structure")} the algorithm's rows, cells or nodes</>} value={structure}
         onChange={(value) => patch({ structure: value })} /></li>
-      {dimension.value === 2 && <li><Switch label={`y points ${up ? "up" : "down"}`} value={up}
+      {dimension.value === 2 && <li><Switch label="y points up" value={up}
         hint="On: up, as on a map. Off: down, as on a screen" onChange={(value) => patch({ up: value })} /></li>}
       {selected < 0 && <li class="note">Click a box to see what it is compared with{dimension.value === 3 && "; drag to turn the camera"}.</li>}
     </ul>

@@ -98,10 +98,13 @@ export function StepPicture({ boxes, step, found }:
   const { state, pair, outcome } = step;
   const active = state.kind === "sweep_and_prune" ? new Set(state.active) : new Set<number>();
   const point = state.kind === "grid" || state.kind === "quadtree" ? state.point : undefined;
+  // Boxes that the tree does not hold yet.
+  const stored = state.kind === "quadtree" ? new Set(state.nodes.flatMap((node) => node.boxes)) : undefined;
   const classOf = (id: number): string => {
     if (pair?.includes(id) === true) return `box ${outcome ?? "test"}`;
     if (step.boxes.includes(id)) return "box about";
     if (active.has(id)) return "box active";
+    if (stored?.has(id) === false) return "box waiting";
     return found.has(id) ? "box lit" : "box";
   };
   const count = boxes.length / 4;

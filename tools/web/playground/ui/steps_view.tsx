@@ -28,7 +28,8 @@ function change(part: Partial<State["steps"]>): void {
 /** The structure of each algorithm, as its picture shows it. */
 const structures: Record<StepAlgorithm, string> = {
   brute_force: "", grid: "cells; filled: the current one, or those that the box covers",
-  sweep_and_prune: "the sweep line, and the active boxes", quadtree: "nodes; filled: the current one", bvh: "nodes; filled: the current ones",
+  sweep_and_prune: "the sweep line, and the active boxes", quadtree: "nodes; filled: the current one; dotted boxes: not in the tree yet",
+  bvh: "nodes; filled: the current ones",
 };
 
 function StepLegend({ algorithm }: { algorithm: StepAlgorithm }) {
