@@ -392,7 +392,7 @@ TEST(Compare, SkipsASpecWhereItMakesNoSense) {
   ASSERT_EQ(comparison.cases.size(), 1u);
   const Measurement& measurement = comparison.cases[0].measurements.at(0);
   EXPECT_EQ(measurement.outcome, Outcome::skipped);
-  EXPECT_THAT(measurement.reason, HasSubstr("expected x or y in 2D"));
+  EXPECT_THAT(measurement.reason, HasSubstr("expected x, y or auto in 2D"));
   EXPECT_FALSE(comparison.all_verified());
 }
 
