@@ -214,7 +214,7 @@ of_test-wasm := --wasm
 of_test-installed := --web
 of_compare-web := --web
 of_playground := --web
-of_film := --web
+of_film := --film
 setup_options := $(sort $(foreach goal,$(MAKECMDGOALS),$(or $(of_$(goal)),--build)))
 
 published: RUST_PEERS := ENGINES
