@@ -54,6 +54,7 @@ void QueryIndex<D, Real>::mark_differences(const BoxTable<D, Real>& old, const B
 template <int D, typename Real>
 void QueryIndex<D, Real>::drop() noexcept {
   index_.reset();
+  updates_unused_ = 0;
   core::give_back(marked_, is_marked_);
   is_current_.store(false, std::memory_order_relaxed);
 }

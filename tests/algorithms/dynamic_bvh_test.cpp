@@ -127,24 +127,30 @@ TEST(DynamicBvh, RefitsAllBoundsAfterMostBoxesMoved) {
   });
 }
 
-TEST(DynamicBvh, TellsHowMuchItsLeavesGrew) {
+TEST(DynamicBvh, TellsHowManyMoreNodesASearchVisits) {
   const auto square = [](float x, float y) { return Box2{{x, y}, {x + 1, y + 1}}; };
   std::vector<Box2> boxes;
   for (int i = 0; i < 1024; ++i)
     boxes.push_back(square(static_cast<float>(i % 32), static_cast<float>(i / 32)));
   DynamicBvh<2> tree;
   tree.build(boxes);
-  EXPECT_EQ(tree.refit_all(), 1);
+  EXPECT_NEAR(tree.refit_all(), 1, 1e-6);
   const auto growth = [&](float factor) {
     for (std::size_t i = 0; i < boxes.size(); ++i)
       tree.overwrite(BoxId(i), {{factor * boxes[i].min[0], factor * boxes[i].min[1]},
                                 {factor * boxes[i].max[0], factor * boxes[i].max[1]}});
     return tree.refit_all();
   };
-  EXPECT_EQ(growth(3), 9);
-  EXPECT_EQ(growth(0.5), 1) << "what shrank costs no more";
+  EXPECT_NEAR(growth(3), 1, 1e-6) << "larger everywhere, and shared as before";
+  EXPECT_NEAR(growth(0.01F), 1, 1e-6);
+  Rng rng(3);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    tree.overwrite(BoxId(i), square(static_cast<float>(rng.below(8)), static_cast<float>(rng.below(8))));
+  EXPECT_GT(tree.refit_all(), 4) << "each leaf is wherever the others are";
   tree.build({});
-  EXPECT_EQ(tree.refit_all(), 0);
+  tree.set(BoxId{0}, square(0, 0));
+  tree.overwrite(BoxId{0}, square(5, 5));
+  EXPECT_EQ(tree.refit_all(), 1) << "and the former tree is forgotten";
 }
 
 /// follow() and what a tracker does after it: the pairs of each box that toggle, against the boxes as they

@@ -523,22 +523,25 @@ TEST(BoxIndex, TakesWhatChangedWhateverTheNumberOfBoxes) {
   }
 }
 
+/// Boxes whose middles are anywhere in a region of the plane, with sides of 10.
+std::vector<Box2> spread(Rng& rng, std::size_t size, float side_x, float side_y) {
+  std::vector<Box2> boxes(size);
+  const auto place = [&](float side) { return static_cast<float>(rng.below(1 << 20)) * side / (1 << 20); };
+  for (Box2& box : boxes) {
+    const float x = place(side_x);
+    const float y = place(side_y);
+    box = {{x, y}, {x + 10, y + 10}};
+  }
+  return boxes;
+}
+
 TEST(BoxIndex, IsBuiltAnewOnlyWhenMovesSpoilIt) {
   constexpr std::size_t size = 4000;
-  std::vector<Box2> boxes(size);
   Rng rng{5};
-  const auto place = [&] { return static_cast<float>(rng.below(1000)); };
-  const auto scatter = [&] {
-    for (Box2& box : boxes) {
-      const float x = place();
-      const float y = place();
-      box = {{x, y}, {x + 10, y + 10}};
-    }
-  };
-  scatter();
-  auto index = index_of(boxes);
   std::vector<BoxId> all;
   for (std::size_t i = 0; i < size; ++i) all.push_back(BoxId(i));
+  std::vector<Box2> boxes = spread(rng, size, 1000, 1000);
+  auto index = index_of(boxes);
   for (int frame = 0; frame < 4; ++frame) {
     for (std::size_t i = 0; i < size; ++i) {
       const float step = i % 2 == 0 ? 1 : -1;
@@ -546,14 +549,72 @@ TEST(BoxIndex, IsBuiltAnewOnlyWhenMovesSpoilIt) {
     }
     EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), size) << "moved in their leaves";
   }
-  scatter();
-  EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), 2 * size) << "moved, and then built";
-  // One box of sixty-four leaves: each search would visit its leaf.
-  boxes.resize(1000);
+  const auto endless = [](std::vector<Box2> strips) {
+    for (Box2& box : strips) {
+      box.min[1] = -infinity;
+      box.max[1] = infinity;
+    }
+    return strips;
+  };
+  const std::vector<std::pair<std::vector<Box2>, std::vector<Box2>>> spoilt = {
+      {spread(rng, size, 1000, 1000), spread(rng, size, 1000, 1000)},
+      {spread(rng, size, 1000, 1000), spread(rng, size, 8, 8)},
+      {endless(spread(rng, size, 1e6F, 10)), endless(spread(rng, size, 1e6F, 10))},
+  };
+  for (const auto& [before, after] : spoilt) {
+    auto fresh = index_of(before);
+    EXPECT_EQ(taken(fresh, {.boxes = after, .changed = all}), 2 * size) << "moved, and then built";
+    EXPECT_EQ(taken(fresh, {.boxes = before, .changed = all}), size) << "built at once";
+  }
+}
+
+template <int D, typename Real>
+void expect_answers_after_moves() {
+  Rng rng{D};
+  std::vector<Box<D, Real>> boxes(700);
+  std::vector<BoxId> all;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (int axis = 0; axis < D; ++axis) {
+      boxes[i].min[axis] = static_cast<Real>(rng.below(3000)) / 7;
+      boxes[i].max[axis] = boxes[i].min[axis] + static_cast<Real>(rng.below(3) * 5);
+    }
+    all.push_back(BoxId(i));
+  }
+  BoxIndex<D, Real> index;
   index.update({.boxes = boxes});
-  all.resize(1000);
-  boxes[0] = {{100'000, 0}, {100'010, 10}};
-  EXPECT_EQ(taken(index, {.boxes = boxes, .changed = all}), 2 * 1000);
+  for (int frame = 0; frame < 40; ++frame) {
+    for (Box<D, Real>& box : boxes) {
+      if (!is_present(box)) continue;
+      for (int axis = 0; axis < D; ++axis) {
+        // In places that only doubles tell apart, and in time far from where the tree was built.
+        const Real step =
+            static_cast<Real>(rng.below(1000)) / 977 + static_cast<Real>(frame % 10 == 9 ? 1e5 : 0);
+        box.min[axis] += step;
+        box.max[axis] += step;
+      }
+      if (rng.one_in(300)) box = absent_box<D, Real>();
+    }
+    index.update({.boxes = boxes, .changed = all});
+    for (int query = 0; query < 8; ++query) {
+      const Box<D, Real> where = boxes[rng.below(boxes.size())];
+      if (!is_present(where)) continue;
+      std::vector<BoxId> expected;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (is_present(boxes[i]) && overlap(boxes[i], where)) expected.push_back(BoxId(i));
+      }
+      std::vector<BoxId> found;
+      index.overlapping(where, [&found](BoxId id) { found.push_back(id); });
+      std::ranges::sort(found);
+      EXPECT_EQ(found, expected) << "frame " << frame;
+    }
+  }
+}
+
+TEST(BoxIndex, AnswersRightlyAfterAllBoxesMoved) {
+  expect_answers_after_moves<2, float>();
+  expect_answers_after_moves<3, float>();
+  expect_answers_after_moves<2, double>();
+  expect_answers_after_moves<3, double>();
 }
 
 TEST(BoxIndex, TakesWhatChangedAmongManyAbsentBoxes) {

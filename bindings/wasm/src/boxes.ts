@@ -123,7 +123,7 @@ export function putDoubles(core: Core, numbers: ArrayLike<number>): number {
 
 export const bytesOfFilter = 24;
 const allBits = 0xffffffff;
-export const properties = ["category", "mask", "group", "isStatic"] as const;
+const properties = ["category", "mask", "group", "isStatic"] as const;
 
 export function checkFilters(filters: Filters, count: number, name = "filters"): void {
   checkOptions(filters, properties, name);
@@ -136,18 +136,18 @@ export function checkFilters(filters: Filters, count: number, name = "filters"):
 }
 
 /** A whole number of 32 bits, which may also be below 0, as JavaScript's bit operations give it. */
-function whole(value: number, name: string, box: number | undefined): number {
-  if (value >>> 0 === value || (value | 0) === value) return value;
-  return refuse(box === undefined ? name : `${name}[${box}]`, value, "a whole number of at most 32 bits");
+function whole(value: number, name: string, property: string, box: number | undefined): number {
+  if (typeof value === "number" && (value >>> 0 === value || (value | 0) === value)) return value;
+  return refuse(`${name}.${property}${box === undefined ? "" : `[${box}]`}`, value, "a whole number of at most 32 bits");
 }
 
 function writeFilter(words: Uint32Array, at: number, category: number, mask: number | undefined, group: number,
   isStatic: number | boolean, name: string, box?: number): void {
-  words[at] = whole(category, `${name}.category`, box);
+  words[at] = whole(category, name, "category", box);
   words[at + 1] = 0;
-  words[at + 2] = mask === undefined ? allBits : whole(mask, `${name}.mask`, box);
+  words[at + 2] = mask === undefined ? allBits : whole(mask, name, "mask", box);
   words[at + 3] = mask === undefined ? allBits : 0;
-  words[at + 4] = whole(group, `${name}.group`, box);
+  words[at + 4] = whole(group, name, "group", box);
   words[at + 5] = isStatic ? 1 : 0;
 }
 
@@ -158,6 +158,15 @@ export function putFilters(core: Core, filters: Filters | undefined, count: numb
   for (let i = 0, at = address / 4; i < count; ++i, at += bytesOfFilter / 4)
     writeFilter(core.u32, at, category?.[i] ?? 1, mask?.[i], group?.[i] ?? 0, isStatic?.[i] ?? false, name, i);
   return address;
+}
+
+/** Checks the filter of one box. */
+export function checkFilter(filter: Filter): void {
+  checkOptions(filter, properties, "filter");
+  for (const property of ["category", "mask", "group"] as const) {
+    const value = filter[property];
+    if (value !== undefined) whole(value, "filter", property, undefined);
+  }
 }
 
 export function putFilter(core: Core, filter: Filter, name = "filter"): number {

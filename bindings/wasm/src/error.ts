@@ -64,7 +64,7 @@ export function checkOptions(options: object, known: readonly string[], name = "
   if (typeof options !== "object" || options === null) refuse(name, options, `an object of ${known.join(", ")}`);
   for (const option in options) {
     if (!known.includes(option)) {
-      const meant = known.find((name) => name.startsWith(option) || option.startsWith(name));
+      const meant = option && known.find((name) => name.startsWith(option) || option.startsWith(name));
       throw new BroadsideError("INVALID_ARGUMENT", `unknown option '${option}'${meant ? ` (did you mean '${meant}'?)` : ""}` +
         `; expected ${known.length === 0 ? "none" : `some of: ${known.join(", ")}`}`);
     }

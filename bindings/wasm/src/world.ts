@@ -4,7 +4,7 @@ import type {
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilters, copyOf, countIn, countOf, countOfNumbers, properties, put, putFilter, putFilters,
+  type Given, bytesOf, bytesOfFilter, checkFilter, checkFilters, copyOf, countIn, countOf, countOfNumbers, put, putFilter, putFilters,
   putFloats,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
@@ -95,7 +95,7 @@ export class KeptWorld extends Kept implements World {
     checkOptions(options, ["filter"]);
     const { filter } = options;
     if (filter === undefined) return this.add(box)[0] as number;
-    checkOptions(filter, properties, "filter");
+    checkFilter(filter);
     const filters = Object.fromEntries(Object.entries(filter).map(([name, value]) => [name, [value]]));
     return this.add(box, { filters })[0] as number;
   }

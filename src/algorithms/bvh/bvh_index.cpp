@@ -34,7 +34,7 @@ float in_tree(Real t_max, int exponent) {
     return rounded_up(std::ldexp(t_max, exponent));
 }
 
-/// Boxes that moved are kept in their leaves while searches visit at most so many times as many of these.
+/// Boxes that moved are kept in their leaves while searches visit at most so many times as many nodes.
 constexpr double max_growth = 1.5;
 
 template <int D, typename Real>
@@ -62,27 +62,43 @@ void BvhIndex<D, Real>::update(const Frame<D, Real>& frame) {
 /// searches faster; then only some of them are in the tree.
 template <int D, typename Real>
 bool BvhIndex<D, Real>::take_changes(std::span<const Box<D, Real>> boxes) {
+  const auto box_of = [&](BoxId id) {
+    return index(id) < boxes.size() ? boxes[index(id)] : absent_box<D, Real>();
+  };
   // Many single changes cost more than a build of all boxes. A build also reads absent boxes.
   const std::size_t few = tree_.size() / 4 + boxes.size() / 64 + 16;
   const bool refits = changed_.size() > few;
-  std::size_t single_changes = 0;
+  if (refits) {
+    if (builds_ahead_ > 0) {
+      --builds_ahead_;
+      return false;
+    }
+    const auto comes_or_goes = [&](BoxId id) {
+      return is_present(box_of(id)) != (tree_.slot(id) != kernels::no_slot);
+    };
+    if (static_cast<std::size_t>(std::count_if(changed_.begin(), changed_.end(), comes_or_goes)) > few)
+      return false;
+  }
   if constexpr (!is_float<Real>) exact_.resize(boxes.size(), absent_box<D, Real>());
   for (const BoxId id : changed_) {
-    const bool is_listed = index(id) < boxes.size();
-    const Box<D, Real> box = is_listed ? boxes[index(id)] : absent_box<D, Real>();
+    const Box<D, Real> box = box_of(id);
     const bool is_there = is_present(box);
-    if (refits && is_there && tree_.slot(id) != kernels::no_slot) {
+    if (refits && is_there && tree_.slot(id) != kernels::no_slot)
       tree_.overwrite(id, in_tree(box));
-    } else {
-      if (refits && ++single_changes > few) return false;
+    else
       tree_.set(id, is_there ? in_tree(box) : absent_box<D>());
-    }
     are_points_ &= !is_there || is_point(box);
     if constexpr (!is_float<Real>) {
-      if (is_listed) exact_[index(id)] = box;
+      if (index(id) < boxes.size()) exact_[index(id)] = box;
     }
   }
-  if (refits && tree_.refit_all() > max_growth) return false;
+  if (refits) {
+    const bool fits = tree_.refit_all() <= max_growth;
+    // Where boxes scatter in every frame, it is tried less and less often.
+    last_builds_ahead_ = fits ? 0 : std::min(2 * last_builds_ahead_ + 1, 15);
+    builds_ahead_ = last_builds_ahead_;
+    if (!fits) return false;
+  }
   return !tree_.needs_rebuild();
 }
 

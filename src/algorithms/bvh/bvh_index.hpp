@@ -138,10 +138,12 @@ class BvhIndex {
 
   std::span<const Filter> filters_;  // of the last frame; empty if it had none
   std::vector<Filter> own_filters_;  // the array behind filters_ after update()
-  std::vector<BoxId> changed_;       // the frame's list, and places added or cut off at the end
-  std::size_t size_ = 0;             // of the last frame
-  bool are_points_ = false;          // all boxes, since the last build
-  bool dirty_ = true;                // the last update failed, or there was none
+  int builds_ahead_ = 0;             // before the next attempt to keep boxes that moved in their leaves
+  int last_builds_ahead_ = 0;
+  std::vector<BoxId> changed_;  // the frame's list, and places added or cut off at the end
+  std::size_t size_ = 0;        // of the last frame
+  bool are_points_ = false;     // all boxes, since the last build
+  bool dirty_ = true;           // the last update failed, or there was none
 };
 
 }  // namespace broadside::algorithm

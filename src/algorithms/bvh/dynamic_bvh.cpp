@@ -25,11 +25,21 @@ bool touches_border(const Box<D>& bounds, const Box<D>& box) {
   return touches;
 }
 
-/// The sum of the extents.
+/// The expected number of a node's children that contain a point, which is anywhere in `bounds`. It does not
+/// depend on how large the boxes are, or where: it tells how well the children share the node.
 template <int D>
-float extents(const Box<D>& box) {
-  float sum = 0;
-  for (int axis = 0; axis < D; ++axis) sum += box.max[axis] - box.min[axis];
+double children_at_a_point(const kernels::Block<D>& node, std::size_t count, const Box<D>& bounds) {
+  double sum = 0;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const Box<D> child = node.box(lane);
+    float share = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      const float extent = child.max[axis] - child.min[axis];
+      const float whole = bounds.max[axis] - bounds.min[axis];
+      if (extent < whole) share *= extent / whole;  // neither infinite nor 0 both
+    }
+    sum += static_cast<double>(share);
+  }
   return sum;
 }
 
@@ -45,6 +55,8 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   slots_.assign(boxes.size(), no_slot);
   root_ = no_slot;
   insertions_ = 0;
+  levels_.clear();
+  built_visits_ = 1;
   packed_.clear();
   packed_.reserve(boxes.size());
   ids_.clear();
@@ -62,11 +74,11 @@ void DynamicBvh<D>::build(std::span<const Box<D>> boxes, const Workers& workers)
   nodes_.reserve(leaves + leaves / 3 + 16);
   info_.reserve(nodes_.capacity());
   add_leaves();
-  built_extents_.resize(children_.size());
-  for (const Child& leaf : children_) built_extents_[leaf.number & ~leaf_bit] = extents(leaf.box);
   arrange<D>(children_);
   while (children_.size() > 1) add_level();
   root_ = children_.front().number;
+  std::reverse(levels_.begin(), levels_.end());
+  built_visits_ = visits();
 }
 
 template <int D>
@@ -104,13 +116,17 @@ void DynamicBvh<D>::add_leaves() {
 template <int D>
 void DynamicBvh<D>::add_level() {
   std::size_t to = 0;
+  Level level;
   for (std::size_t begin = 0; begin < children_.size(); begin += fan_out) {
     const std::uint32_t node = new_node(false);
     const std::size_t count = std::min(fan_out, children_.size() - begin);
     for (std::size_t i = 0; i < count; ++i) write_child(node, i, children_[begin + i]);
     info_[node].count = static_cast<std::uint8_t>(count);
     children_[to++] = {kernels::bounds_of(nodes_[node]), numbered(node)};
+    level.children += children_at_a_point(nodes_[node], count, children_[to - 1].box);
+    ++level.nodes;
   }
+  levels_.push_back(level);
   children_.resize(to);
 }
 
@@ -228,28 +244,37 @@ void DynamicBvh<D>::refit_above(std::uint32_t node) {
 
 template <int D>
 double DynamicBvh<D>::refit_all() {
-  double growth = 0;
-  if (root_ != no_slot) refit_below(root_, growth);
-  return growth / static_cast<double>(std::max<std::size_t>(1, built_extents_.size()));
+  std::fill(levels_.begin(), levels_.end(), Level{});
+  if (root_ != no_slot) refit_below(root_, 0);
+  return visits() / built_visits_;
 }
 
-/// Sets the bounds below a node and returns its own. Adds its leaves' growth.
+/// Sets the bounds below a node, which is so many levels below the root, and returns its own.
 template <int D>
-Box<D> DynamicBvh<D>::refit_below(std::uint32_t number, double& growth) {
+Box<D> DynamicBvh<D>::refit_below(std::uint32_t number, std::size_t depth) {
   const std::uint32_t node = number & ~leaf_bit;
-  if (node == number) {
-    for (std::size_t lane = 0; lane < info_[node].count; ++lane)
-      write(static_cast<std::uint32_t>(node * fan_out + lane), refit_below(nodes_[node].id[lane], growth));
-    return kernels::bounds_of(nodes_[node]);
-  }
+  if (node != number) return kernels::bounds_of(nodes_[node]);
+  const std::size_t count = info_[node].count;
+  for (std::size_t lane = 0; lane < count; ++lane)
+    write(static_cast<std::uint32_t>(node * fan_out + lane), refit_below(nodes_[node].id[lane], depth + 1));
   const Box<D> bounds = kernels::bounds_of(nodes_[node]);
-  double grown = 1;
-  if (node < built_extents_.size() && extents(bounds) > built_extents_[node]) {
-    const double ratio = static_cast<double>(extents(bounds)) / static_cast<double>(built_extents_[node]);
-    grown = D == 2 ? ratio * ratio : ratio * ratio * ratio;
-  }
-  growth += grown;
+  if (levels_.size() <= depth) levels_.resize(depth + 1);
+  levels_[depth].children += children_at_a_point(nodes_[node], count, bounds);
+  ++levels_[depth].nodes;
   return bounds;
+}
+
+/// The expected number of nodes that a search of a point visits.
+template <int D>
+double DynamicBvh<D>::visits() const noexcept {
+  double all = 1;
+  double of_level = 1;
+  for (const Level& level : levels_) {
+    if (level.nodes == 0) break;
+    of_level *= level.children / static_cast<double>(level.nodes);
+    all += of_level;
+  }
+  return all;
 }
 
 template <int D>

@@ -19,8 +19,8 @@
 
 namespace broadside::algorithm {
 
-/// Packed by BvhPacker, and maintained as an R-tree: a box that leaves its leaf is inserted where bounds grow
-/// least, full nodes are split, empty ones vanish. All leaves are equally deep.
+/// Packed by BvhPacker, and maintained as an R-tree: set() inserts a box that leaves its leaf where bounds
+/// grow least, full nodes are split, empty ones vanish. All leaves are equally deep.
 template <int D>
 class DynamicBvh {
  public:
@@ -48,8 +48,8 @@ class DynamicBvh {
     write(slot(id), box);
   }
 
-  /// Makes all bounds exact. Returns how many times as many leaves a search of a small region now visits as
-  /// after build(), as far as the bounds tell: the mean, over the leaves, of (extent now / extent then)^D.
+  /// Makes all bounds exact. Returns how many times as many nodes a search of a point visits as after
+  /// build(), as far as the bounds tell.
   double refit_all();
 
   /// Removes a box and inserts it where bounds grow least.
@@ -104,10 +104,10 @@ class DynamicBvh {
 
   std::size_t bytes() const noexcept {
     return packer_.bytes() +
-           core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_, built_extents_);
+           core::bytes_of(packed_, ids_, children_, nodes_, info_, free_, slots_, lists_, levels_);
   }
 
-  /// How many boxes build() and set() have taken so far. Tests measure this instead of time.
+  /// How many boxes build(), set() and overwrite() have taken so far. Tests measure this instead of time.
   std::uint64_t boxes_taken() const noexcept { return boxes_taken_; }
 
  private:
@@ -140,7 +140,14 @@ class DynamicBvh {
   void split(std::uint32_t node, const Child& added);
   void remove_at(std::uint32_t slot);
   void refit_above(std::uint32_t node);
-  Box<D> refit_below(std::uint32_t number, double& growth);
+  Box<D> refit_below(std::uint32_t number, std::size_t depth);
+
+  /// The children that a search of a point visits in the inner nodes of a level, and the number of these.
+  struct Level {
+    double children = 0;
+    std::size_t nodes = 0;
+  };
+  double visits() const noexcept;
 
   BvhPacker<D> packer_;
   core::Parallel parallel_;
@@ -153,7 +160,8 @@ class DynamicBvh {
   std::vector<kernels::BvhNodeInfo> info_;
   std::vector<std::uint32_t> free_;        // nodes
   core::LargeArray<std::uint32_t> slots_;  // by id
-  std::vector<float> built_extents_;       // of the leaves that build() made, by node
+  std::vector<Level> levels_;              // from the root's on, as build() or refit_all() left them
+  double built_visits_ = 1;
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;
   std::size_t insertions_ = 0;  // since the last build

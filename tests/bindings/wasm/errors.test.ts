@@ -48,6 +48,7 @@ test("numbers that are none, before they are read as others", () => {
   const isRefused = (call: () => unknown, message: string) => assert.equal(errorOf(call).message, message);
   const filters = (filter: object) => () => broadside.pairs(overlapping, { filters: filter });
   isRefused(filters({ category: ["a", 1] }), "filters.category[0] is 'a'; expected a whole number of at most 32 bits");
+  isRefused(filters({ category: [1n, 1] }), "filters.category[0] is 1; expected a whole number of at most 32 bits");
   isRefused(filters({ mask: [1, NaN] }), "filters.mask[1] is NaN; expected a whole number of at most 32 bits");
   isRefused(filters({ group: [1.5, 1] }), "filters.group[0] is 1.5; expected a whole number of at most 32 bits");
   assert.deepEqual([...broadside.pairs(overlapping, { filters: { category: [~0, 2 ** 31], mask: [~0, 2 ** 32 - 1] } })],
@@ -56,7 +57,7 @@ test("numbers that are none, before they are read as others", () => {
     "rightFilters.category[1] is 4294967296; expected a whole number of at most 32 bits");
   const world = broadside.world();
   isRefused(() => world.addOne([0, 0, 1, 1], { filter: { mask: 0.5 } }),
-    "filters.mask[0] is 0.5; expected a whole number of at most 32 bits");
+    "filter.mask is 0.5; expected a whole number of at most 32 bits");
   const handle = world.addOne([0, 0, 1, 1]);
   isRefused(() => world.setFilter(handle, { group: Infinity }),
     "filter.group is Infinity; expected a whole number of at most 32 bits");
