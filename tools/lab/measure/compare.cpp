@@ -152,7 +152,7 @@ class Runner {
     }
     Effort effort = options_.effort;
     if (!options_.measure_options.times)
-      effort.min_rounds = effort.max_rounds = effort.slow_rounds = inputs.size();
+      effort.min_rounds = effort.max_rounds = effort.slow_rounds = effort.far_rounds = inputs.size();
     const Benchmark benchmark{entries_, catalogue_.algorithms(), effort, watch, options_.measure_options};
     comparison_.cases.push_back(measure_case<D>(of, inputs, benchmark, hung_));
     add_ratios(comparison_.cases.back());

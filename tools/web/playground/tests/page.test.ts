@@ -297,7 +297,7 @@ describe("the playground", { skip: missing }, () => {
     await page.close();
   });
 
-  test("infinite boxes are where they are, with WebGL and without", async () => {
+  test("infinite boxes are where they are, with WebGL and without", { skip: hasLibrary ? false : "skipped: the engine is missing" }, async () => {
     const means: number[][] = [];
     for (const before of [() => {}, () => {
       HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
