@@ -54,8 +54,8 @@ class QueryIndex {
   /// Lists the slots in which `old` differs from `now`, the table of boxes that replaces it. O(slots).
   void mark_differences(const BoxTable<D, Real>& old, const BoxTable<D, Real>& now);
 
-  /// Called by each update of the world: drops the index if most of `slots` slots have changed and queries have
-  /// not used it for some updates, so that marking changes costs no more. The next query builds it anew.
+  /// Called by each update of the world: drops the index if most of `slots` slots have changed and queries
+  /// have not used it for some updates, so that marking changes costs no more. The next query builds it anew.
   void drop_outdated(std::size_t slots) noexcept {
     if (marked_.size() > slots / 2 + 1024 && ++updates_unused_ >= max_updates_unused) drop();
   }
