@@ -30,7 +30,7 @@ const example = "import { load } from \"broadside\";\n" +
  * they grow.
  */
 const limits: readonly (readonly [string, string, number])[] = [
-  ["index.js", "broadside-2d.js", 199_000], ["index.js", "broadside-3d.js", 204_000],
+  ["index.js", "broadside-2d.js", 199_000], ["index.js", "broadside-3d.js", 205_000],
   ["pairs.js", "broadside-pairs-2d.js", 166_000], ["pairs.js", "broadside-pairs-3d.js", 170_500],
 ];
 
