@@ -30,7 +30,7 @@ class FrameStates {
     const bool had_filters = !filters_before_.empty();
     is_whole_ = !takes_all && lists_all && frame.filters.empty() != had_filters;
     if (is_whole_) {
-      if (!had_filters) filters_now_.clear();  // which the frame before may have dropped
+      if (!had_filters) filters_now_.clear();  // keep() leaves those of the last frame that had filters
       return take_all_boxes(frame, known_, parallel);
     }
     if (std::exchange(now_is_old_, false)) now_ = before_;

@@ -523,7 +523,7 @@ TEST(BoxIndex, TakesWhatChangedWhateverTheNumberOfBoxes) {
   }
 }
 
-/// Boxes whose middles are anywhere in a region of the plane, with sides of 10.
+/// Random boxes with sides of 10; the first corners are from 0 to `side_x` and `side_y`.
 std::vector<Box2> spread(Rng& rng, std::size_t size, float side_x, float side_y) {
   std::vector<Box2> boxes(size);
   const auto place = [&](float side) { return static_cast<float>(rng.below(1 << 20)) * side / (1 << 20); };

@@ -54,8 +54,8 @@ export function countOf(core: Core, boxes: unknown, name = "boxes"): number {
   const row = dimension === 2 ? "minX, minY, maxX, maxY" : "minX, minY, minZ, maxX, maxY, maxZ";
   const first = (boxes as ArrayLike<unknown> | undefined)?.[0];
   if (typeof first === "object") refuse(`${name}[0]`, first, `a number: one array has all boxes, ${row} of each`);
-  const length: unknown = (boxes as ArrayLike<unknown> | undefined)?.length;
-  if (typeof boxes === "object" && boxes !== null && length === undefined) refuse(name, boxes, `an array of numbers: ${row} of each box`);
+  if (typeof boxes === "object" && boxes !== null && !("length" in boxes))
+    refuse(name, boxes, `an array of numbers: ${row} of each box`);
   return countOfNumbers(boxes, 2 * dimension, name);
 }
 

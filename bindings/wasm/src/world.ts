@@ -4,8 +4,8 @@ import type {
   TrackerOptions, World, WorldOptions,
 } from "../types/types.d.ts";
 import {
-  type Given, bytesOf, bytesOfFilter, checkFilter, checkFilters, copyOf, countIn, countOf, countOfNumbers, put, putFilter, putFilters,
-  putFloats,
+  type Given, bytesOf, bytesOfFilter, checkFilter, checkFilters, copyOf, countIn, countOf, countOfNumbers, put, putFilter,
+  putFilters, putFloats,
 } from "./boxes.ts";
 import type { Core, Cores } from "./core.ts";
 import { asksForView, checkOptions, refuse } from "./error.ts";

@@ -34,12 +34,18 @@ float in_tree(Real t_max, int exponent) {
     return rounded_up(std::ldexp(t_max, exponent));
 }
 
-/// Boxes that moved are kept in their leaves while searches visit at most so many times as many nodes.
+/// The tree is rebuilt if moves make a search visit more than this many times the nodes.
 constexpr double max_growth = 1.5;
 
 template <int D, typename Real>
 bool is_point(const Box<D, Real>& box) {
   return box.min == box.max;
+}
+
+template <int D, typename Real>
+bool are_points(std::span<const Box<D, Real>> boxes) {
+  return std::all_of(boxes.begin(), boxes.end(),
+                     [](const Box<D, Real>& box) { return is_point(box) || !is_present(box); });
 }
 
 }  // namespace
@@ -93,6 +99,7 @@ bool BvhIndex<D, Real>::take_changes(std::span<const Box<D, Real>> boxes) {
     }
   }
   if (refits) {
+    are_points_ = are_points(boxes);
     const bool fits = tree_.refit_all() <= max_growth;
     // Where boxes scatter in every frame, it is tried less and less often.
     last_builds_ahead_ = fits ? 0 : std::min(2 * last_builds_ahead_ + 1, 15);
@@ -127,8 +134,7 @@ void BvhIndex<D, Real>::list_changes(const Frame<D, Real>& frame) {
 
 template <int D, typename Real>
 void BvhIndex<D, Real>::build(std::span<const Box<D, Real>> boxes) {
-  are_points_ = std::all_of(boxes.begin(), boxes.end(),
-                            [](const Box<D, Real>& box) { return is_point(box) || !is_present(box); });
+  are_points_ = are_points(boxes);
   if constexpr (is_float<Real>) {
     tree_.build(boxes);
   } else {

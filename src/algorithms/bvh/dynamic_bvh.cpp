@@ -25,8 +25,8 @@ bool touches_border(const Box<D>& bounds, const Box<D>& box) {
   return touches;
 }
 
-/// The expected number of a node's children that contain a point, which is anywhere in `bounds`. It does not
-/// depend on how large the boxes are, or where: it tells how well the children share the node.
+/// The expected number of a node's children that contain a random point of the node's bounds. It is the same
+/// at every scale and place.
 template <int D>
 double children_at_a_point(const kernels::Block<D>& node, std::size_t count, const Box<D>& bounds) {
   double sum = 0;
@@ -36,7 +36,7 @@ double children_at_a_point(const kernels::Block<D>& node, std::size_t count, con
     for (int axis = 0; axis < D; ++axis) {
       const float extent = child.max[axis] - child.min[axis];
       const float whole = bounds.max[axis] - bounds.min[axis];
-      if (extent < whole) share *= extent / whole;  // neither infinite nor 0 both
+      if (extent < whole) share *= extent / whole;  // equal extents may both be 0, or both infinite
     }
     sum += static_cast<double>(share);
   }
@@ -249,7 +249,8 @@ double DynamicBvh<D>::refit_all() {
   return visits() / built_visits_;
 }
 
-/// Sets the bounds below a node, which is so many levels below the root, and returns its own.
+/// Sets the bounds of the children of a node and of all nodes below. Returns the node's own bounds. `depth`:
+/// 0 for the root.
 template <int D>
 Box<D> DynamicBvh<D>::refit_below(std::uint32_t number, std::size_t depth) {
   const std::uint32_t node = number & ~leaf_bit;
@@ -264,7 +265,7 @@ Box<D> DynamicBvh<D>::refit_below(std::uint32_t number, std::size_t depth) {
   return bounds;
 }
 
-/// The expected number of nodes that a search of a point visits.
+/// The expected number of nodes that a search for a random point visits.
 template <int D>
 double DynamicBvh<D>::visits() const noexcept {
   double all = 1;

@@ -48,8 +48,8 @@ class DynamicBvh {
     write(slot(id), box);
   }
 
-  /// Makes all bounds exact. Returns how many times as many nodes a search of a point visits as after
-  /// build(), as far as the bounds tell.
+  /// Makes all bounds exact. Returns the expected number of nodes that a search for a random point visits,
+  /// over that number after build().
   double refit_all();
 
   /// Removes a box and inserts it where bounds grow least.
@@ -142,7 +142,7 @@ class DynamicBvh {
   void refit_above(std::uint32_t node);
   Box<D> refit_below(std::uint32_t number, std::size_t depth);
 
-  /// The children that a search of a point visits in the inner nodes of a level, and the number of these.
+  /// Of the inner nodes of a level: the expected numbers of children that contain a random point, added up.
   struct Level {
     double children = 0;
     std::size_t nodes = 0;
@@ -160,7 +160,7 @@ class DynamicBvh {
   std::vector<kernels::BvhNodeInfo> info_;
   std::vector<std::uint32_t> free_;        // nodes
   core::LargeArray<std::uint32_t> slots_;  // by id
-  std::vector<Level> levels_;              // from the root's on, as build() or refit_all() left them
+  std::vector<Level> levels_;              // the root's first, as of the last build() or refit_all()
   double built_visits_ = 1;
   std::uint32_t root_ = kernels::no_slot;
   std::size_t size_ = 0;

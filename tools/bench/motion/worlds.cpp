@@ -25,10 +25,12 @@ namespace {
 constexpr double box2d_margin = 0.05;
 constexpr double box2d_relative_margin = 0.125;
 
+/// `asks`: each update is followed by a query, which brings the world's index up to date.
 template <int D>
 class WorldFollower final : public MotionFollower<D> {
  public:
-  explicit WorldFollower(const WorldOptions& options) : options_(options), world_(options) {}
+  explicit WorldFollower(const WorldOptions& options, bool asks)
+      : options_(options), asks_(asks), world_(options) {}
 
   void take(const lab::Step<D>& step) override {
     added_.clear();
@@ -52,6 +54,7 @@ class WorldFollower final : public MotionFollower<D> {
     };
     for (std::size_t i = 0; i < step.changed.size(); ++i) take(index(step.changed[i]), step.boxes[i]);
     for (std::size_t place = step.size; place < handles_.size(); ++place) take(place, absent_box<D>());
+    if (!moved_boxes_.empty()) query_ = moved_boxes_.front();
     handles_.resize(step.size);
     new_handles_.resize(added_.size());
   }
@@ -61,6 +64,8 @@ class WorldFollower final : public MotionFollower<D> {
     world_.move(moved_, moved_boxes_);
     world_.add(added_boxes_, new_handles_);
     told_ = world_.update();
+    found_ = 0;
+    if (asks_) world_.overlapping(query_, [this](Handle) { ++found_; });
   }
 
   const lab::FrameEvents& events() override {
@@ -98,6 +103,9 @@ class WorldFollower final : public MotionFollower<D> {
       boxes.push_back(is_enlarged ? enlarged : box);
       handles.push_back(*handle);
     }
+    const auto meets_query = [this](const Box<D>& box) { return overlap(box, query_); };
+    if (asks_ && found_ != static_cast<std::size_t>(std::ranges::count_if(boxes, meets_query)))
+      throw std::runtime_error(fmt::format("a query finds {} boxes; expected others", found_));
     const std::span<const HandlePair> pairs = world_.pairs();
     std::vector<HandlePair> expected;
     for (const Pair pair : broadside::find_pairs(boxes)) {
@@ -124,6 +132,9 @@ class WorldFollower final : public MotionFollower<D> {
 
  private:
   WorldOptions options_;
+  bool asks_;
+  Box<D> query_ = absent_box<D>();
+  std::size_t found_ = 0;
   World<D> world_;
   std::vector<std::optional<Handle>> handles_;  // by place
   std::vector<std::size_t> place_of_;           // by slot
@@ -147,13 +158,15 @@ void race_worlds(const MotionBenchmarkOptions& benchmark, const std::string& nam
   const std::vector<lab::Entry> entries = catalogue.select(benchmark.algorithms_or("auto," + peer));
   std::vector<Competitor<D>> competitors = trackers<D>(entries);
   const std::string spec = entries.front().spec.text();
-  const auto add = [&](const std::string& its_name, const std::string& definition, WorldOptions options) {
+  const auto add = [&](const std::string& its_name, const std::string& definition, WorldOptions options,
+                       bool asks = false) {
     options.algorithm = spec;
-    competitors.push_back(
-        {its_name, definition, [options] { return std::make_unique<WorldFollower<D>>(options); }});
+    competitors.push_back({its_name, definition,
+                           [options, asks] { return std::make_unique<WorldFollower<D>>(options, asks); }});
   };
   WorldOptions options;
   add("World", "boxes", options);
+  add("World, a query", "boxes", options, true);
   options.margin = box2d_margin;
   options.relative_margin = box2d_relative_margin;
   add("World, margin", "boxes", options);
