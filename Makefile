@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PRECIOUS: build/%/build.ninja
-.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust test-bevy sanitize-rust wasm test-wasm test-installed compare-web playground film bench test sanitize systems windows clang format check-format lint docs clean
+.PHONY: help setup setup-ci program compare pictures experiments paper published deb release abi python test-python test-rust test-bevy sanitize-rust wasm test-wasm test-installed compare-web playground test-playground film bench test sanitize systems windows clang format check-format lint docs clean
 
 jobs := $(shell nproc)
 soak := $(basename $(notdir $(wildcard tools/bench/soak.cpp)))
@@ -150,6 +150,10 @@ playground: $(wasm_folder)/playground/build.ninja ## Build the playground, a pag
 	cmake --build --preset playground
 	node tools/web/build.mjs --playground build/playground
 
+test-playground: playground build/release/build.ninja ## Run the tests of the playground's page with its engine
+	@test -f build/release/build.ninja || cmake --preset release
+	ctest --preset release --tests-regex '^web_playground'
+
 film: playground ## Film the playground for README: docs/pictures/playground.gif
 	node tools/docs/film.mjs build/playground/index.html docs/pictures/playground.gif
 
@@ -157,7 +161,7 @@ $(wasm_folder)/playground/build.ninja: CMakePresets.json | setup
 	emcmake cmake --preset playground
 
 # Debian's Emscripten does not find Debian's acorn by itself.
-wasm test-wasm test-installed compare-web playground: export NODE_PATH := /usr/share/nodejs
+wasm test-wasm test-installed compare-web playground test-playground: export NODE_PATH := /usr/share/nodejs
 
 test: tests-release ## Build everything and run all tests
 
@@ -214,6 +218,7 @@ of_test-wasm := --wasm
 of_test-installed := --web
 of_compare-web := --web
 of_playground := --web
+of_test-playground := --build --web
 of_film := --film
 setup_options := $(sort $(foreach goal,$(MAKECMDGOALS),$(or $(of_$(goal)),--build)))
 

@@ -61,13 +61,14 @@ TEST_P(SceneLaw, FindsEachOverlappingPairOnce) {
 
 TEST_P(SceneLaw, TracksMovingBoxes) {
   in_dimension([&]<int D>() {
+    const std::size_t boxes = reduced(200);
     for (const lab::Scene& scene : lab::scenes()) {
       // Those are large, and move like all others.
       if (is_left_out(scene) || (scene.fixed_count && sanitized)) continue;
       for (const lab::SceneRequest& request :
-           {lab::SceneRequest{.boxes = 200, .frames = 12, .moving = 0.1},
-            lab::SceneRequest{.boxes = 200, .seed = 2, .frames = 12, .moving = 1, .drift = 0.5},
-            lab::SceneRequest{.boxes = 200, .seed = 3, .frames = 12, .moving = 0.5, .teleport = 0.3}}) {
+           {lab::SceneRequest{.boxes = boxes, .frames = 12, .moving = 0.1},
+            lab::SceneRequest{.boxes = boxes, .seed = 2, .frames = 12, .moving = 1, .drift = 0.5},
+            lab::SceneRequest{.boxes = boxes, .seed = 3, .frames = 12, .moving = 0.5, .teleport = 0.3}}) {
         if (is_peer(GetParam()) && request.teleport == 0) continue;
         const auto history = history_of<D>(scene, request);
         if (!history) continue;

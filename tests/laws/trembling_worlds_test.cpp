@@ -13,6 +13,7 @@
 #include "broadside/executor.hpp"
 #include "broadside/world.hpp"
 
+#include "law_case.hpp"
 #include "tests/support/world_history.hpp"
 
 namespace broadside::laws {
@@ -157,16 +158,17 @@ class TremblingBoxes {
 
 /// Only `auto` enlarges boxes of doubles by itself.
 std::vector<TremblingCourse> courses(const std::vector<std::string>& algorithms) {
+  const int frames = sanitized ? 80 : 160;
   std::vector<TremblingCourse> courses;
-  for (const std::string& algorithm : algorithms) courses.push_back({algorithm, algorithm, 700, 160});
+  for (const std::string& algorithm : algorithms) courses.push_back({algorithm, algorithm, 700, frames});
   courses.push_back({"by_threads", "auto", 600, 80});
   courses.back().threads = 3;
-  courses.push_back({"many", "auto", 2000, 60});
-  courses.push_back({"with_a_predicate", "auto", 700, 160});
+  courses.push_back({"many", "auto", sanitized ? 1000 : 2000, 60});
+  courses.push_back({"with_a_predicate", "auto", 700, frames});
   courses.back().has_predicate = true;
-  courses.push_back({"without_pairs", "auto", 700, 160});
+  courses.push_back({"without_pairs", "auto", 700, frames});
   courses.back().keeps_pairs = false;
-  courses.push_back({"with_invalid_boxes", "auto", 700, 160});
+  courses.push_back({"with_invalid_boxes", "auto", 700, frames});
   courses.back().quarantines = true;
   return courses;
 }

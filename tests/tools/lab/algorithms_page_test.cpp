@@ -27,6 +27,10 @@ std::string section_of(const std::string& name) {
 TEST(AlgorithmsPage, TellsOfEveryAlgorithmAndItsTunables) {
   for (const Algorithm& algorithm : algorithms()) {
     const std::string section = section_of(algorithm.name);
+    if (section.empty()) {
+      ADD_FAILURE() << "docs/algorithms.md has no section '## " << algorithm.name << "'";
+      continue;
+    }
     for (const std::string part : {"**Cost:**", "**Tunables:**", "**Take it**", "**Not**", "**Sources:**"})
       EXPECT_THAT(section, HasSubstr(part)) << algorithm.name;
     for (const Tunable& tunable : algorithm.tunables) {

@@ -26,7 +26,7 @@ const Measurement* fastest_among(const CaseResult& result, const Eligible& eligi
   return fastest;
 }
 
-bool is_auto(const Measurement& measurement) { return structure_of(measurement) == default_algorithm; }
+bool is_of_auto(const Measurement& measurement) { return structure_of(measurement) == default_algorithm; }
 
 }  // namespace
 
@@ -51,12 +51,12 @@ const Measurement* fastest_of_kind(const CaseResult& result, AlgorithmKind kind)
 
 const Measurement* best_own_of(const CaseResult& result) {
   const Measurement* const best = fastest_among(result, [](const Measurement& measurement) {
-    return measurement.kind == AlgorithmKind::own && !is_auto(measurement);
+    return measurement.kind == AlgorithmKind::own && !is_of_auto(measurement);
   });
   return best != nullptr ? best : auto_of(result);
 }
 
-const Measurement* auto_of(const CaseResult& result) { return fastest_among(result, is_auto); }
+const Measurement* auto_of(const CaseResult& result) { return fastest_among(result, is_of_auto); }
 
 std::string whole_name_of(const Case& measured) {
   const std::string name = name_of(measured);
