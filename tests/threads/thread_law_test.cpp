@@ -37,15 +37,19 @@ struct Crew {
 
 class ThreadLaw : public Law {
  protected:
-  /// Every number of threads and every executor that the law is tested with.
+  /// Every number of threads and every executor that the law is tested with; a sanitizer sees no more in
+  /// fewer threads.
   std::vector<Crew> crews() {
-    return {{"2 threads", workers(2)},
-            {"4 threads", workers(4)},
-            {"7 threads", workers(7)},
-            {"5 threads in reverse", workers(5, &reverse_)},
-            {"all threads of their own", workers(0, &threads_)},
-            {"3 threads and the caller's", workers(3, &team_)},
-            {"4 threads in any order", workers(4, &shuffling_)}};
+    std::vector<Crew> crews = {{"7 threads", workers(7)},
+                               {"5 threads in reverse", workers(5, &reverse_)},
+                               {"all threads of their own", workers(0, &threads_)},
+                               {"3 threads and the caller's", workers(3, &team_)},
+                               {"4 threads in any order", workers(4, &shuffling_)}};
+    if (!sanitized) {
+      crews.push_back({"2 threads", workers(2)});
+      crews.push_back({"4 threads", workers(4)});
+    }
+    return crews;
   }
 
   ReverseExecutor reverse_;
